@@ -7,7 +7,7 @@ mod recording;
 mod workspace;
 
 pub use measure::{MeasureArgs, SectionName};
-pub use motion::{LinkageArgs, TrajectoryArgs};
+pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, PlotArgs};
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};

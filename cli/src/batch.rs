@@ -2,21 +2,15 @@
 
 use crate::args::{Format, IkArgs, Output};
 use crate::failure::Failure;
-use crate::lines::{Line, Lines};
 use crate::load::Loaded;
 use crate::pose::find;
-use crate::progress::{interruptible, watch};
-use crate::text::{count, plural, short};
-use csv::{ErrorKind, WriterBuilder};
+use crate::stream::{self, Stop, Stream, Streams};
+use crate::text::{count, short};
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
-use opm_mcap::{PartialFile, Sink};
-use opm_workspace::Progress;
 use serde::Serialize;
-use std::fmt::Display;
-use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::Write;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// The requested working modes.
@@ -26,8 +20,8 @@ pub enum Modes {
     One(Mode),
 }
 
-/// Number of bytes that are written at a time.
-const BUFFER: usize = 1 << 16;
+/// Where rows are written.
+type Writer<'a> = csv::Writer<&'a mut dyn Write>;
 
 /// The totals of a batch.
 #[derive(Debug, Serialize)]
@@ -46,61 +40,13 @@ pub fn run(
     manipulator: &Manipulator,
     modes: Modes,
 ) -> Result<(), Failure> {
-    let dash = Path::new("-");
-    let input = args.poses.as_deref().unwrap_or(dash);
-    let target = args.output.as_deref().filter(|path| *path != dash);
-    if output.format == Format::Json && target.is_none() {
-        let problem = "the CSV takes standard output; give it a file with --output";
-        return Err(Failure::flag("--format json", problem));
-    }
-    if input == dash && args.mechanism.file == dash {
-        let problem = "standard input is the mechanism already, expected a file of poses";
-        return Err(Failure::flag("--poses", problem));
-    }
-    let (label, reader): (_, Box<dyn Read + Send>) = if input == dash {
-        ("standard input".to_owned(), Box::new(io::stdin()))
-    } else {
-        let label = input.display().to_string();
-        let file = File::open(input).map_err(|error| Failure::at(&label, error))?;
-        (label, Box::new(file))
-    };
-    let batch = Batch { label: &label, manipulator, modes };
-    let progress = interruptible()?;
-    let rows = AtomicU64::new(0);
-
-    let Some(path) = target else {
-        // There is no progress bar, since the rows may go to the terminal.
-        return batch.solve(reader, io::stdout().lock(), &rows, &progress).map(|_| ()).map_err(
-            |error| match error {
-                Stop::Write(error) => Failure::stdout(error),
-                Stop::Failure(failure) => failure,
-            },
-        );
-    };
-    loaded.refuse_as_output(path, &[input])?;
-    let place = path.display();
-    let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, error))?;
-    let solve = || batch.solve(reader, &mut file, &rows, &progress);
-    let summary =
-        match watch(output, "solving", None, || rows.load(Ordering::Relaxed), solve) {
-            Ok(summary) => summary,
-            Err(Stop::Failure(Failure::Interrupted(message))) => {
-                return Err(Failure::Interrupted(message.reworded(|message| {
-                    format!("{message}; what was solved is in {place}.partial")
-                })));
-            }
-            Err(stop) => {
-                // The file is discarded: the rows before a wrong one would look like the whole answer.
-                file.discard();
-                return Err(match stop {
-                    Stop::Write(error) => Failure::at(&place, error),
-                    Stop::Failure(failure) => failure,
-                });
-            }
-        };
-    file.commit().map_err(|error| Failure::at(&place, error))?;
+    let input = args.poses.as_deref().unwrap_or(Path::new("-"));
+    let streams = Streams { input, output: args.output.as_deref() };
+    let solve = |stream: Stream<'_>| solve(stream, manipulator, modes);
+    let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
     output.note(format_args!(
-        "{place}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
+        "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
+        args.output.as_deref().unwrap_or(input).display(),
         count(summary.poses),
         count(summary.reachable),
         count(summary.within_limits),
@@ -110,136 +56,40 @@ pub fn run(
     if output.format == Format::Json { output.print(&summary, "") } else { Ok(()) }
 }
 
-/// Why a batch ends early.
-enum Stop {
-    Write(io::Error),
-    Failure(Failure),
-}
-
-impl From<Failure> for Stop {
-    fn from(failure: Failure) -> Self {
-        Self::Failure(failure)
-    }
-}
-
-impl From<csv::Error> for Stop {
-    fn from(error: csv::Error) -> Self {
-        Self::Write(match error.into_kind() {
-            ErrorKind::Io(error) => error,
-            other => io::Error::other(format!("{other:?}")),
-        })
-    }
-}
-
-struct Batch<'a> {
-    /// The name of the input in messages.
-    label: &'a str,
-    manipulator: &'a Manipulator,
-    modes: Modes,
-}
-
-impl Batch<'_> {
-    fn solve(
-        &self,
-        input: impl Read,
-        output: impl Write,
-        rows: &AtomicU64,
-        progress: &Progress,
-    ) -> Result<Summary, Stop> {
-        let start = Instant::now();
-        let mut lines = Lines::new(input);
-        let columns = self.columns(lines.next().map_err(|error| self.unreadable(error))?)?;
-        let writer =
-            WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(output);
-        let mut table = Rows::new(self.manipulator, writer)?;
-
-        let mut pose = self.manipulator.home_pose();
-        while let Some(line) = lines.next().map_err(|error| self.unreadable(error))? {
-            if progress.is_cancelled() {
-                return Err(Failure::interrupted("interrupted").into());
-            }
-            self.read(line, &columns, &mut pose)?;
-            table.pose(&pose, self.modes, |error| self.at(line.number, error))?;
-            rows.fetch_add(1, Ordering::Relaxed);
-        }
-        table.writer.flush().map_err(Stop::Write)?;
-        let seconds = start.elapsed().as_secs_f64().max(1e-9);
-        let poses = rows.load(Ordering::Relaxed);
-        Ok(Summary {
-            poses,
-            reachable: table.reachable,
-            within_limits: table.within_limits,
-            seconds,
-            poses_per_second: poses as f64 / seconds,
-        })
-    }
-
-    /// The task coordinate of every column.
-    fn columns(&self, header: Option<Line<'_>>) -> Result<Vec<usize>, Failure> {
-        let coordinates = self.manipulator.task_coordinates();
-        let number = header.map_or(1, |line| line.number);
-        let names: Vec<_> =
-            header.iter().flat_map(|h| h.fields()).map(String::from_utf8_lossy).collect();
-        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let expected = coordinates.iter().map(|c| c.name).collect::<Vec<_>>().join(",");
-            let problem = format!("no header, expected names of task coordinates: {expected}");
-            return Err(self.at(number, problem));
-        }
-        let mut columns = Vec::new();
-        for name in &names {
-            let wrong =
-                |error: &dyn Display| self.at(number, format_args!("column {name:?}: {error}"));
-            self.manipulator.refuse_following(name).map_err(|error| wrong(&error))?;
-            let column = find(name, coordinates).map_err(|error| wrong(&error))?;
-            if columns.contains(&column) {
-                return Err(self.at(number, format_args!("column {name:?}: given twice")));
-            }
-            columns.push(column);
-        }
-        Ok(columns)
-    }
-
-    /// Reads a row into the columns of a pose.
-    fn read(&self, line: Line<'_>, columns: &[usize], pose: &mut [f64]) -> Result<(), Failure> {
-        let name = |column: usize| self.manipulator.task_coordinates()[column].name;
-        let given = line.fields().count();
-        if given != columns.len() {
-            let names: Vec<_> = columns.iter().map(|&column| name(column)).collect();
-            let given = plural(given as u64, "column");
-            let (expected, names) = (columns.len(), names.join(","));
-            let problem = format_args!("{given}, expected {expected}: {names}");
-            return Err(self.at(line.number, problem));
-        }
-        for (field, &column) in line.fields().zip(columns) {
-            let wrong = |problem: &str| {
-                let (name, field) = (name(column), String::from_utf8_lossy(field));
-                self.at(line.number, format_args!("column {name}: {field:?} {problem}"))
-            };
-            let number = std::str::from_utf8(field).ok().and_then(|text| text.parse().ok());
-            pose[column] = number.ok_or_else(|| wrong("is not a number"))?;
-            if !pose[column].is_finite() {
-                return Err(wrong("is not a finite number"));
-            }
-        }
-        Ok(())
-    }
-
-    fn unreadable(&self, error: io::Error) -> Failure {
-        Failure::at(self.label, error)
-    }
-
-    fn at(&self, line: u64, problem: impl Display) -> Failure {
-        Failure::work(format!("{}:{line}: {problem}", self.label))
-    }
+fn solve(mut stream: Stream<'_>, manipulator: &Manipulator, modes: Modes) -> Result<Summary, Stop> {
+    let start = Instant::now();
+    let coordinates = manipulator.task_coordinates();
+    let columns = stream.columns(coordinates.iter().map(|c| c.name).collect(), |name| {
+        manipulator.refuse_following(name).map_err(|error| error.to_string())?;
+        find(name, coordinates).map(Some).map_err(|error| error.to_string())
+    })?;
+    let mut table = Rows::new(manipulator, columns.timed(), &mut stream.writer)?;
+    let mut pose = manipulator.home_pose();
+    stream.each(&columns, &mut pose, |stream, line, time, pose| {
+        table.time = time;
+        let label = stream.label;
+        let wrong = |error| stream::at(label, line, error);
+        table.pose(pose, modes, &mut stream.writer, wrong)
+    })?;
+    let seconds = start.elapsed().as_secs_f64().max(1e-9);
+    let poses = stream.rows.load(Ordering::Relaxed);
+    Ok(Summary {
+        poses,
+        reachable: table.reachable,
+        within_limits: table.within_limits,
+        seconds,
+        poses_per_second: poses as f64 / seconds,
+    })
 }
 
 /// The rows of the result.
-struct Rows<'a, W: Write> {
+struct Rows<'a> {
     manipulator: &'a Manipulator,
-    writer: csv::Writer<W>,
     drives: ActuatedJoints,
     all: AllModes,
     solution: Solution,
+    /// The time of the pose, if the input has times.
+    time: Option<f64>,
     /// Imaginary joints, then actuated joints; empty if the pose is out of reach.
     cells: Vec<Option<f64>>,
     /// Dependent coordinates; empty if they have no solution.
@@ -248,10 +98,15 @@ struct Rows<'a, W: Write> {
     within_limits: u64,
 }
 
-impl<'a, W: Write> Rows<'a, W> {
-    fn new(manipulator: &'a Manipulator, mut writer: csv::Writer<W>) -> Result<Self, Stop> {
+impl<'a> Rows<'a> {
+    fn new(
+        manipulator: &'a Manipulator,
+        timed: bool,
+        writer: &mut Writer<'_>,
+    ) -> Result<Self, Stop> {
         let coordinates = manipulator.coordinates();
-        let header: Vec<&str> = (manipulator.task_coordinates().iter().map(|c| c.name))
+        let header: Vec<&str> = (timed.then_some("t").into_iter())
+            .chain(manipulator.task_coordinates().iter().map(|c| c.name))
             .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
             .chain(["reachable", "within_limits", "mode"])
             .chain(manipulator.imaginary().iter().map(|joint| &*joint.name))
@@ -260,10 +115,10 @@ impl<'a, W: Write> Rows<'a, W> {
         writer.write_record(header)?;
         Ok(Self {
             manipulator,
-            writer,
             drives: manipulator.actuated_joints(),
             all: manipulator.all_modes(),
             solution: manipulator.solution(),
+            time: None,
             cells: Vec::new(),
             dependent: Vec::new(),
             reachable: 0,
@@ -276,6 +131,7 @@ impl<'a, W: Write> Rows<'a, W> {
         &mut self,
         pose: &[f64],
         modes: Modes,
+        writer: &mut Writer<'_>,
         wrong: impl Fn(PoseError) -> Failure,
     ) -> Result<(), Stop> {
         let manipulator = self.manipulator;
@@ -291,7 +147,7 @@ impl<'a, W: Write> Rows<'a, W> {
                 self.within_limits += u64::from(within);
                 let dependent = manipulator.dependent_values(pose, mode).ok().flatten();
                 self.depend(dependent.as_deref());
-                self.write(pose, reachable, within, &manipulator.format_mode(mode))
+                self.write(writer, pose, [reachable, within], &manipulator.format_mode(mode))
             }
             Modes::All => {
                 let found = manipulator.inverse_all(pose, &mut self.all).map_err(wrong)?;
@@ -301,7 +157,7 @@ impl<'a, W: Write> Rows<'a, W> {
                     let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
                     fill(&mut self.cells, joints.copied(), false);
                     self.depend(None);
-                    return self.write(pose, false, false, "");
+                    return self.write(writer, pose, [false, false], "");
                 }
                 let mut any_within = false;
                 let found: Vec<_> = self.all.modes(manipulator).collect();
@@ -316,7 +172,7 @@ impl<'a, W: Write> Rows<'a, W> {
                     self.dependent.extend(solution.dependent().iter().map(|&value| Some(value)));
                     let within = solution.within_limits();
                     any_within |= within;
-                    self.write(pose, true, within, &manipulator.format_mode(mode))?;
+                    self.write(writer, pose, [true, within], &manipulator.format_mode(mode))?;
                 }
                 self.within_limits += u64::from(any_within);
                 Ok(())
@@ -331,16 +187,18 @@ impl<'a, W: Write> Rows<'a, W> {
         self.dependent.extend((0..count).map(|i| values.map(|values| values[i])));
     }
 
+    /// Writes a row; `answers` are whether the pose is in reach, and within limits.
     fn write(
-        &mut self,
+        &self,
+        writer: &mut Writer<'_>,
         pose: &[f64],
-        reachable: bool,
-        within_limits: bool,
+        answers: [bool; 2],
         mode: &str,
     ) -> Result<(), Stop> {
-        let (reachable, within_limits) = (u8::from(reachable), u8::from(within_limits));
-        let row = (pose, &*self.dependent, reachable, within_limits, mode, &*self.cells);
-        Ok(self.writer.serialize(row)?)
+        let [reachable, within_limits] = answers.map(u8::from);
+        let time = self.time.as_slice();
+        let row = (time, pose, &*self.dependent, reachable, within_limits, mode, &*self.cells);
+        Ok(writer.serialize(row)?)
     }
 }
 

@@ -1,5 +1,7 @@
 //! `opm fk`: forward kinematics.
 
+mod poses;
+
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
 use crate::ik::reason;
@@ -16,12 +18,20 @@ use opm_core::mechanism::joint::JointCoordinate;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Write;
+use std::path::Path;
 
 pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
-    unitless::note_joints(output, "--joints", &args.joints, &loaded, &manipulator);
-    let actuated = joints(&args.joints, &manipulator)?;
+    let given = match (&args.joints, &args.poses) {
+        (Some(joints), _) => joints,
+        (None, input) => {
+            let input = input.as_deref().unwrap_or(Path::new("-"));
+            return poses::run(args, input, output, (&loaded, &manipulator));
+        }
+    };
+    unitless::note_joints(output, "--joints", given, &loaded, &manipulator);
+    let actuated = joints(given, &manipulator)?;
     let only = args.mode.as_deref().map(|mode| load::mode(&manipulator, mode)).transpose()?;
     let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
     let (found, method) = match (&args.near, manipulator.forward_closed_form()) {
@@ -30,6 +40,9 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             if let Some(mode) = only {
                 found.list.retain(|assembly| assembly.mode == mode);
             }
+            let home = manipulator.platform_pose(&manipulator.home_pose());
+            let home = home.map_err(|error| Failure::at(&loaded.label, error))?;
+            manipulator.sort_assemblies(&mut found.list, &home);
             (found, Method::ClosedForm)
         }
         (near, closed_form) => {

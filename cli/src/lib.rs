@@ -23,6 +23,7 @@ mod plot;
 mod pose;
 mod progress;
 mod schema;
+mod stream;
 mod text;
 mod trajectory;
 mod transform;

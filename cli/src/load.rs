@@ -57,12 +57,14 @@ pub fn read(given: &MechanismArgs) -> Result<Loaded, Failure> {
 
 /// The name of standard input among files.
 pub const DASH: &str = "-";
+/// Its name in messages.
+pub const STANDARD_INPUT: &str = "standard input";
 
 /// Reads a mechanism: a file, standard input, or an example. An existing path has priority over an example of the same
 /// name.
 pub fn read_as_it_is(given: &Path) -> Result<Loaded, Failure> {
     if given == Path::new(DASH) {
-        let label = "standard input".to_owned();
+        let label = STANDARD_INPUT.to_owned();
         let text = whole(io::stdin(), &label, LONGEST, "mechanism file")?;
         let file =
             file::read(&text).map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
@@ -128,6 +130,11 @@ fn whole(source: impl Read, label: &str, longest: u64, what: &str) -> Result<Str
 }
 
 impl Loaded {
+    /// Whether the mechanism was read from standard input.
+    pub fn is_standard_input(&self) -> bool {
+        self.path.is_none() && self.label == STANDARD_INPUT
+    }
+
     /// Moves joints that miss their subspaces by at most a tolerance exactly into these.
     pub fn snap(&mut self, tolerance: Number, flag: &str) -> Result<(), Failure> {
         let length = tolerance.value_of("the tolerance", Quantity::Length);

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::load;
 use opm_core::manipulator::Manipulator;
-use opm_core::motion::{PlatformMotion, examples, file, table};
+use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
 use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
 
@@ -31,9 +31,13 @@ impl LoadedMotion {
     }
 }
 
-/// Reads a motion: a table of poses if the name ends in `.csv`, a motion file otherwise. An existing
-/// path has priority over an example of the same name.
-pub fn open(given: &Path, manipulator: &Manipulator) -> Result<LoadedMotion, Failure> {
+/// Reads a motion: a table of poses if the name ends in `.csv`, a motion file otherwise, which says itself how it
+/// starts and ends. An existing path has priority over an example of the same name.
+pub fn open(
+    given: &Path,
+    ends: Option<Ends>,
+    manipulator: &Manipulator,
+) -> Result<LoadedMotion, Failure> {
     let label = given.display().to_string();
     let source = match load::text(given, LONGEST, "motion file")? {
         Some(text) => {
@@ -48,8 +52,17 @@ pub fn open(given: &Path, manipulator: &Manipulator) -> Result<LoadedMotion, Fai
     let (text, file_name, path) = source;
     let stem = given.file_stem().map_or_else(|| label.clone(), |stem| stem.display().to_string());
     let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let motion =
-        if table { table::read(&text, &stem, manipulator) } else { file::read(&text, manipulator) };
+    let motion = match ends {
+        _ if table => table::read(&text, &stem, manipulator, ends.unwrap_or_default()),
+        Some(ends) => {
+            let problem = format!(
+                "a motion file says it itself: write `ends = \"{}\"` beside its points",
+                ends.name()
+            );
+            return Err(Failure::flag("--ends", problem));
+        }
+        None => file::read(&text, manipulator),
+    };
     let motion = motion.map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
     Ok(LoadedMotion { label, file_name, path, text, motion })
 }

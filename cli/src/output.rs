@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Display;
 use std::io::{self, Write};
+use std::path::Path;
 
 impl Output {
     /// Prints a result in the selected format.
@@ -32,6 +33,11 @@ impl Output {
             talk(Kind::Warning, &message.to_string());
         }
     }
+}
+
+/// Whether a name stands for standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-") || path == Path::new("/dev/stdout")
 }
 
 /// Writes to standard output to the last byte.

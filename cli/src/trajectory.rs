@@ -2,22 +2,83 @@
 
 mod summary;
 
-use crate::args::{Output, TrajectoryArgs};
+use crate::args::{Format, Output, TableUnits, TrajectoryArgs};
 use crate::failure::Failure;
 use crate::load;
 use crate::motion;
+use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::count;
-use opm_study::recording::{MotionRecorder, partial};
+use opm_mcap::RecordError;
+use opm_study::recording::{
+    MotionRecorder, TableOptions, is_motion_table, partial, write_motion_csv, write_motion_table,
+};
 use opm_study::{MotionRequest, StudyError};
+use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use summary::Report;
 
+/// Where the samples of a motion go.
+enum Target<'a> {
+    Nowhere,
+    /// CSV on standard output.
+    Printed,
+    Table(&'a Path),
+    Recording(&'a Path),
+}
+
+impl<'a> Target<'a> {
+    /// What the name of the output and the options of tables say together.
+    fn of(args: &'a TrajectoryArgs, output: &Output) -> Result<Self, Failure> {
+        let target = match args.output.as_deref() {
+            None => Self::Nowhere,
+            Some(path) if is_stdout(path) => Self::Printed,
+            Some(path) if is_motion_table(path) => Self::Table(path),
+            Some(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap")) => {
+                Self::Recording(path)
+            }
+            Some(path) => {
+                let problem =
+                    "expected a name that ends in .mcap (a recording), .csv or .npy (NumPy)";
+                return Err(Failure::flag(
+                    "--output",
+                    format_args!("{}, {problem}", path.display()),
+                ));
+            }
+        };
+        if let Self::Recording(_) = target {
+            let options = [
+                ("--rates", args.rates, "a recording has them anyway"),
+                ("--accelerations", args.accelerations, "a recording has them anyway"),
+                ("--units", args.units == TableUnits::File, "a recording is in metres and radians"),
+            ];
+            if let Some((flag, _, why)) = options.into_iter().find(|(_, given, _)| *given) {
+                let problem = format_args!("{why}; for tables, whose names end in .csv or .npy");
+                return Err(Failure::flag(flag, problem));
+            }
+        }
+        if let (Self::Printed, Format::Json) = (&target, output.format) {
+            let problem = "the CSV takes standard output; give it a file with --output";
+            return Err(Failure::flag("--format json", problem));
+        }
+        Ok(target)
+    }
+
+    /// The file.
+    fn path(&self) -> Option<&'a Path> {
+        match *self {
+            Self::Nowhere | Self::Printed => None,
+            Self::Table(path) | Self::Recording(path) => Some(path),
+        }
+    }
+}
+
 pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
+    let target = Target::of(args, output)?;
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
-    let motion = motion::open(&args.motion, &manipulator)?;
+    let motion = motion::open(&args.motion, args.ends.map(Into::into), &manipulator)?;
     let mut request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);
     if let Some(mode) = &args.mode {
         request = request.mode(load::mode(&manipulator, mode)?);
@@ -26,14 +87,20 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         request = request.rate(rate);
     }
     let trajectory = request.trajectory()?;
-    let recorder = match &args.output {
-        Some(path) => {
-            loaded
-                .refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;
+    if let Some(path) = target.path() {
+        loaded.refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;
+    }
+    let recorder = match target {
+        Target::Recording(path) => {
             let files = [loaded.attachment(), motion.attachment()];
             Some(MotionRecorder::create(path, request, files)?)
         }
-        None => None,
+        Target::Nowhere | Target::Printed | Target::Table(_) => None,
+    };
+    let options = TableOptions {
+        rates: args.rates,
+        accelerations: args.accelerations,
+        units: (args.units == TableUnits::File).then_some(loaded.file.units),
     };
     let progress = interruptible()?;
     let samples = trajectory.samples();
@@ -42,24 +109,40 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         done.store(number, Ordering::Relaxed);
         !progress.is_cancelled()
     };
-    let follow = || match recorder {
-        Some(recorder) => recorder.follow(trajectory, go_on),
-        None => request.follow(trajectory, |_, _, _| Ok(()), go_on),
+    let follow = || match (recorder, &target) {
+        (Some(recorder), _) => recorder.follow(trajectory, go_on),
+        (None, Target::Table(path)) => {
+            write_motion_table(request, trajectory, options, path, go_on)
+        }
+        (None, Target::Printed) => {
+            let mut stdout = io::stdout();
+            let printed = ("standard output", &mut stdout as &mut dyn io::Write);
+            write_motion_csv(request, trajectory, options, printed, go_on)
+        }
+        (None, _) => request.follow(trajectory, |_, _, _| Ok(()), go_on),
     };
-    let followed =
-        watch(output, "following", Some(samples), || done.load(Ordering::Relaxed), follow);
+    // There is no progress bar where rows may go to the terminal.
+    let followed = match target {
+        Target::Printed => follow(),
+        _ => watch(output, "following", Some(samples), || done.load(Ordering::Relaxed), follow),
+    };
     let summary = followed.map_err(|error| match error {
         StudyError::Cancelled => {
             let (done, samples) = (count(done.load(Ordering::Relaxed)), count(samples));
-            let kept = args.output.as_deref().map_or_else(String::new, |path: &Path| {
+            let kept = target.path().map_or_else(String::new, |path| {
                 format!("; what was recorded is in {}", partial(path).display())
             });
             let message = format!("interrupted; {done} of {samples} samples were followed{kept}");
             Failure::interrupted(message)
         }
+        StudyError::Record { error: RecordError::Io(error), .. }
+            if matches!(target, Target::Printed) =>
+        {
+            Failure::stdout(error)
+        }
         other => other.into(),
     })?;
-    if let Some(path) = &args.output {
+    if let Some(path) = target.path() {
         output.note(format_args!("{}: {} samples", path.display(), count(summary.samples)));
     }
     let violations = summary.violation_count;
@@ -71,7 +154,9 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         ));
     }
     let report = Report { request, summary: &summary, units: loaded.file.units };
-    output.print(&report.json(), report.text())?;
+    if !matches!(target, Target::Printed) {
+        output.print(&report.json(), report.text())?;
+    }
     match args.strict && violations > 0 {
         true => Err(Failure::work(format!(
             "{}: the mechanism cannot follow all of it (--strict): {}",

@@ -6,9 +6,10 @@ use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::Rows;
-use numpy::{IntoPyArray, PyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_core::forward::{self as core, ForwardError, NearError, Stop};
 use opm_core::manipulator::Mode;
+use opm_study::Tracker;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
@@ -84,7 +85,8 @@ impl Manipulator {
     /// Returns
     /// -------
     /// list of list of Assembly
-    ///     One list for each row: empty where there is no assembly, or where Newton's method does not converge.
+    ///     One list for each row, the assembly nearest to home first: empty where there is no assembly, or where Newton's
+    ///     method does not converge.
     ///
     /// Raises
     /// ------
@@ -145,6 +147,79 @@ impl Manipulator {
         });
         rows.collect()
     }
+
+    /// The pose for each row of actuated joint values, near the pose of the row before it, in one working mode.
+    ///
+    /// Newton's method starts at the last pose that was found. Where it ends without an assembly, the closed form finds
+    /// the nearest one in this mode, for mechanisms that have one.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints : (n, a) array_like
+    ///     Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
+    /// near : (d,) array_like, optional
+    ///     The pose before the first row; home if not given.
+    /// mode : str, optional
+    ///     ``"home"``, or a sign for every two-valued choice.
+    ///
+    /// Returns
+    /// -------
+    /// (n, d) ndarray
+    ///     Task coordinates, metres and radians; NaN in the rows for which no assembly was found.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A value is not a finite number.
+    #[pyo3(signature = (joints, *, near = None, mode = "home"))]
+    fn forward_track<'py>(
+        &self,
+        py: Python<'py>,
+        joints: &Bound<'py, PyAny>,
+        near: Option<&Bound<'py, PyAny>>,
+        mode: &str,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let coordinates = self.inner.coordinates();
+        let names: Vec<_> =
+            self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
+        let joints = arguments::rows(joints, "joints", &names)?;
+        let joints = Rows::new(&joints)?;
+        let mode = self.mode(mode)?;
+        let start = match near {
+            None => self.inner.home_pose(),
+            Some(near) => {
+                let rows = arguments::one_or_rows(near, "near", &self.pose_names())?;
+                let rows = Rows::new(&rows)?;
+                if rows.count != 1 {
+                    return Err(wrong(format!("{} rows of near, expected one pose", rows.count)));
+                }
+                rows.row(0).to_vec()
+            }
+        };
+        let width = start.len();
+        let stop = AtomicBool::new(false);
+        let work = || -> Result<Vec<f64>, String> {
+            let mut tracker = Tracker::new(&self.inner, &start, mode);
+            let mut poses = Vec::with_capacity(joints.count * width);
+            for row in 0..joints.count {
+                if stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                let found = tracker.step(joints.row(row)).map_err(|error| match error {
+                    NearError::Start(error) => format!("near: {error}"),
+                    error => format!("row {row}: {error}"),
+                })?;
+                match found {
+                    Some(assembly) => poses.extend_from_slice(&assembly.pose),
+                    None => poses.extend(std::iter::repeat_n(f64::NAN, width)),
+                }
+            }
+            Ok(poses)
+        };
+        let stopped = || stop.store(true, Ordering::Relaxed);
+        let poses = interrupt::run(py, NonZeroUsize::new(1), work, stopped)?.map_err(wrong)?;
+        poses.into_pyarray(py).reshape([joints.count, width])
+    }
 }
 
 impl Manipulator {
@@ -158,7 +233,10 @@ impl Manipulator {
     ) -> Result<Vec<core::Assembly>, String> {
         let Some(Near { starts, mode }) = near else {
             let found = self.inner.forward(joints);
-            return Ok(found.map_err(|error: ForwardError| error.to_string())?.list);
+            let mut list = found.map_err(|error: ForwardError| error.to_string())?.list;
+            let home = self.inner.platform_pose(&self.inner.home_pose());
+            self.inner.sort_assemblies(&mut list, &home.map_err(|error| error.to_string())?);
+            return Ok(list);
         };
         let start = starts.row(row.min(starts.count - 1));
         match self.inner.forward_near(joints, start, *mode) {

@@ -12,9 +12,10 @@ use crate::rows::{Rows, no_memory};
 use crate::solutions::units;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_core::manipulator::{self as core, Mode};
-use opm_core::motion::{PlatformMotion, examples, file, table};
+use opm_core::mechanism;
+use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
 use opm_core::trajectory::{self as core_trajectory, Change, Sample, ViolationReport};
-use opm_study::recording::{Attachment, MotionRecorder};
+use opm_study::recording::{Attachment, MotionRecorder, TableOptions, write_motion_table};
 use opm_study::{DEFAULT_RATE, MotionRequest};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -110,6 +111,8 @@ struct Source {
     text: String,
     mode: Mode,
     rate: f64,
+    /// How the motion through the poses of a table starts and ends.
+    ends: Ends,
 }
 
 /// A part of a motion that the mechanism cannot follow, or a singularity on its way.
@@ -149,14 +152,17 @@ pub struct Violation {
 /// manipulator : Manipulator
 /// motion : path, str or (w, d) array_like
 ///     A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints with one
-///     column for each task coordinate, through which a natural cubic spline passes. Angles are brought within π of the
+///     column for each task coordinate, through which a cubic spline passes. Angles are brought within π of the
 ///     preceding waypoint, as those of a table are.
 /// times : (w,) sequence of float, optional
-///     Times of the waypoints, seconds, increasing; at least three.
+///     Times of the waypoints, seconds, increasing; at least two.
 /// rate : float, optional
 ///     Samples per second; if not given, the rate of the file, or 100. The last sample is at the end of the motion.
 /// mode : str, optional
 ///     ``"home"``, or a sign for every two-valued choice; if not given, the mode of the file, or home.
+/// ends : str, optional
+///     How a spline through waypoints or the poses of a table starts and ends: ``"rest"`` (no speed; if not given),
+///     ``"natural"`` (no acceleration), or ``"periodic"`` (as it ends, so it starts). A motion file says it itself.
 ///
 /// Raises
 /// ------
@@ -166,7 +172,7 @@ pub struct Violation {
 ///     Lists every problem of the file with its line and column; or waypoints are not poses, or times do not increase (the
 ///     message gives the index of the waypoint, counted from zero).
 #[pyfunction]
-#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None))]
+#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None))]
 pub fn trajectory(
     py: Python<'_>,
     manipulator: &Bound<'_, Manipulator>,
@@ -174,12 +180,18 @@ pub fn trajectory(
     times: Option<&Bound<'_, PyAny>>,
     rate: Option<f64>,
     mode: Option<&str>,
+    ends: Option<&str>,
 ) -> PyResult<Trajectory> {
     let (owner, manipulator) = (manipulator, manipulator.get());
+    let ends = ends.map(spline_ends).transpose()?;
     let (motion, file_name, text) = match times {
-        Some(times) => through(manipulator, motion, &arguments::list(times, "times")?)?,
-        None => read(manipulator, motion)?,
+        Some(times) => {
+            let times = arguments::list(times, "times")?;
+            through(manipulator, motion, &times, ends.unwrap_or_default())?
+        }
+        None => read(manipulator, motion, ends)?,
     };
+    let ends = ends.unwrap_or_default();
     let mode = match mode {
         Some(mode) => manipulator.mode(mode)?,
         None => motion.mode.unwrap_or_else(|| manipulator.inner.home_mode()),
@@ -193,14 +205,19 @@ pub fn trajectory(
     let record =
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))??;
     let manipulator = owner.clone().unbind();
-    record.finish(py, Source { manipulator, motion, file_name, text, mode, rate })
+    record.finish(py, Source { manipulator, motion, file_name, text, mode, rate, ends })
 }
 
 /// A motion, the name of its file, and the text of that.
 type Read = (PlatformMotion, String, String);
 
 /// Waypoints as a table of poses.
-fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -> PyResult<Read> {
+fn through(
+    manipulator: &Manipulator,
+    poses: &Bound<'_, PyAny>,
+    times: &[f64],
+    ends: Ends,
+) -> PyResult<Read> {
     let poses = arguments::rows(poses, "motion", &manipulator.pose_names())?;
     let poses = Rows::new(&poses)?;
     if poses.count != times.len() {
@@ -220,7 +237,7 @@ fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -
         text = text + "\n" + &cells.collect::<Vec<_>>().join(",");
     }
     text.push('\n');
-    let motion = table::read(&text, "waypoints", &manipulator.inner).map_err(|errors| {
+    let motion = table::read(&text, "waypoints", &manipulator.inner, ends).map_err(|errors| {
         // The first line is the header, and poses count from zero.
         let lines = errors.problems.iter().map(|problem| match problem.line {
             0 | 1 => problem.message.clone(),
@@ -232,7 +249,11 @@ fn through(manipulator: &Manipulator, poses: &Bound<'_, PyAny>, times: &[f64]) -
 }
 
 /// A motion file, a table of poses, or a shipped motion: an existing path wins.
-fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Read> {
+fn read(
+    manipulator: &Manipulator,
+    motion: &Bound<'_, PyAny>,
+    ends: Option<Ends>,
+) -> PyResult<Read> {
     let expected = "motion: expected a path, the name of a shipped motion, or poses with times";
     let path = arguments::path(motion).map_err(|_| wrong(expected))?;
     let label = path.display().to_string();
@@ -243,21 +264,37 @@ fn read(manipulator: &Manipulator, motion: &Bound<'_, PyAny>) -> PyResult<Read> 
             (text, path.file_name().map_or(label.clone(), |n| n.display().to_string()))
         }
     };
-    let motion = parse(manipulator, &text, &name, &label)?;
+    let motion = parse(manipulator, &text, (&name, &label), ends)?;
     Ok((motion, name, text))
+}
+
+/// The ends of this name.
+fn spline_ends(name: &str) -> PyResult<Ends> {
+    let found = Ends::NAMES.iter().find(|(known, _)| *known == name);
+    found.map(|(_, ends)| *ends).ok_or_else(|| {
+        let names = Ends::NAMES.map(|(name, _)| format!("{name:?}")).join(", ");
+        wrong(format!("ends: {name:?}, expected one of {names}"))
+    })
 }
 
 /// The motion in the text of a file of this name; messages call it `label`.
 fn parse(
     manipulator: &Manipulator,
     text: &str,
-    name: &str,
-    label: &str,
+    (name, label): (&str, &str),
+    ends: Option<Ends>,
 ) -> PyResult<PlatformMotion> {
     let (inner, path) = (&manipulator.inner, Path::new(name));
     let csv = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
     let stem = path.file_stem().map_or_else(|| label.to_owned(), |s| s.display().to_string());
-    let motion = if csv { table::read(text, &stem, inner) } else { file::read(text, inner) };
+    let motion = match ends {
+        _ if csv => table::read(text, &stem, inner, ends.unwrap_or_default()),
+        Some(ends) => {
+            let problem = "a motion file says it itself, beside its points:";
+            return Err(wrong(format!("ends: {problem} ends = {:?}", ends.name())));
+        }
+        None => file::read(text, inner),
+    };
     motion.map_err(|errors| wrong(errors.in_file(label)))
 }
 
@@ -440,8 +477,11 @@ const ATTRIBUTES: [&str; 24] = [
     "rows",
 ];
 
-/// The pickled input of a trajectory: manipulator, name and text of the file, rate.
-type Followable = (Py<Manipulator>, String, String, f64);
+/// The pickled input of a trajectory: manipulator, name and text of the file, rate, ends of a table.
+type Followable = (Py<Manipulator>, String, String, f64, &'static str);
+
+/// The same, as it is read.
+type Restored = (Py<Manipulator>, String, String, f64, String);
 
 #[pymethods]
 impl Violation {
@@ -461,17 +501,19 @@ impl Trajectory {
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<Pickled<'py, (Bound<'py, PyDict>, Followable)>> {
-        let Source { manipulator, file_name, text, rate, .. } = &slf.get().source;
+        let Source { manipulator, file_name, text, rate, ends, .. } = &slf.get().source;
         let manipulator = manipulator.clone_ref(slf.py());
-        let source = (manipulator, file_name.clone(), text.clone(), *rate);
+        let source = (manipulator, file_name.clone(), text.clone(), *rate, ends.name());
         let attributes = attributes(slf.as_any(), &ATTRIBUTES)?;
         Ok((slf.get_type().getattr("_restored")?, (attributes, source)))
     }
 
     #[staticmethod]
-    fn _restored(attributes: &Bound<'_, PyDict>, source: Followable) -> PyResult<Self> {
-        let (manipulator, file_name, text, rate) = source;
-        let motion = parse(manipulator.get(), &text, &file_name, &file_name)?;
+    fn _restored(attributes: &Bound<'_, PyDict>, source: Restored) -> PyResult<Self> {
+        let (manipulator, file_name, text, rate, ends) = source;
+        let ends = spline_ends(&ends)?;
+        let csv = file_name.to_ascii_lowercase().ends_with(".csv").then_some(ends);
+        let motion = parse(manipulator.get(), &text, (&file_name, &file_name), csv)?;
         let mode: String = attribute(attributes, "mode")?;
         let signs = manipulator.get().mode(&mode)?;
         Ok(Self {
@@ -499,7 +541,7 @@ impl Trajectory {
             name: attribute(attributes, "name")?,
             rows: attribute(attributes, "rows")?,
             mode,
-            source: Source { manipulator, motion, file_name, text, mode: signs, rate },
+            source: Source { manipulator, motion, file_name, text, mode: signs, rate, ends },
         })
     }
 
@@ -519,7 +561,7 @@ impl Trajectory {
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::path)] path: PathBuf,
     ) -> PyResult<()> {
-        let Source { manipulator, motion, file_name, text, mode, rate } = &self.source;
+        let Source { manipulator, motion, file_name, text, mode, rate, .. } = &self.source;
         let manipulator = manipulator.get();
         let name = manipulator.file_name();
         let files = [
@@ -533,6 +575,58 @@ impl Trajectory {
             let trajectory = request.trajectory()?;
             let recorder = MotionRecorder::create(&path, request, files)?;
             recorder.follow(trajectory, |_| !stop.load(Ordering::Relaxed)).map(|_| ())
+        };
+        interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
+            .map_err(study)
+    }
+
+    /// Write the motion as a table, as ``opm trajectory -o`` does, byte for byte: a row for each sample.
+    ///
+    /// The columns are ``t``, the task coordinates, the dependent coordinates, the joints and the imaginary joints, by
+    /// their names; then ``d.NAME`` of all of them but ``t``, and ``dd.NAME``. Where there is no number, a cell of a CSV
+    /// file is empty, and NaN in an NPY file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     Its name ends in ``.csv``, or in ``.npy`` for a structured array. The file appears when it is complete.
+    /// rates : bool, optional
+    ///     Also the first derivatives by time.
+    /// accelerations : bool, optional
+    ///     Also the second derivatives by time.
+    /// units : str, optional
+    ///     ``"si"``: metres and radians; or ``"file"``: those of the mechanism file, which the header names: ``S1 [mm]``.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The file cannot be written, or its name ends otherwise.
+    #[pyo3(signature = (path, *, rates = false, accelerations = false, units = "si"))]
+    fn write_table(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        rates: bool,
+        accelerations: bool,
+        units: &str,
+    ) -> PyResult<()> {
+        let Source { manipulator, motion, file_name, mode, rate, .. } = &self.source;
+        let manipulator = manipulator.get();
+        let units = match units {
+            "si" => None,
+            "file" => Some(
+                mechanism::file::read(manipulator.text()).map_err(|error| failed(&error))?.units,
+            ),
+            other => return Err(wrong(format!("units: {other:?}, expected \"si\" or \"file\""))),
+        };
+        let options = TableOptions { rates, accelerations, units };
+        let request = MotionRequest::new(&manipulator.inner, motion, file_name);
+        let request = request.mode(*mode).rate(*rate);
+        let stop = AtomicBool::new(false);
+        let work = || {
+            let trajectory = request.trajectory()?;
+            let go_on = |_| !stop.load(Ordering::Relaxed);
+            write_motion_table(request, trajectory, options, &path, go_on).map(|_| ())
         };
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
             .map_err(study)

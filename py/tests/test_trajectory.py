@@ -92,7 +92,10 @@ def test_wrong_input_is_told(manipulator, tmp_path):
     for motion, options, message in [
         (home, {"times": [0, 1, 2]}, "3 times for 4 poses"),
         (home, {"times": [0, 1, 1, 2]}, "waypoint 2: t is 1.0 after 1.0|waypoint 2: t is 1 after 1"),
-        (home[:2], {"times": [0, 1]}, "expected at least 3"),
+        (home[:1], {"times": [0]}, "expected at least 2"),
+        (home[:2], {"times": [0, 1], "ends": "periodic"}, "expected at least 3"),
+        (home, {"times": [0, 1, 2, 3], "ends": "soft"}, "ends: \"soft\", expected one of \"rest\", \"natural\""),
+        ("plano-spherical-sinusoids", {"ends": "rest"}, "a motion file says it itself"),
         (home[:, :3], {"times": [0, 1, 2, 3]}, r"motion has shape \(4, 3\), expected \(n, 5\)"),
         (home * np.nan, {"times": [0, 1, 2, 3]}, "^waypoint 0: x is NaN, expected a number$"),
         (home, {}, "expected a path, the name of a shipped motion, or poses with times"),
@@ -126,3 +129,56 @@ def test_waypoints_are_recorded_too(manipulator, tmp_path):
     command = [sys.executable, "-m", "opm_kinematics", "inspect", tmp_path / "a.mcap", "--format", "json"]
     told = subprocess.run(command, capture_output=True, check=True).stdout
     assert b"waypoints" in told and sorted(p.name for p in tmp_path.iterdir()) == ["a.mcap"]
+
+
+@pytest.mark.parametrize(("ends", "boundary"), [("rest", "clamped"), ("natural", "natural"), ("periodic", "periodic")])
+def test_splines_are_those_of_scipy(manipulator, ends, boundary):
+    interpolate = pytest.importorskip("scipy.interpolate")
+    times = np.array([0, 0.4, 1.0, 1.3, 2.0])
+    poses = np.random.default_rng(4).uniform(-0.02, 0.02, (5, 5))
+    poses[-1] = poses[0]
+    found = opm.trajectory(manipulator, poses, times=times, ends=ends, rate=200)
+    spline = interpolate.CubicSpline(times, poses, bc_type=boundary)
+    for order, values in enumerate([found.poses, found.pose_rates, found.pose_accelerations]):
+        np.testing.assert_allclose(values, spline(found.times, order), atol=1e-12)
+
+
+def test_a_table_is_that_of_the_command_line(manipulator, tmp_path):
+    found = opm.trajectory(manipulator, np.array([[0.0] * 5, [0, -0.15, 0, 0.1, 0]]), times=[0, 1], rate=40)
+    (tmp_path / "down.csv").write_text("t,y,xi\n0,0,0\n1,-0.15,0.1\n")
+    command = [sys.executable, "-m", "opm_kinematics", "trajectory", "plano-spherical-5dof", "--rate", "40", "--quiet"]
+    command += ["--motion", tmp_path / "down.csv"]
+    for units in ("si", "file"):
+        for ending in ("csv", "npy"):
+            told = tmp_path / f"told.{ending}"
+            flags = ["--rates", "--accelerations", "--units", units]
+            subprocess.run([*command, *flags, "-o", told], check=True, capture_output=True)
+            found.write_table(tmp_path / f"a.{ending}", rates=True, accelerations=True, units=units)
+            assert (tmp_path / f"a.{ending}").read_bytes() == told.read_bytes()
+    mm = np.load(tmp_path / "a.npy")
+    found.write_table(tmp_path / "si.npy", rates=True)
+    si = np.load(tmp_path / "si.npy")
+    np.testing.assert_allclose(mm["dd.S1 [mm/s2]"], 1e3 * found.joint_accelerations[:, found.joint_names.index("S1")])
+    np.testing.assert_allclose(mm["xi [deg]"], np.degrees(found.poses[:, 3]))
+    assert np.isnan(si["S1"]).sum() == (~found.reachable).sum() > 5
+    np.testing.assert_array_equal(si["t"], found.times)
+    for name in found.joint_names:
+        np.testing.assert_array_equal(si[name], found[name])
+    np.testing.assert_array_equal(si["d.theta11"], found.imaginary_rates[:, 0])
+    assert "dd.S1" not in si.dtype.names
+    with pytest.raises(opm.OpmError, match=r"a\.txt, expected a name that ends in \.csv or \.npy"):
+        found.write_table(tmp_path / "a.txt")
+    with pytest.raises(opm.OpmError, match='units: "mm"'):
+        found.write_table(tmp_path / "a.csv", units="mm")
+
+
+def test_actuated_joints_lead_back_to_the_motion(manipulator, followed):
+    joints = followed.joints[:, manipulator.actuated].copy()
+    joints[500] = 9
+    poses = manipulator.forward_track(joints, near=followed.poses[0])
+    assert np.isnan(poses[500]).all()
+    rest = np.arange(len(joints)) != 500
+    np.testing.assert_allclose(poses[rest], followed.poses[rest], atol=1e-9)
+    with pytest.raises(opm.OpmError, match="row 3: S2 is NaN"):
+        joints[3, 1] = np.nan
+        manipulator.forward_track(joints)

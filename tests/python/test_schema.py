@@ -74,6 +74,21 @@ zeta = [1, { amplitude = 1, frequency = 1, phase = 30, offset = 0 }]
 xi = []
 """
 
+# Points that splines join, with every optional key.
+EVERY_POINT = """
+format = 1
+name = "every-point"
+units = { length = "mm", angle = "deg" }
+rate = 100
+mode = "home"
+ends = "periodic"
+
+[points]
+t = [0, 0.01, 0.02]
+x = [0, 1, 0]
+xi = 0.5
+"""
+
 # What opm refuses and a schema cannot say. Such a file is accepted by the schema.
 UNSAYABLE = [
     # values of numbers
@@ -94,12 +109,14 @@ UNSAYABLE = [
     "has no `pitch`, expected it for exactly one leg",
     "`pitch` is given for . legs, expected it for exactly one",
     "gives the direction alpha \\+ beta = ",
+    "expected a later time",
+    "values?, expected . as `t` has",
     # geometry
     "home is out of this leg's reach by",
     "the joints of the leg are linearly dependent",
     # the mechanism that a motion is for
     "expected `home` or one sign for every choice",
-    "unknown key `(x|y|z|w|theta|phi|zeta|xi|psi|mu|nu)`, .*expected one of `x`, `y`, ",
+    "unknown key `(x|y|z|w|theta|phi|zeta|xi|psi|mu|nu)`, .*expected one of (`t`, )?`x`, `y`, ",
 ]
 
 # What opm says of a mechanism that it has read.
@@ -156,7 +173,7 @@ def problems(opm, tmp_path):
 def blocks():
     """The complete files in docs/format.md, with their kinds."""
     for block in re.findall(r"^```toml\n(.*?)^```", FORMAT.read_text(encoding="utf-8"), re.M | re.S):
-        yield ("motion" if "[coordinates]" in block else "mechanism", block)
+        yield ("motion" if re.search(r"^\[(coordinates|points)\]", block, re.M) else "mechanism", block)
 
 
 def fragments():
@@ -179,14 +196,14 @@ def documents():
     yield from (("motion", path.read_text(encoding="utf-8")) for path in MOTIONS)
     yield from blocks()
     yield from (("mechanism", text) for text in fragments())
-    yield from [("mechanism", EVERY_KEY), ("motion", EVERY_MOTION)]
+    yield from [("mechanism", EVERY_KEY), ("motion", EVERY_MOTION), ("motion", EVERY_POINT)]
 
 
 def test_what_is_shipped_and_explained_is_valid(schema, problems):
     found = list(documents())
     explained = FORMAT.read_text(encoding="utf-8").count("```toml")
     assert explained >= 6
-    assert len(found) == len(MECHANISMS) + len(MOTIONS) + explained + 2
+    assert len(found) == len(MECHANISMS) + len(MOTIONS) + explained + 3
     for kind, text in found:
         errors = [error.message for error in schema[kind].iter_errors(tomllib.loads(text))]
         assert errors == [], text
@@ -225,7 +242,7 @@ def test_every_key_is_explained(schema):
         for key, value in found:
             assert len(value.get("description", "")) > 10, (kind, key)
             for word in [key, *value.get("enum", [])]:
-                assert word in {*page, "platform", "task", "leg", "slider_leg", "arm_leg", "coordinates"}, (kind, word)
+                assert word in {*page, "platform", "task", "leg", "slider_leg", "arm_leg", "coordinates", "points"}, (kind, word)
 
 
 def toml(value):

@@ -2,7 +2,8 @@
 
 use super::MechanismArgs;
 use crate::linkage::input::InputValue;
-use clap::ValueHint;
+use clap::{ValueEnum, ValueHint};
+use opm_core::motion::Ends;
 use std::path::PathBuf;
 
 /// Most samples per second. The clock of a recording counts nanoseconds; faster samples would coincide.
@@ -60,24 +61,31 @@ pub struct LinkageArgs {
 
 /// Follow a motion of the platform: every joint, its speed and acceleration, as a recording that plays
 ///
-/// The motion is a TOML file of sinusoids (duration, rate, and for each task coordinate a constant or a
-/// sum of sinusoids), a CSV file of times and poses, which cubic splines join (a header of t and task
-/// coordinates, in seconds, metres and radians), or the name of a shipped motion. The working mode
-/// stays the same, and angles are continuous.
+/// The motion is a TOML file (duration, rate, and for each task coordinate a constant or a sum of
+/// sinusoids; or points that cubic splines join), a CSV file of times and poses, which cubic splines join (a
+/// header of t and task coordinates, in seconds, metres and radians; two rows are enough), or the name of a
+/// shipped motion. Splines start and end at rest, unless --ends or `ends` in the file says otherwise. The
+/// working mode stays the same, and angles are continuous.
 ///
 /// Where the mechanism cannot follow, the answer says when, which leg or joint, and by how much: out of
 /// reach, past the limit of a joint (passive joints too), through a singularity. Violations between two
 /// samples are found too, unless one comes and goes more than once there. The rest of the motion is
 /// recorded; with --strict the exit status is then 1.
 ///
-/// The recording has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
+/// The recording (.mcap) has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
 /// and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of /bodies in
 /// Rerun.
+///
+/// A table (.csv, or .npy for NumPy) has a row for each sample: `t`, the task coordinates, those that depend on
+/// them, every joint, actuated or passive, and the imaginary joints, by their names. --rates adds `d.NAME` for each
+/// of these but `t`, and --accelerations `dd.NAME`: derivatives of the coordinates themselves, so those of an
+/// Euler angle are no angular velocity. Out of reach, and where a joint has no rate, a cell is empty (NaN in NPY).
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o joints.csv --rates
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
@@ -87,9 +95,21 @@ pub struct TrajectoryArgs {
     /// The motion: a TOML or CSV file, or the name of a shipped one
     #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
     pub motion: PathBuf,
-    /// Record it in this MCAP file
-    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    /// Output file, in the format of its ending; - prints a table as CSV
+    #[arg(short, long, value_name = "OUT.mcap|OUT.csv|OUT.npy", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
+    /// Also the rates in the table: first derivatives by time, as d.NAME
+    #[arg(long, requires = "output")]
+    pub rates: bool,
+    /// Also the accelerations in the table: second derivatives by time, as dd.NAME
+    #[arg(long, requires = "output")]
+    pub accelerations: bool,
+    /// Units of the table: SI and radians, or those of the mechanism file, which the header then names
+    #[arg(long, value_enum, default_value_t = TableUnits::Si, requires = "output")]
+    pub units: TableUnits,
+    /// How the motion through the poses of a CSV file starts and ends
+    #[arg(long, value_enum)]
+    pub ends: Option<EndsName>,
     /// Samples per second, instead of the motion file's rate (100 for a CSV file)
     #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = rate)]
     pub rate: Option<f64>,
@@ -99,6 +119,36 @@ pub struct TrajectoryArgs {
     /// Exit with status 1 if the mechanism cannot follow all of it
     #[arg(long)]
     pub strict: bool,
+}
+
+/// The units of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableUnits {
+    /// Metres and radians; the header has names alone
+    Si,
+    /// Those of the mechanism file; the header has `S1 [mm]`
+    File,
+}
+
+/// How a spline starts and ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EndsName {
+    /// Without speed
+    Rest,
+    /// Without acceleration
+    Natural,
+    /// As it ends, so it starts
+    Periodic,
+}
+
+impl From<EndsName> for Ends {
+    fn from(name: EndsName) -> Self {
+        match name {
+            EndsName::Rest => Self::Rest,
+            EndsName::Natural => Self::Natural,
+            EndsName::Periodic => Self::Periodic,
+        }
+    }
 }
 
 /// Parses a number of samples per second.

@@ -17,7 +17,8 @@ use std::path::PathBuf;
 /// that of the Euler angles at home. If the manipulator cannot move the platform there at all, the answer
 /// says by how much and in which direction (exit status 0). JSON has `transform` for every pose.
 ///
-/// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians.
+/// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians. A column
+/// `t`, as in the table of a motion, is carried through.
 /// CSV out: all task coordinates, those that depend on them, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
 /// the actuated joints. A pose out of reach keeps its row; its joint cells are empty.
 #[derive(Debug, clap::Args)]
@@ -96,30 +97,57 @@ pub struct VelocityArgs {
     pub length: Option<Number>,
 }
 
-/// Forward kinematics: every pose that given actuated joints allow
+/// Forward kinematics: every pose that given actuated joints allow, or the poses of a CSV file of joints
 ///
 /// If the mechanism's sections can be solved one after the other, the closed form finds all assemblies,
 /// each with its working mode and with how well its legs close (`residual`, radians and shares of the
 /// mechanism's size). Otherwise, or with --near, Newton's method starts from a pose and finds one assembly,
-/// in the working mode of --mode or home.
+/// in the working mode of --mode or home. The assembly nearest to home comes first.
 ///
 /// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
 /// modulo a revolution, except where a screw joint follows them: each revolution is then an assembly of its
 /// own, one advance of the screw away. `opm ik` does not count revolutions; the angles in --joints decide.
+///
+/// --poses reads a header of the actuated joints in any order, then one row for each set of values, in metres and
+/// radians. A column `t` is carried through; the others that `opm ik --poses` and `opm trajectory` write are not read.
+/// CSV out: the task coordinates, those that depend on them, `mode`,
+/// `reachable` and `within_limits` (1 or 0), the actuated joints. Every row is solved near the row before it, the
+/// first one near home or --near, by Newton's method in one working mode; where that ends without an assembly, the
+/// closed form finds the nearest in this mode. A row without an assembly keeps its place; its pose cells are empty,
+/// and the next row starts where this one did. With --all there is a row for each assembly of the closed form, with
+/// the number of its row (`row`) and its own (`assembly`), those nearest to home or to --near first.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm fk plano-spherical-5dof --joints S1=170mm,S2=165mm,S3=160mm,phi14=-150deg,phi24=130deg
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.16,S3=0.16,phi14=-2.7,phi24=2.3 --mode home
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
-  opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json")]
+  opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json
+  opm fk plano-spherical-5dof --poses joints.csv | head")]
+#[command(group = clap::ArgGroup::new("given").required(true).args(["joints", "poses"]))]
 pub struct FkArgs {
     /// The mechanism.
     #[command(flatten)]
     pub mechanism: MechanismArgs,
     /// The value of every actuated joint, for example S1=10mm,phi14=15deg
     #[arg(long, value_name = "NAME=VALUE,...")]
-    pub joints: Pose,
+    pub joints: Option<Pose>,
+    /// A CSV file of actuated joints, from which poses are found; - reads standard input
+    #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
+    pub poses: Option<PathBuf>,
+    /// Every assembly of each row of --poses, not just the one near the row before
+    #[arg(long, requires = "poses", conflicts_with = "joints")]
+    pub all: bool,
+    /// Output file for the CSV; standard output if it is - or not given
+    #[arg(
+        short,
+        long,
+        value_name = "OUT.csv",
+        requires = "poses",
+        conflicts_with = "joints",
+        value_hint = ValueHint::FilePath
+    )]
+    pub output: Option<PathBuf>,
     /// Start Newton's method at this pose; other coordinates start at home
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub near: Option<Pose>,

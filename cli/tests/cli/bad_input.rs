@@ -287,7 +287,6 @@ fn what_is_written_as_mcap_is_not_called_otherwise() {
         let output = folder.arg(name);
         for (args, what) in [
             (&["workspace", PLANO, "--grid", "x=0:1:3", "--shard", "1/2"][..], "a shard"),
-            (&["trajectory", PLANO, "--motion", "plano-spherical-sinusoids"], "of a motion"),
             (&["workspace", PLANO, "--kind", "upper"], "--kind upper"),
         ] {
             opm(&[args, &["-o", &output]].concat())

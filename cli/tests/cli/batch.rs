@@ -230,3 +230,18 @@ fn bad_rows_are_named_by_file_line_and_column() {
     opm(&["ik", PLANO, "--poses", &input, "-o", &folder.arg("out.csv")])
         .fails_with_one_line(1, &["binary.csv:2: column x"]);
 }
+
+/// The times of a motion's table stay with their poses, wherever the column is.
+#[test]
+fn times_are_carried_through() {
+    let folder = Folder::new();
+    let poses = folder.write("poses.csv", "x,t\n0.001,0.25\n9,0.5\n");
+    let run = opm(&["ik", PLANO, "--poses", &poses]);
+    let lines: Vec<&str> = run.text().lines().collect();
+    assert!(lines[0].starts_with("t,x,y,"), "{}", lines[0]);
+    assert!(lines[1].starts_with("0.25,0.001,"), "{}", lines[1]);
+    assert!(lines[2].starts_with("0.5,9.0,"), "{}", lines[2]);
+    let poses = folder.write("poses.csv", "x,t\n0.001,soon\n");
+    opm(&["ik", PLANO, "--poses", &poses, "-o", &folder.arg("out.csv")])
+        .fails_with_one_line(1, &["poses.csv:2: column t: \"soon\" is not a number"]);
+}

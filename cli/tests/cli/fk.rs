@@ -3,6 +3,7 @@
 use crate::run::{Folder, keys, number, opm};
 use crate::{HELICAL, PLANO};
 use serde_json::Value;
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 fn json(args: &[&str]) -> Value {
@@ -173,4 +174,156 @@ fn assemblies_beyond_limits_are_marked() {
     assert!(assemblies.iter().any(|a| a["within_limits"] == false));
     let shown = opm(&["fk", &file, "--joints", &joints]);
     assert!(shown.text().lines().any(|line| line.ends_with('*')), "{}", shown.stdout);
+}
+
+/// The rows of a CSV as named cells.
+fn rows(text: &str) -> Vec<HashMap<String, String>> {
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let named = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells.len(), names.len(), "{line}");
+        names.iter().zip(cells).map(|(n, c)| ((*n).to_owned(), c.to_owned())).collect()
+    };
+    lines.map(named).collect()
+}
+
+fn cell(row: &HashMap<String, String>, name: &str) -> f64 {
+    row[name].parse().unwrap_or(f64::NAN)
+}
+
+/// A circle of the platform goes through inverse kinematics to joints, and back to the circle. In the middle the joints
+/// are those of nothing; the next row is found again.
+#[test]
+fn joints_of_a_motion_lead_back_to_it() {
+    let folder = Folder::new();
+    for (mechanism, names) in [(PLANO, ["x", "y"]), (HELICAL, ["x", "y"])] {
+        let place = |i: u32| {
+            let (sin, cos) = (f64::from(i) * TAU / 60.0).sin_cos();
+            [0.03 * sin, 0.03 * (cos - 1.0)]
+        };
+        let lines: String =
+            (0..=60).map(|i| format!("{i},{},{}\n", place(i)[0], place(i)[1])).collect();
+        let poses = folder.write("poses.csv", format!("t,x,y\n{lines}"));
+        let solved = rows(opm(&["ik", mechanism, "--poses", &poses]).text());
+        let joints: &[&str] = match mechanism {
+            PLANO => &["phi24", "S1", "S2", "S3", "phi14"],
+            _ => &["S3", "S1", "S2"],
+        };
+        let mut text = format!("t,{}\n", joints.join(","));
+        for (i, row) in solved.iter().enumerate() {
+            let value = |name: &&str| if i == 30 { "5.0" } else { &*row[*name] };
+            let cells: Vec<&str> = joints.iter().map(value).collect();
+            text.push_str(&format!("{},{}\n", row["t"], cells.join(",")));
+        }
+        let given = folder.write("joints.csv", text);
+        let out = folder.arg("back.csv");
+        let run = opm(&["fk", mechanism, "--poses", &given, "-o", &out]);
+        run.text();
+        let told = if mechanism == PLANO { "61 rows, 60 in reach" } else { "61 rows, " };
+        assert!(run.stderr.contains(told), "{}", run.stderr);
+        let text = folder.read("back.csv");
+        assert!(text.starts_with("t,x,y,"), "{text}");
+        let back = rows(&text);
+        assert_eq!(back.len(), 61);
+        // The table of inverse kinematics is read as it is, too.
+        let whole = folder.arg("joints.csv");
+        opm(&["ik", mechanism, "--poses", &poses, "-o", &whole]).text();
+        let again = rows(opm(&["fk", mechanism, "--poses", &whole]).text());
+        for (i, row) in again.iter().enumerate() {
+            assert!((cell(row, "x") - place(i as u32)[0]).abs() < 1e-9, "{i}");
+        }
+        for (i, row) in back.iter().enumerate() {
+            assert_eq!(cell(row, "t"), i as f64);
+            if i == 30 {
+                if mechanism == PLANO {
+                    assert_eq!((&*row["reachable"], &*row["x"], &*row["mode"]), ("0", "", ""));
+                }
+                continue;
+            }
+            assert_eq!((&*row["reachable"], &*row["within_limits"]), ("1", "1"));
+            for (name, expected) in names.iter().zip(place(i as u32)) {
+                assert!((cell(row, name) - expected).abs() < 1e-9, "{i}: {name}");
+            }
+        }
+    }
+}
+
+/// Every row has all assemblies of `--joints`; those nearest to home, or to --near, come first.
+#[test]
+fn all_assemblies_of_each_row_are_sorted() {
+    let folder = Folder::new();
+    let poses = ["x=10mm,xi=15deg", "y=-20mm,zeta=20deg,xi=12deg"];
+    let joints: Vec<String> = poses.iter().map(|pose| joints_at(PLANO, pose, "home")).collect();
+    let names = ["S1", "S2", "S3", "phi14", "phi24"];
+    let line = |joints: &String| {
+        joints.split(',').map(|one| one.split('=').nth(1).unwrap()).collect::<Vec<_>>().join(",")
+    };
+    let lines: Vec<String> = joints.iter().map(line).collect();
+    let text = format!("{}\n{}\n9,9,9,0,0\n", names.join(","), lines.join("\n"));
+    let given = folder.write("joints.csv", text);
+    for near in [None, Some("y=-20mm,zeta=20deg,xi=12deg")] {
+        let mut args = vec!["fk", PLANO, "--poses", &given, "--all"];
+        args.extend(near.iter().flat_map(|pose| ["--near", pose]));
+        let found = rows(opm(&args).text());
+        for (number, joints) in joints.iter().enumerate() {
+            let own: Vec<_> =
+                found.iter().filter(|row| row["row"] == (number + 1).to_string()).collect();
+            let alone = json(&["fk", PLANO, "--joints", joints]);
+            assert_eq!(own.len(), alone["assemblies"].as_array().unwrap().len());
+            assert!(own.len() > 1);
+            for (i, row) in own.iter().enumerate() {
+                assert_eq!(row["assembly"], (i + 1).to_string());
+            }
+        }
+        // The angle of R = Rz(zeta) Ry(xi) Rz(psi) from home, and the distance of (x, y), do not both fall.
+        if near.is_none() {
+            let own: Vec<_> = found.iter().filter(|row| row["row"] == "1").collect();
+            let far = |row: &HashMap<String, String>| {
+                let half = |name: &str| cell(row, name) / 2.0;
+                let cosine = (half("xi").cos() * (half("zeta") + half("psi")).cos()).abs().min(1.0);
+                [2.0 * cosine.acos(), cell(row, "x").hypot(cell(row, "y"))]
+            };
+            for pair in own.windows(2) {
+                let ([angle, way], [next_angle, next_way]) = (far(pair[0]), far(pair[1]));
+                assert!(angle <= next_angle + 1e-9 || way <= next_way + 1e-9, "{pair:?}");
+            }
+            let [angle, way] = far(own[0]);
+            assert!(own.iter().any(|row| far(row)[0] > angle + 0.1 || far(row)[1] > way + 0.01));
+        }
+        // The pose that the second row came from is the seed itself.
+        if near.is_some() {
+            let first = found.iter().find(|row| row["row"] == "2").unwrap();
+            for (name, expected) in [
+                ("x", 0.0),
+                ("y", -0.02),
+                ("zeta", 20_f64.to_radians()),
+                ("xi", 12_f64.to_radians()),
+            ] {
+                assert!((cell(first, name) - expected).abs() < 1e-9, "{name}: {first:?}");
+            }
+        }
+        let last = found.last().unwrap();
+        assert_eq!((&*last["row"], &*last["assembly"], &*last["reachable"]), ("3", "0", "0"));
+    }
+}
+
+#[test]
+fn wrong_tables_of_joints_are_told() {
+    let folder = Folder::new();
+    for (text, part) in [
+        ("S1,S2\n0,0\n", "joints.csv:1: no column S3; the actuated joints are S1, S2, S3"),
+        ("S1,S2,S3,S9\n", "column \"S9\": no joint \"S9\"; the actuated joints are"),
+        ("S1,S2,S3,S1\n", "column \"S1\": given twice"),
+        ("1,2,3\n", "no header"),
+        ("S1,S2,S3\n0,zero,0\n", "joints.csv:2: column S2: \"zero\" is not a number"),
+        ("S1,S2,S3\n0,0\n", "joints.csv:2: 2 columns, expected 3: S1,S2,S3"),
+    ] {
+        let given = folder.write("joints.csv", text);
+        let out = folder.arg("out.csv");
+        opm(&["fk", HELICAL, "--poses", &given, "-o", &out]).fails_with_one_line(1, &[part]);
+    }
+    assert_eq!(folder.names(), ["joints.csv"]);
+    opm(&["fk", HELICAL]).fails(2, &["--joints", "--poses"]);
+    opm(&["fk", HELICAL, "--joints", "S1=0,S2=0,S3=0", "--all"]).fails(2, &["--all"]);
 }

@@ -141,7 +141,8 @@ fn a_table_is_followed_like_its_formula() {
     let turn = "phi = [{ amplitude = 0, frequency = 1 }]";
     let text = format!("{HEAD}duration = 10\nrate = 100\n[coordinates]\n{turn}\n");
     let still = folder.write("still.toml", text);
-    let [by_table, at_rest] = [&table, &still].map(|motion| json(HELICAL, motion, &["--quiet"]));
+    let by_table = json(HELICAL, &table, &["--quiet", "--ends", "natural"]);
+    let at_rest = json(HELICAL, &still, &["--quiet"]);
     assert_eq!(by_table["samples"], 1001);
     // The helical joint counts whole revolutions: its angle is taken as it is, including the jump.
     let slide = &by_table["imaginary"]["S"]["position"];
@@ -152,7 +153,7 @@ fn a_table_is_followed_like_its_formula() {
     let rows: String =
         (0..=400).map(|i| f64::from(i) / 40.0).map(|t| format!("{t},{}\n", zeta(t))).collect();
     let table = folder.write("poses.csv", format!("t,zeta\n{rows}"));
-    let found = json(PLANO, &table, &["--quiet"]);
+    let found = json(PLANO, &table, &["--quiet", "--ends", "natural"]);
     let turned = &found["joints"]["s4.z"]["velocity"];
     // Unwrapped, it rotates at a constant speed.
     for end in 0..2 {
@@ -195,8 +196,8 @@ fn a_wrong_motion_is_told_with_its_places() {
     );
     for (text, parts) in [
         ("", &["the file is empty", "zeta, xi, psi"][..]),
-        ("t,x\n", &["0 times given, expected at least 3"]),
-        ("t,x\n0,0\n1,0\n", &["poses.csv:3:1: 2 times given, expected at least 3"]),
+        ("t,x\n", &["0 times given, expected at least 2"]),
+        ("t,x\n0,0\n", &["poses.csv:2:1: 1 time given, expected at least 2"]),
         ("x,y\n", &["poses.csv:1:1: no column t"]),
         ("t,x,x\n", &["poses.csv:1:5: two columns are called x"]),
         ("t,yaw\n", &["poses.csv:1:3: no coordinate \"yaw\""]),
@@ -217,6 +218,150 @@ fn a_wrong_motion_is_told_with_its_places() {
 }
 
 #[test]
+fn wrong_points_are_told_with_their_places() {
+    let folder = Folder::new();
+    for (text, parts) in [
+        ("[points]\nx = [1, 2]\n", &["`t` is missing, expected an array of times"][..]),
+        ("[points]\nt = [0]\n", &["m.toml:6:5: 1 time given, expected at least 2"]),
+        (
+            "ends = \"periodic\"\n[points]\nt = [0, 1]\n",
+            &["m.toml:7:5: 2 times given, expected at least 3"],
+        ),
+        (
+            "ends = \"periodic\"\n[points]\nt = [0, 1, 2]\nx = [0, 5, 10]\n",
+            &["x is 0 m at the first point and 0.01 m at the last, expected the same"],
+        ),
+        (
+            "ends = \"soft\"\n[points]\nt = [0, 1, 1]\nx = [0, 1]\nyaw = 2\n",
+            &[
+                "m.toml:5:8: `ends` is \"soft\", expected one of `rest`, `natural`, `periodic`",
+                "m.toml:7:5: `t` has 1 after 1, expected a later time",
+                "m.toml:9:1: unknown key `yaw`",
+            ],
+        ),
+        (
+            "[points]\nt = [0, 1, 2]\nx = [0, 1]\n",
+            &["m.toml:7:5: `x` has 2 values, expected 3 as `t` has"],
+        ),
+        (
+            "duration = 2\n[points]\nt = [0, 1]\n[coordinates]\n",
+            &[
+                "m.toml:5:12: `duration` is given beside `points`",
+                "`coordinates` is given beside `points`",
+            ],
+        ),
+        (
+            "duration = 2\nends = \"rest\"\n[coordinates]\n",
+            &["m.toml:6:8: `ends` is given without `points`"],
+        ),
+    ] {
+        let motion = folder.write("m.toml", format!("{HEAD}rate = 100\n{text}"));
+        trajectory(PLANO, &motion, &[]).fails(1, parts);
+    }
+}
+
+/// The columns of a table, by their names; a cell without a number is not a number.
+fn columns(text: &str) -> BTreeMap<String, Vec<f64>> {
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut columns: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells.len(), names.len(), "{line}");
+        for (name, cell) in names.iter().zip(cells) {
+            let value = if cell.is_empty() { f64::NAN } else { cell.parse().unwrap() };
+            columns.entry((*name).to_owned()).or_default().push(value);
+        }
+    }
+    columns
+}
+
+/// Two points, from rest to rest: x = 40 mm (3 s² - 2 s³) - 20 mm with s = t / 2 s. The third slider of the helical
+/// manipulator is `S3 = sin(165 deg) 25 mm - x` (Eq. 27 of the paper).
+#[test]
+fn the_table_of_a_two_point_move_is_that_of_its_formula() {
+    let folder = Folder::new();
+    let text = format!("{HEAD}rate = 50\n[points]\nt = [0, 2]\nx = [-20, 20]\nphi = 0\n");
+    let motion = folder.write("move.toml", text);
+    let out = folder.arg("joints.csv");
+    let more = ["-o", &out, "--rates", "--accelerations"];
+    assert!(trajectory(HELICAL, &motion, &more).stderr.contains("101 samples"));
+    let text = folder.read("joints.csv");
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    assert_eq!(header[..6], ["t", "x", "y", "phi", "S1", "r1"], "{header:?}");
+    let table = columns(&text);
+    let (of, length) =
+        (|name: &str, row: usize| table[name][row], 25e-3 * (165.0_f64.to_radians()).sin());
+    for row in 0..=100 {
+        let t = of("t", row);
+        assert!((t - 0.02 * row as f64).abs() < 1e-15);
+        let s = t / 2.0;
+        let x = 0.04 * s * s * (3.0 - 2.0 * s) - 0.02;
+        let rate = 0.04 * 6.0 * s * (1.0 - s) / 2.0;
+        let acceleration = 0.04 * (6.0 - 12.0 * s) / 4.0;
+        for (name, expected, slider) in
+            [("", x, length - x), ("d.", rate, -rate), ("dd.", acceleration, -acceleration)]
+        {
+            assert!((of(&format!("{name}x"), row) - expected).abs() < 1e-15, "{t}: {name}x");
+            assert!((of(&format!("{name}S3"), row) - slider).abs() < 1e-13, "{t}: {name}S3");
+        }
+    }
+
+    // In the units of the file, the same numbers, on standard output.
+    for stdout in ["-", "/dev/stdout"] {
+        let run = trajectory(HELICAL, &motion, &["-o", stdout, "--rates", "--units", "file"]);
+        let shown = columns(run.text());
+        for row in 0..=100 {
+            for (name, si, factor) in [
+                ("t [s]", "t", 1.0),
+                ("x [mm]", "x", 1e3),
+                ("d.S3 [mm/s]", "d.S3", 1e3),
+                ("phi [deg]", "phi", 180.0 / PI),
+            ] {
+                let (shown, si) = (shown[name][row], of(si, row) * factor);
+                assert!((shown - si).abs() < 1e-12 * (1.0 + si.abs()), "{name}: {shown} {si}");
+            }
+        }
+        assert!(!shown.contains_key("dd.x [mm/s2]"));
+    }
+
+    // What is read back is the table's pose and joints.
+    let poses: String = text
+        .lines()
+        .map(|line| line.split(',').take(4).collect::<Vec<_>>().join(",") + "\n")
+        .collect();
+    let poses = folder.write("poses.csv", poses);
+    let solved = columns(opm(&["ik", HELICAL, "--poses", &poses]).text());
+    assert_eq!(solved["t"], table["t"]);
+    assert_eq!(solved["S3"].len(), 101);
+    for (row, slider) in solved["S3"].iter().enumerate() {
+        assert!((slider - of("S3", row)).abs() < 1e-15);
+    }
+    // And the table of poses is a motion itself.
+    let found = json(HELICAL, &poses, &["--rate", "50", "--quiet"]);
+    assert_eq!(found["samples"], 101);
+}
+
+/// The arm of two links of 100 mm, which starts at (0, 75) mm, ends at y = -125 mm.
+#[test]
+fn cells_out_of_reach_are_empty() {
+    let folder = Folder::new();
+    let text = format!("{HEAD}rate = 100\n[points]\nt = [0, 1]\ny = [0, -150]\n");
+    let motion = folder.write("down.toml", text);
+    let table = columns(trajectory(PLANO, &motion, &["-o", "-", "-q", "--rates"]).text());
+    let mut out = 0;
+    for (row, y) in table["y"].iter().enumerate() {
+        let reached = *y > -0.125;
+        out += usize::from(!reached);
+        for name in ["phi14", "d.phi14", "theta11", "d.theta11"] {
+            assert_eq!(table[name][row].is_nan(), !reached, "{y}: {name}");
+        }
+        assert!(table["d.y"][row].is_finite());
+    }
+    assert!(out > 10 && out < 90, "{out}");
+}
+
+#[test]
 fn wrong_usage_names_the_flag() {
     let folder = Folder::new();
     trajectory(PLANO, "no-such-motion", &[])
@@ -226,15 +371,25 @@ fn wrong_usage_names_the_flag() {
         trajectory(PLANO, SINUSOIDS, &["--rate", rate]).fails(2, &["--rate"]);
     }
     trajectory(PLANO, SINUSOIDS, &["--mode", "+"]).fails_with_one_line(2, &["--mode"]);
-    trajectory(PLANO, SINUSOIDS, &["-o", "-"]).fails_with_one_line(2, &["--output"]);
+    trajectory(PLANO, SINUSOIDS, &["-o", "out.txt"])
+        .fails_with_one_line(2, &["--output: out.txt", ".mcap", ".csv or .npy"]);
+    for flag in [&["--rates"][..], &["--accelerations"], &["--units", "file"]] {
+        trajectory(PLANO, SINUSOIDS, flag).fails(2, &["--output"]);
+        let more = [flag, &["-o", "out.mcap"]].concat();
+        trajectory(PLANO, SINUSOIDS, &more).fails_with_one_line(2, &[flag[0], "for tables"]);
+    }
+    trajectory(PLANO, SINUSOIDS, &["-o", "-", "--format", "json"])
+        .fails_with_one_line(2, &["--format json", "--output"]);
+    trajectory(PLANO, SINUSOIDS, &["--ends", "rest"])
+        .fails_with_one_line(2, &["--ends", "ends = \"rest\""]);
     opm(&["trajectory", PLANO]).fails(2, &["--motion"]);
-    let motion = folder.write("m.toml", format!("{HEAD}duration = 1\nrate = 1\n[coordinates]\n"));
+    let motion = folder.write("m.csv", "t,x\n0,0\n1,0.01\n");
     trajectory(PLANO, &motion, &["-o", &motion]).fails_with_one_line(2, &["--output", "input"]);
     let nowhere = folder.arg("no/such/folder.mcap");
     trajectory(PLANO, SINUSOIDS, &["-o", &nowhere]).fails_with_one_line(1, &["folder.mcap"]);
     // The helical manipulator has no such coordinates.
     trajectory(HELICAL, SINUSOIDS, &[]).fails(1, &["unknown key `zeta`", "`x`, `y`, `phi`"]);
-    assert_eq!(folder.names(), ["m.toml"]);
+    assert_eq!(folder.names(), ["m.csv"]);
 }
 
 /// The angle of the five-bar's platform is that of its right forearm: by the law of cosines, from the hand's place.

@@ -45,6 +45,7 @@
 
 mod accept;
 mod along;
+mod distance;
 mod matches;
 mod near;
 mod newton;
@@ -99,7 +100,7 @@ pub struct Assembly {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Assemblies {
-    /// All assemblies.
+    /// All assemblies. [`Manipulator::sort_assemblies`] puts those nearest to a pose first.
     pub list: Vec<Assembly>,
     /// Why the mechanism cannot be assembled; empty if there is an assembly.
     pub unmet: Vec<Unmet>,

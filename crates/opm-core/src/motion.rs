@@ -1,19 +1,20 @@
 //! Motions of the platform: its pose as a twice differentiable function of time.
 //!
-//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids) or from a
-//! table of poses ([`table`]: cubic splines). Either way it is a formula in time with exact
+//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids, or points that cubic splines
+//! join) or from a table of poses ([`table`]: cubic splines). Either way it is a formula in time with exact
 //! derivatives, which can be evaluated at any time: nothing is sampled in advance.
 
 pub mod examples;
 #[cfg(feature = "files")]
 pub mod file;
+mod points;
 #[cfg(feature = "schema")]
 mod schema;
 mod spline;
 pub mod table;
 
 use crate::manipulator::Mode;
-pub use spline::{Spline, SplineError};
+pub use spline::{Ends, Spline, SplineError};
 use std::f64::consts::TAU;
 
 /// A sinusoid `amplitude · sin(2π · frequency · t + phase)`.
@@ -41,7 +42,7 @@ pub struct Harmonics {
 pub enum Path {
     /// Every coordinate is a sum of sinusoids.
     Harmonics(Vec<Harmonics>),
-    /// Every coordinate is a natural cubic spline; all of them have the same knots.
+    /// Every coordinate is a cubic spline; all of them have the same knots.
     Spline(Spline),
 }
 

@@ -83,6 +83,15 @@ impl<W: Sink> TableRecorder<W> {
         Ok(Self { sink: Some(sink), stride, announced: points, pushed: 0 })
     }
 
+    /// Starts an NPY table of rows of any named columns.
+    ///
+    /// # Errors
+    /// A failed write.
+    pub fn npy(mut sink: W, columns: &[&str], rows: u64) -> Result<Self, RecordError> {
+        sink.write_all(&npy(columns, rows)).map_err(RecordError::Io)?;
+        Ok(Self { sink: Some(sink), stride: 8 * columns.len(), announced: rows, pushed: 0 })
+    }
+
     /// Adds points as bytes. NPY has rows of [`table_columns`] as little-endian doubles; PLY has points of a
     /// [`Packer`](crate::Packer).
     ///

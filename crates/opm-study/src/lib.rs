@@ -60,6 +60,7 @@
 //! | [`Analysis`] | the results: counts, set, shape, conditioning |
 //! | [`PointOptions`] | which values a recording stores of every point |
 //! | [`MotionRequest`], [`LinkageRound`] | motions of a platform, rounds of a single loop |
+//! | [`Tracker`] | forward kinematics of a series, each pose near the last |
 //! | [`recording`] | recordings, tables and shards, in files: with the feature `recording`, which is on by default |
 //!
 //! Work runs on the current thread pool of rayon. [`opm_workspace::Progress`] reports how far it has come,
@@ -78,6 +79,7 @@ mod poses;
 pub mod recording;
 mod request;
 pub mod text;
+mod tracker;
 mod workspace;
 
 pub use analysis::{Analysis, Shape};
@@ -96,6 +98,7 @@ pub use poses::PoseSource;
 #[cfg(feature = "recording")]
 pub use poses::ShardPoses;
 pub use request::{CheckedRequest, WorkspaceRequest, characteristic_length};
+pub use tracker::Tracker;
 pub use workspace::Workspace;
 
 /// A shipped mechanism, for the tests.

@@ -11,12 +11,14 @@ mod scene;
 mod set;
 mod shard;
 mod shards;
+mod table;
 mod workspace;
 
 pub use linkage::record_linkage;
 pub use motion::{MotionRecorder, violation_fields};
 pub use shard::{ShardCount, ShardFindings, ShardRecording, StoredShard};
 pub use shards::Shards;
+pub use table::{TableOptions, is_motion_table, write_motion_csv, write_motion_table};
 pub use workspace::{Findings, WorkspaceRecording, slices_together};
 
 use crate::error::{RequestError, StudyError};

@@ -601,12 +601,40 @@ class Manipulator:
         Returns
         -------
         list of list of Assembly
-            One list for each row: empty where there is no assembly, or where Newton's method does not converge.
+            One list for each row, the assembly nearest to home first: empty where there is no assembly, or where Newton's
+            method does not converge.
 
         Raises
         ------
         OpmError
             The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
+        """
+    def forward_track(
+        self, joints: ArrayLike, *, near: ArrayLike | None = None, mode: str = "home"
+    ) -> NDArray[np.float64]:
+        """The pose for each row of actuated joint values, near the pose of the row before it, in one working mode.
+
+        Newton's method starts at the last pose that was found. Where it ends without an assembly, the closed form finds
+        the nearest one in this mode, for mechanisms that have one.
+
+        Parameters
+        ----------
+        joints : (n, a) array_like
+            Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
+        near : (d,) array_like, optional
+            The pose before the first row; home if not given.
+        mode : str, optional
+            ``"home"``, or a sign for every two-valued choice.
+
+        Returns
+        -------
+        (n, d) ndarray
+            Task coordinates, metres and radians; NaN in the rows for which no assembly was found.
+
+        Raises
+        ------
+        OpmError
+            A value is not a finite number.
         """
     def transform(
         self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
@@ -1385,6 +1413,36 @@ class Trajectory:
         OpmError
             The file cannot be written.
         """
+    def write_table(
+        self,
+        path: str | PathLike[str],
+        *,
+        rates: bool = False,
+        accelerations: bool = False,
+        units: str = "si",
+    ) -> None:
+        """Write the motion as a table, as ``opm trajectory -o`` does, byte for byte: a row for each sample.
+
+        The columns are ``t``, the task coordinates, the dependent coordinates, the joints and the imaginary joints, by
+        their names; then ``d.NAME`` of all of them but ``t``, and ``dd.NAME``. Where there is no number, a cell of a CSV
+        file is empty, and NaN in an NPY file.
+
+        Parameters
+        ----------
+        path : path
+            Its name ends in ``.csv``, or in ``.npy`` for a structured array. The file appears when it is complete.
+        rates : bool, optional
+            Also the first derivatives by time.
+        accelerations : bool, optional
+            Also the second derivatives by time.
+        units : str, optional
+            ``"si"``: metres and radians; or ``"file"``: those of the mechanism file, which the header names: ``S1 [mm]``.
+
+        Raises
+        ------
+        OpmError
+            The file cannot be written, or its name ends otherwise.
+        """
 
 @final
 class Violation:
@@ -1437,6 +1495,7 @@ def trajectory(
     times: Sequence[float] | NDArray[np.float64] | None = None,
     rate: float | None = None,
     mode: str | None = None,
+    ends: str | None = None,
 ) -> Trajectory:
     """Follow a motion of the platform.
 
@@ -1445,14 +1504,17 @@ def trajectory(
     manipulator : Manipulator
     motion : path, str or (w, d) array_like
         A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints with one
-        column for each task coordinate, through which a natural cubic spline passes. Angles are brought within π of the
+        column for each task coordinate, through which a cubic spline passes. Angles are brought within π of the
         preceding waypoint, as those of a table are.
     times : (w,) sequence of float, optional
-        Times of the waypoints, seconds, increasing; at least three.
+        Times of the waypoints, seconds, increasing; at least two.
     rate : float, optional
         Samples per second; if not given, the rate of the file, or 100. The last sample is at the end of the motion.
     mode : str, optional
         ``"home"``, or a sign for every two-valued choice; if not given, the mode of the file, or home.
+    ends : str, optional
+        How a spline through waypoints or the poses of a table starts and ends: ``"rest"`` (no speed; if not given),
+        ``"natural"`` (no acceleration), or ``"periodic"`` (as it ends, so it starts). A motion file says it itself.
 
     Raises
     ------

@@ -3,7 +3,7 @@
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{examples, file};
 use opm_core::motion::{
-    Harmonics, Instant, Path, PlatformMotion, Spline, file as motion_file, table,
+    Ends, Harmonics, Instant, Path, PlatformMotion, Spline, file as motion_file, table,
 };
 use opm_core::trajectory::Trajectory;
 use std::f64::consts::PI;
@@ -14,7 +14,7 @@ fn lines_stay_lines() {
     for times in [vec![0.0, 1.0, 2.0, 3.0], vec![-1.0, 0.0, 0.25, 8.0, 9.0]] {
         for (start, rate) in [(0.0, 0.0), (PI, 0.0), (0.0, PI), (-2.0 * PI, 1.0)] {
             let values = times.iter().map(|t| start + rate * t).collect();
-            let spline = Spline::new(times.clone(), vec![values]).unwrap();
+            let spline = Spline::new(times.clone(), vec![values], Ends::Natural).unwrap();
             let mut at = Instant::new(1);
             for step in 0..=90 {
                 let t = times[0] + f64::from(step) / 90.0 * (times[times.len() - 1] - times[0]);
@@ -34,7 +34,8 @@ fn half_turns_go_on() {
     for sign in [1.0, -1.0] {
         let lines: Vec<String> =
             (0..5).map(|i| format!("{i},{:?}", sign * f64::from(i) * PI)).collect();
-        let motion = table::read(&format!("t,zeta\n{}\n", lines.join("\n")), "turns", &m).unwrap();
+        let text = format!("t,zeta\n{}\n", lines.join("\n"));
+        let motion = table::read(&text, "turns", &m, Ends::Natural).unwrap();
         let mut at = Instant::new(5);
         for step in 0..=40 {
             let t = 0.1 * f64::from(step);

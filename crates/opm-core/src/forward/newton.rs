@@ -71,6 +71,11 @@ pub struct NearBuffer {
 }
 
 impl NearBuffer {
+    /// The assembly that was found last. Before the first one it has no meaning.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
     /// The report of a run without an assembly.
     fn ended(&self, why: Stop, steps: u32, off: f64) -> NotFound {
         NotFound { why, steps, off, pose: self.pose.clone() }

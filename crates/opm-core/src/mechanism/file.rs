@@ -84,7 +84,7 @@ pub(super) use {
 #[cfg(feature = "files")]
 pub(crate) use {
     read::{document, head},
-    reader::{Table, Value},
+    reader::{Table, Value, all},
 };
 
 use super::Mechanism;

@@ -22,20 +22,38 @@
 //! offset + amplitude · sin(2π · frequency · t + phase)
 //! ```
 //!
+//! In place of `duration` and `[coordinates]`, a file may have points in `[points]`: an array of times and one of
+//! values for each coordinate that moves. Cubic splines join them, and start and end as `ends` says: `"rest"`,
+//! `"natural"` or `"periodic"` ([`Ends`]). Angles are as they are written: 0 and 360 degrees are a revolution apart.
+//!
+//! ```toml
+//! format = 1
+//! name = "there"
+//! units = { length = "mm", angle = "deg" }
+//! rate = 100
+//!
+//! [points]
+//! t = [0, 2]
+//! x = [-20, 20]
+//! xi = 5                                     # a number: constant
+//! ```
+//!
 //! Amplitudes and offsets are in the file's unit for the coordinate, phases in its unit for angles.
 //! Frequencies are in hertz and times in seconds, whatever the units are. `phase` and `offset`
 //! default to zero. An unknown key is a problem, and its message suggests the nearest known key.
 
+use super::points::through;
 #[cfg(feature = "schema")]
 pub use super::schema::schema;
-use super::{Harmonics, Path, PlatformMotion, Sinusoid};
+use super::{Ends, Harmonics, Path, PlatformMotion, Sinusoid};
 use crate::manipulator::{Manipulator, Mode};
-use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, document, head};
+use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, all, document, head};
 use crate::numeric::Quantity;
+use crate::task::TaskCoordinate;
 
 /// The keys of a motion file.
 pub(super) const KEYS: &[&str] =
-    &["format", "name", "units", "duration", "rate", "mode", "coordinates"];
+    &["format", "name", "units", "duration", "rate", "mode", "coordinates", "ends", "points"];
 /// The keys of a sinusoid.
 pub(super) const SINUSOID_KEYS: &[&str] = &["amplitude", "frequency", "phase", "offset"];
 
@@ -60,21 +78,42 @@ fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Platform
         value.report(format!("is {number}, expected {expected} above 0 and up to {LARGEST:e}"));
         None
     };
-    let duration = positive("duration", "a number of seconds");
     let rate = positive("rate", "a number of samples per second");
     let mode = root.get("mode").and_then(|value| read_mode(&value, manipulator));
-    let coordinates = root
-        .require("coordinates", "a table [coordinates] of the coordinates that move")
-        .and_then(|value| value.open_table())
-        .map(|table| read_coordinates(&table, manipulator));
-    Some(PlatformMotion {
-        name: name.to_owned(),
-        start: 0.0,
-        duration: duration?,
-        rate: Some(rate?),
-        mode,
-        path: Path::Harmonics(coordinates?),
-    })
+    let motion = match root.get("points") {
+        Some(points) => {
+            for key in ["duration", "coordinates"] {
+                if let Some(value) = root.get(key) {
+                    value.report("is given beside `points`, expected one or the other");
+                }
+            }
+            let ends = match root.get("ends") {
+                Some(value) => value.word(&Ends::NAMES),
+                None => Some(Ends::default()),
+            };
+            read_points(&points, name, ends, manipulator)
+        }
+        None => {
+            if let Some(value) = root.get("ends") {
+                value.report("is given without `points`, expected them: sinusoids have no ends");
+            }
+            let duration = positive("duration", "a number of seconds");
+            let expected = "a table [coordinates] of the coordinates that move, or [points]";
+            let coordinates = root
+                .require("coordinates", expected)
+                .and_then(|value| value.open_table())
+                .map(|table| read_coordinates(&table, manipulator));
+            duration.zip(coordinates).map(|(duration, coordinates)| PlatformMotion {
+                name: name.to_owned(),
+                start: 0.0,
+                duration,
+                rate: None,
+                mode: None,
+                path: Path::Harmonics(coordinates),
+            })
+        }
+    };
+    Some(PlatformMotion { rate: Some(rate?), mode, ..motion? })
 }
 
 fn read_mode(value: &Value<'_>, manipulator: &Manipulator) -> Option<Mode> {
@@ -94,8 +133,18 @@ fn read_mode(value: &Value<'_>, manipulator: &Manipulator) -> Option<Mode> {
 }
 
 fn read_coordinates(table: &Table<'_>, manipulator: &Manipulator) -> Vec<Harmonics> {
-    let coordinates = manipulator.task_coordinates();
-    let mut names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
+    allow_coordinates(table, &[], manipulator);
+    let read = |c: &TaskCoordinate| match table.get(c.name) {
+        Some(value) => read_harmonics(&value, c.quantity),
+        None => Harmonics::constant(c.home),
+    };
+    manipulator.task_coordinates().iter().map(read).collect()
+}
+
+/// Reports every key that is neither a task coordinate nor one of `others`.
+fn allow_coordinates(table: &Table<'_>, others: &[&'static str], manipulator: &Manipulator) {
+    let mut names: Vec<_> = others.to_vec();
+    names.extend(manipulator.task_coordinates().iter().map(|c| c.name));
     for c in manipulator.dependent_coordinates() {
         if let (Some(value), Err(follows)) =
             (table.get(c.name), manipulator.refuse_following(c.name))
@@ -105,11 +154,52 @@ fn read_coordinates(table: &Table<'_>, manipulator: &Manipulator) -> Vec<Harmoni
         }
     }
     table.allow(&names);
-    let read = |c: &crate::task::TaskCoordinate| match table.get(c.name) {
-        Some(value) => read_harmonics(&value, c.quantity),
-        None => Harmonics::constant(c.home),
+}
+
+/// The motion through the points of a table: `t`, and for each coordinate a number or one for each time.
+fn read_points(
+    value: &Value<'_>,
+    name: &str,
+    ends: Option<Ends>,
+    manipulator: &Manipulator,
+) -> Option<PlatformMotion> {
+    let table = value.open_table()?;
+    allow_coordinates(&table, &["t"], manipulator);
+    let times = table.require("t", "an array of times in seconds").and_then(|value| {
+        let times = all(value.items("an array of times in seconds")?.iter().map(Value::number))?;
+        if let Some(time) = times.iter().find(|time| time.abs() > LARGEST) {
+            value.report(format!("has {time:e}, expected at most {LARGEST:e} seconds"));
+            return None;
+        }
+        if let Some(i) = (1..times.len()).find(|&i| times[i] <= times[i - 1]) {
+            value.report(format!("has {} after {}, expected a later time", times[i], times[i - 1]));
+            return None;
+        }
+        Some(times)
+    });
+    let count = times.as_ref().map(Vec::len);
+    let column = |c: &TaskCoordinate| match table.get(c.name) {
+        None => Some(Vec::new()),
+        Some(value) => read_column(&value, c.quantity, count),
     };
-    coordinates.iter().map(read).collect()
+    let values = all(manipulator.task_coordinates().iter().map(column));
+    let motion = through(name, times?, values?, ends?, manipulator);
+    motion.map_err(|error| table.reader.report(table.location_of("t"), error.to_string())).ok()
+}
+
+/// A value for each of `count` times; a number alone is the same at all.
+fn read_column(value: &Value<'_>, quantity: Quantity, count: Option<usize>) -> Option<Vec<f64>> {
+    if !value.is_array() {
+        return Some(vec![value.quantity(quantity)?; count?]);
+    }
+    let values = value.items("a number, or one for each time")?;
+    let values = all(values.iter().map(|value| value.quantity(quantity)))?;
+    if let Some(expected) = count.filter(|&count| count != values.len()) {
+        let (given, noun) = (values.len(), if values.len() == 1 { "value" } else { "values" });
+        value.report(format!("has {given} {noun}, expected {expected} as `t` has"));
+        return None;
+    }
+    Some(values)
 }
 
 fn read_harmonics(value: &Value<'_>, quantity: Quantity) -> Harmonics {

@@ -1,5 +1,6 @@
 //! The JSON schema of motion files.
 
+use super::Ends;
 use super::file::{KEYS, SINUSOID_KEYS};
 use crate::mechanism::file::LARGEST;
 use crate::mechanism::file::schema::{HEAD, Properties, closed, document, head, number, text};
@@ -14,13 +15,19 @@ pub fn schema() -> String {
     for &key in KEYS.iter().filter(|key| !HEAD.contains(key)) {
         properties.insert(key.to_owned(), meaning(key));
     }
-    let required = [&HEAD[..], &["duration", "rate", "coordinates"]].concat();
+    let required = [&HEAD[..], &["rate"]].concat();
+    let without = |keys: &[&str]| -> Value {
+        keys.iter().map(|&key| (key.to_owned(), Value::Bool(false))).collect()
+    };
     document(
         "motion",
         json!({
             "properties": properties,
             "required": required,
             "additionalProperties": false,
+            "if": { "required": ["points"] },
+            "then": { "properties": without(&["duration", "coordinates"]) },
+            "else": { "required": ["duration", "coordinates"], "properties": without(&["ends"]) },
         }),
     )
 }
@@ -48,7 +55,45 @@ fn meaning(key: &str) -> Value {
                                these, which are added. The others stay at home. `opm decompose` names them.";
             closed(description, coordinates.into_iter().collect(), &[])
         }
+        "ends" => json!({
+            "description": "How the motion through the points starts and ends: rest (no speed), natural (no \
+                            acceleration), or periodic (as it ends, so it starts). If it is not given: rest.",
+            "enum": Ends::NAMES.map(|(name, _)| name),
+        }),
+        "points" => {
+            let mut columns: Properties = CoordinateKind::ALL
+                .map(|kind| (kind.name().to_owned(), column(kind)))
+                .into_iter()
+                .collect();
+            let times = json!({
+                "description": "The times in seconds, increasing.",
+                "type": "array",
+                "items": { "type": "number", "minimum": -LARGEST, "maximum": LARGEST },
+                "minItems": 2,
+            });
+            columns.insert("t".to_owned(), times);
+            let description = "Points that cubic splines join, in place of duration and coordinates: t, and for \
+                               each coordinate that moves a value for each time. The others stay at home.";
+            closed(description, columns, &["t"])
+        }
         _ => Value::Bool(true),
+    }
+}
+
+/// The values of a coordinate at points: one for each time, or the same at all.
+fn column(kind: CoordinateKind) -> Value {
+    let unit = unit(kind);
+    let description = format!("The task coordinate {}, {unit}, at each time.", kind.name());
+    let number = json!({ "type": "number" });
+    let each = json!({ "type": "array", "items": number });
+    json!({ "description": description, "anyOf": [number, each] })
+}
+
+/// The unit of a coordinate's values.
+fn unit(kind: CoordinateKind) -> &'static str {
+    match kind.quantity() {
+        Quantity::Angle => "an angle in units.angle",
+        Quantity::Length => "a length in units.length",
     }
 }
 
@@ -62,11 +107,7 @@ fn coordinate(kind: CoordinateKind) -> Value {
     let sinusoid = closed(formula, keys, &["amplitude", "frequency"]);
     let number = json!({ "type": "number" });
     let sum = json!({ "type": "array", "items": { "anyOf": [number, sinusoid] } });
-    let unit = match kind.quantity() {
-        Quantity::Angle => "an angle in units.angle",
-        Quantity::Length => "a length in units.length",
-    };
-    let description = format!("The task coordinate {}, {unit}.", kind.name());
+    let description = format!("The task coordinate {}, {}.", kind.name(), unit(kind));
     json!({ "description": description, "anyOf": [number, sinusoid, sum] })
 }
 

@@ -2,20 +2,19 @@
 //!
 //! The first line is a header: `t` and names of task coordinates, in any order. A coordinate that
 //! is not named stays at home. Every other line is a pose in seconds, metres and radians. There are
-//! at least three lines, and times increase from line to line, at equal or different steps.
+//! at least two lines, and times increase from line to line, at equal or different steps.
 //!
-//! The natural cubic spline ([`Spline`]) runs between the lines: position, velocity and
-//! acceleration are continuous. The acceleration is zero at both ends; the velocity there follows
-//! from the poses.
+//! A cubic spline ([`Spline`](super::Spline)) runs between the lines: position, velocity and acceleration are
+//! continuous. [`Ends`] says how it starts and ends.
 //!
 //! Angles are unwrapped first: each angle is shifted by multiples of 2π to within π of the previous
 //! line. A table that wraps around at ±π then continues and does not rotate back. An angle whose
 //! full revolutions matter, because a helical joint follows it, is not unwrapped.
 
-use super::{Path, PlatformMotion, Spline};
+use super::points::{through, wraps};
+use super::{Ends, PlatformMotion};
 use crate::manipulator::Manipulator;
 use crate::mechanism::file::{FileErrors, LARGEST, Problem};
-use crate::numeric::Quantity;
 use crate::numeric::angle::near;
 
 /// The largest number of problems that are listed one by one. A file with more of them is probably
@@ -32,9 +31,10 @@ pub fn read(
     text: &str,
     name: &str,
     manipulator: &Manipulator,
+    ends: Ends,
 ) -> Result<PlatformMotion, FileErrors> {
     let mut problems = Problems::default();
-    let motion = read_table(text, name, manipulator, &mut problems);
+    let motion = read_table(text, Given { name, ends }, manipulator, &mut problems);
     match motion {
         Some(motion) if problems.list.is_empty() => Ok(motion),
         _ => Err(problems.into_errors()),
@@ -83,9 +83,16 @@ fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
+/// What a table of poses does not have in its text.
+struct Given<'a> {
+    /// The name of the motion.
+    name: &'a str,
+    ends: Ends,
+}
+
 fn read_table(
     text: &str,
-    name: &str,
+    Given { name, ends }: Given<'_>,
     manipulator: &Manipulator,
     problems: &mut Problems,
 ) -> Option<PlatformMotion> {
@@ -113,30 +120,12 @@ fn read_table(
         return None;
     }
     for (coordinate, values) in manipulator.task_coordinates().iter().zip(&mut values) {
-        if values.is_empty() {
-            values.resize(times.len(), coordinate.home);
-        }
-        let wraps =
-            coordinate.quantity == Quantity::Angle && !manipulator.counts_turns(coordinate.kind());
-        if wraps {
+        if wraps(manipulator, coordinate) {
             unwrap(values);
         }
     }
-    let (start, end) = (*times.first().unwrap_or(&0.0), *times.last().unwrap_or(&0.0));
-    match Spline::new(times, values) {
-        Ok(spline) => Some(PlatformMotion {
-            name: name.to_owned(),
-            start,
-            duration: end - start,
-            rate: None,
-            mode: None,
-            path: Path::Spline(spline),
-        }),
-        Err(error) => {
-            problems.report(last, 1, error.to_string());
-            None
-        }
-    }
+    let motion = through(name, times, values, ends, manipulator);
+    motion.map_err(|error| problems.report(last, 1, error.to_string())).ok()
 }
 
 /// The meaning of a column: `None` for the time, or the index of a task coordinate.

@@ -208,6 +208,11 @@ pub enum RequestError {
         /// The content.
         content: &'static str,
     },
+    /// The ending of the file name is not that of a format for the table of a motion.
+    TableEnding {
+        /// The file.
+        path: PathBuf,
+    },
     /// There are more slices than a recording may have.
     TooManySlices {
         /// The quantity that is too large.
@@ -241,7 +246,8 @@ impl RequestError {
             Self::StandardOutput
             | Self::FileEnding { .. }
             | Self::KindIsMcap { .. }
-            | Self::ContentIsMcap { .. } => RequestOption::Output,
+            | Self::ContentIsMcap { .. }
+            | Self::TableEnding { .. } => RequestOption::Output,
         }
     }
 
@@ -351,6 +357,9 @@ impl RequestError {
             ),
             Self::KindIsMcap { path, kind } => mcap_only(path, &with(kind)),
             Self::ContentIsMcap { path, content } => mcap_only(path, content),
+            Self::TableEnding { path } => {
+                format!("{}, expected a name that ends in .csv or .npy (NumPy)", path.display())
+            }
             Self::TooManySlices { part: SetPart::Slices, given, axis, most } => format!(
                 "{} slices, one for each value of {axis}, expected at most {}",
                 count(*given),

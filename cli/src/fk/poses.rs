@@ -1,0 +1,184 @@
+//! `opm fk --poses`: a CSV file of actuated joints in, one of poses out, row by row.
+
+use crate::args::{FkArgs, Output};
+use crate::failure::Failure;
+use crate::load::{self, Loaded};
+use crate::stream::{self, Stop, Stream, Streams};
+use crate::text::{count, short};
+use opm_core::forward::{Assembly, NearError};
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_study::Tracker;
+use serde::Serialize;
+use std::io::Write;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// The totals of a batch.
+#[derive(Debug, Serialize)]
+struct Summary {
+    rows: u64,
+    reachable: u64,
+    within_limits: u64,
+    assemblies: u64,
+    seconds: f64,
+    rows_per_second: f64,
+}
+
+/// What is asked for.
+struct Request<'a> {
+    manipulator: &'a Manipulator,
+    /// The pose to start from, and that the assemblies are sorted by.
+    seed: Vec<f64>,
+    /// Only assemblies in this mode.
+    only: Option<Mode>,
+    /// Every assembly, and not the one near the last.
+    all: bool,
+}
+
+pub fn run(
+    args: &FkArgs,
+    input: &Path,
+    output: &Output,
+    (loaded, manipulator): (&Loaded, &Manipulator),
+) -> Result<(), Failure> {
+    let seed = match &args.near {
+        Some(pose) => pose.resolve_for("--near", manipulator)?,
+        None => manipulator.home_pose(),
+    };
+    let only = args.mode.as_deref().map(|mode| load::mode(manipulator, mode)).transpose()?;
+    if let (true, Err(why)) = (args.all, manipulator.forward_closed_form()) {
+        let problem = format_args!(
+            "no closed form of the forward kinematics: {why}; without --all, one assembly is found near the \
+             row before"
+        );
+        return Err(Failure::flag("--all", problem));
+    }
+    let request = Request { manipulator, seed, only, all: args.all };
+    let streams = Streams { input, output: args.output.as_deref() };
+    let solve = |stream: Stream<'_>| request.solve(stream);
+    let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
+    let assemblies = match args.all {
+        true => format!(", {} assemblies", count(summary.assemblies)),
+        false => String::new(),
+    };
+    output.note(format_args!(
+        "{}: {} rows, {} in reach, {} within limits{assemblies}; {} s, {} rows/s",
+        args.output.as_deref().unwrap_or(input).display(),
+        count(summary.rows),
+        count(summary.reachable),
+        count(summary.within_limits),
+        short(summary.seconds),
+        count(summary.rows_per_second as u64),
+    ));
+    if output.format == crate::args::Format::Json { output.print(&summary, "") } else { Ok(()) }
+}
+
+impl Request<'_> {
+    fn solve(&self, mut stream: Stream<'_>) -> Result<Summary, Stop> {
+        let start = Instant::now();
+        let m = self.manipulator;
+        let joints: Vec<&str> = m.actuated().iter().map(|&i| &*m.coordinates()[i].name).collect();
+        let listed = joints.join(", ");
+        // The other columns of a table that `opm ik` or `opm trajectory` wrote.
+        let tasks = m.task_coordinates().iter().chain(m.dependent_coordinates()).map(|c| c.name);
+        let others: Vec<&str> = tasks
+            .chain(m.coordinates().iter().map(|c| &*c.name))
+            .chain(m.imaginary().iter().map(|joint| &*joint.name))
+            .chain(["reachable", "within_limits", "mode"])
+            .collect();
+        let columns = stream.columns(joints.clone(), |name| {
+            let found = joints.iter().position(|joint| *joint == name);
+            match found {
+                Some(number) => Ok(Some(number)),
+                None if others.contains(&name) => Ok(None),
+                None => Err(format!("no joint {name:?}; the actuated joints are {listed}")),
+            }
+        })?;
+        let missing = columns.missing();
+        if !missing.is_empty() {
+            let problem =
+                format!("no column {}; the actuated joints are {listed}", missing.join(", "));
+            return Err(stream::at(stream.label, columns.number, problem).into());
+        }
+        stream.writer.write_record(self.header(columns.timed(), &joints))?;
+
+        let seed = m.platform_pose(&self.seed);
+        let seed = seed.map_err(|error| Failure::flag("--near", error))?;
+        let mut tracker = Tracker::new(m, &self.seed, self.only.unwrap_or(m.home_mode()));
+        let (mut reachable, mut within_limits, mut assemblies) = (0, 0, 0);
+        let mut values = vec![0.0; joints.len()];
+        stream.each(&columns, &mut values, |stream, line, time, joints| {
+            let label = stream.label;
+            let wrong = |error: &dyn std::error::Error| stream::at(label, line, error);
+            let mut list: Vec<Assembly>;
+            let found: &[Assembly] = if self.all {
+                list = m.forward(joints).map_err(|error| wrong(&error))?.list;
+                list.retain(|assembly| self.only.is_none_or(|mode| assembly.mode == mode));
+                m.sort_assemblies(&mut list, &seed);
+                &list
+            } else {
+                let found = tracker.step(joints).map_err(|error| match error {
+                    NearError::Start(error) => Failure::flag("--near", error),
+                    error => wrong(&error),
+                })?;
+                found.map(std::slice::from_ref).unwrap_or_default()
+            };
+            reachable += u64::from(!found.is_empty());
+            within_limits += u64::from(found.iter().any(|assembly| assembly.within_limits));
+            assemblies += found.len() as u64;
+            let row = stream.rows.load(Ordering::Relaxed) + 1;
+            for (number, assembly) in found.iter().enumerate() {
+                self.write(&mut stream.writer, (row, number + 1), (time, joints), Some(assembly))?;
+            }
+            if found.is_empty() {
+                self.write(&mut stream.writer, (row, 0), (time, joints), None)?;
+            }
+            Ok(())
+        })?;
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
+        let rows = stream.rows.load(Ordering::Relaxed);
+        let rows_per_second = rows as f64 / seconds;
+        Ok(Summary { rows, reachable, within_limits, assemblies, seconds, rows_per_second })
+    }
+
+    fn header<'n>(&'n self, timed: bool, joints: &[&'n str]) -> Vec<&'n str> {
+        let m = self.manipulator;
+        let mut header = Vec::new();
+        header.extend(timed.then_some("t"));
+        if self.all {
+            header.extend(["row", "assembly"]);
+        }
+        header.extend(m.task_coordinates().iter().map(|c| c.name));
+        header.extend(m.dependent_coordinates().iter().map(|c| c.name));
+        header.extend(["mode", "reachable", "within_limits"]);
+        header.extend(joints);
+        header
+    }
+
+    /// Writes the row of an assembly, or of none.
+    fn write(
+        &self,
+        writer: &mut csv::Writer<&mut dyn Write>,
+        (row, number): (u64, usize),
+        (time, joints): (Option<f64>, &[f64]),
+        assembly: Option<&Assembly>,
+    ) -> Result<(), Stop> {
+        let m = self.manipulator;
+        let numbers: &[u64] = if self.all { &[row, number as u64] } else { &[] };
+        let cells = |values: Option<&Vec<f64>>, count: usize| -> Vec<Option<f64>> {
+            (0..count).map(|i| values.map(|values| values[i])).collect()
+        };
+        let row = (
+            time.as_slice(),
+            numbers,
+            cells(assembly.map(|a| &a.pose), m.task_coordinates().len()),
+            cells(assembly.map(|a| &a.dependent), m.dependent_coordinates().len()),
+            assembly.map_or_else(String::new, |a| m.format_mode(a.mode)),
+            u8::from(assembly.is_some()),
+            u8::from(assembly.is_some_and(|a| a.within_limits)),
+            joints,
+        );
+        Ok(writer.serialize(row)?)
+    }
+}

@@ -1,0 +1,274 @@
+//! Commands that read CSV of plain numbers, and write CSV row by row: bounded memory.
+
+use crate::args::{Format, Output};
+use crate::failure::Failure;
+use crate::lines::{Line, Lines};
+use crate::load::{DASH, Loaded, STANDARD_INPUT};
+use crate::output::is_stdout;
+use crate::progress::{interruptible, watch};
+use crate::text::plural;
+use csv::{ErrorKind, WriterBuilder};
+use opm_mcap::{PartialFile, Sink};
+use opm_workspace::Progress;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Number of bytes that are written at a time.
+const BUFFER: usize = 1 << 16;
+
+/// Why a stream ends early.
+pub enum Stop {
+    Write(io::Error),
+    Failure(Failure),
+}
+
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self::Failure(failure)
+    }
+}
+
+impl From<csv::Error> for Stop {
+    fn from(error: csv::Error) -> Self {
+        Self::Write(match error.into_kind() {
+            ErrorKind::Io(error) => error,
+            other => io::Error::other(format!("{other:?}")),
+        })
+    }
+}
+
+/// The names of what is read and written, as they were given; `-` is a standard stream.
+pub struct Streams<'a> {
+    pub input: &'a Path,
+    pub output: Option<&'a Path>,
+}
+
+/// Input and output of a command while it runs.
+pub struct Stream<'a> {
+    /// The name of the input in messages.
+    pub label: &'a str,
+    pub lines: Lines<Box<dyn Read + Send>>,
+    pub writer: csv::Writer<&'a mut dyn Write>,
+    /// The number of rows that were read.
+    pub rows: &'a AtomicU64,
+    progress: &'a Progress,
+}
+
+impl Stream<'_> {
+    /// Calls `take` with every line of numbers: the time if it has one, and the values, which keep what a line does not
+    /// have.
+    pub fn each(
+        &mut self,
+        columns: &Columns<'_>,
+        values: &mut [f64],
+        mut take: impl FnMut(&mut Self, u64, Option<f64>, &[f64]) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        loop {
+            let label = self.label;
+            let line = self.lines.next().map_err(|error| Failure::at(label, error))?;
+            let Some(line) = line else { break };
+            if self.progress.is_cancelled() {
+                return Err(Failure::interrupted("interrupted").into());
+            }
+            let number = line.number;
+            let time = columns.read(line, values, |problem| at(label, number, problem))?;
+            take(self, number, time, values)?;
+            self.rows.fetch_add(1, Ordering::Relaxed);
+        }
+        self.writer.flush().map_err(Stop::Write)
+    }
+
+    /// What is in every column, by the header. `find` gives the number of a named value, or `None` for a column that is
+    /// not read.
+    pub fn columns<'n>(
+        &mut self,
+        names: Vec<&'n str>,
+        find: impl Fn(&str) -> Result<Option<usize>, String>,
+    ) -> Result<Columns<'n>, Failure> {
+        let label = self.label;
+        let header = self.lines.next().map_err(|error| Failure::at(label, error))?;
+        let number = header.map_or(1, |line| line.number);
+        let given: Vec<_> =
+            header.iter().flat_map(|h| h.fields()).map(String::from_utf8_lossy).collect();
+        if given.iter().all(|name| name.parse::<f64>().is_ok()) {
+            let problem = format!("no header, expected one of names: {}", names.join(","));
+            return Err(at(label, number, problem));
+        }
+        let mut columns = Vec::new();
+        for name in &given {
+            let wrong =
+                |error: &dyn Display| at(label, number, format!("column {name:?}: {error}"));
+            let column = match &**name {
+                "t" => Column::Time,
+                name => match find(name).map_err(|error| wrong(&error))? {
+                    Some(number) => Column::Value(number),
+                    None => Column::Other,
+                },
+            };
+            if column != Column::Other && columns.contains(&column) {
+                return Err(wrong(&"given twice"));
+            }
+            columns.push(column);
+        }
+        Ok(Columns { number, columns, names })
+    }
+}
+
+/// Runs a command from one CSV to another; the summary, and the note about it, are of the command. A file gets its name
+/// when it is whole. The result is `None` where the rows went to standard output.
+pub fn run<T>(
+    streams: &Streams<'_>,
+    output: &Output,
+    loaded: &Loaded,
+    solve: impl FnOnce(Stream<'_>) -> Result<T, Stop>,
+) -> Result<Option<T>, Failure> {
+    let input = streams.input;
+    let target = streams.output.filter(|path| !is_stdout(path));
+    if output.format == Format::Json && target.is_none() {
+        let problem = "the CSV takes standard output; give it a file with --output";
+        return Err(Failure::flag("--format json", problem));
+    }
+    let (label, reader): (_, Box<dyn Read + Send>) = if input == Path::new(DASH) {
+        if loaded.is_standard_input() {
+            let problem = "standard input is the mechanism already, expected a file";
+            return Err(Failure::flag("--poses", problem));
+        }
+        (STANDARD_INPUT.to_owned(), Box::new(io::stdin()))
+    } else {
+        let label = input.display().to_string();
+        let file = File::open(input).map_err(|error| Failure::at(&label, error))?;
+        (label, Box::new(file))
+    };
+    let progress = interruptible()?;
+    let rows = AtomicU64::new(0);
+    let source = Source { label: &label, reader, rows: &rows, progress: &progress };
+    let Some(path) = target else {
+        // There is no progress bar, since the rows may go to the terminal.
+        return match solve(source.to(&mut io::stdout().lock())) {
+            Ok(_) => Ok(None),
+            Err(Stop::Write(error)) => Err(Failure::stdout(error)),
+            Err(Stop::Failure(failure)) => Err(failure),
+        };
+    };
+    loaded.refuse_as_output(path, &[input])?;
+    let place = path.display();
+    let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, error))?;
+    let work = || solve(source.to(&mut file));
+    let summary =
+        match watch(output, "solving", None, || rows.load(Ordering::Relaxed), work) {
+            Ok(summary) => summary,
+            Err(Stop::Failure(Failure::Interrupted(message))) => {
+                return Err(Failure::Interrupted(message.reworded(|message| {
+                    format!("{message}; what was solved is in {place}.partial")
+                })));
+            }
+            Err(stop) => {
+                // The file is discarded: the rows before a wrong one would look like the whole answer.
+                file.discard();
+                return Err(match stop {
+                    Stop::Write(error) => Failure::at(&place, error),
+                    Stop::Failure(failure) => failure,
+                });
+            }
+        };
+    file.commit().map_err(|error| Failure::at(&place, error))?;
+    Ok(Some(summary))
+}
+
+/// What a stream reads, without where it writes.
+struct Source<'a> {
+    label: &'a str,
+    reader: Box<dyn Read + Send>,
+    rows: &'a AtomicU64,
+    progress: &'a Progress,
+}
+
+impl<'a> Source<'a> {
+    fn to(self, sink: &'a mut dyn Write) -> Stream<'a> {
+        let Self { label, reader, rows, progress } = self;
+        let writer =
+            WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(sink);
+        Stream { label, lines: Lines::new(reader), writer, rows, progress }
+    }
+}
+
+/// What is in a column of the input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Column {
+    /// A time, which is carried through.
+    Time,
+    /// The value of this number.
+    Value(usize),
+    /// Nothing that is read.
+    Other,
+}
+
+/// The columns of the input.
+pub struct Columns<'a> {
+    /// The line of the header.
+    pub number: u64,
+    columns: Vec<Column>,
+    /// The names of all values.
+    names: Vec<&'a str>,
+}
+
+impl Columns<'_> {
+    /// Whether there are times.
+    pub fn timed(&self) -> bool {
+        self.columns.contains(&Column::Time)
+    }
+
+    /// The names of the values that have no column.
+    pub fn missing(&self) -> Vec<&str> {
+        let has = |number: usize| self.columns.contains(&Column::Value(number));
+        self.names.iter().enumerate().filter(|&(i, _)| !has(i)).map(|(_, name)| *name).collect()
+    }
+
+    /// Reads a row into the values that have columns, and returns its time if it has one.
+    fn read(
+        &self,
+        line: Line<'_>,
+        values: &mut [f64],
+        at: impl Fn(String) -> Failure,
+    ) -> Result<Option<f64>, Failure> {
+        let name = |column: Column| match column {
+            Column::Time => "t",
+            Column::Value(number) => self.names[number],
+            Column::Other => "...",
+        };
+        let given = line.fields().count();
+        if given != self.columns.len() {
+            let names: Vec<_> = self.columns.iter().map(|&column| name(column)).collect();
+            let given = plural(given as u64, "column");
+            let (expected, names) = (self.columns.len(), names.join(","));
+            return Err(at(format!("{given}, expected {expected}: {names}")));
+        }
+        let mut time = None;
+        let read = line.fields().zip(&self.columns).filter(|(_, column)| **column != Column::Other);
+        for (field, &column) in read {
+            let wrong = |problem: &str| {
+                let (name, field) = (name(column), String::from_utf8_lossy(field));
+                at(format!("column {name}: {field:?} {problem}"))
+            };
+            let number = std::str::from_utf8(field).ok().and_then(|text| text.parse().ok());
+            let number: f64 = number.ok_or_else(|| wrong("is not a number"))?;
+            if !number.is_finite() {
+                return Err(wrong("is not a finite number"));
+            }
+            match column {
+                Column::Time => time = Some(number),
+                Column::Value(value) => values[value] = number,
+                Column::Other => {}
+            }
+        }
+        Ok(time)
+    }
+}
+
+/// The failure for a problem in a line of the input.
+pub fn at(label: &str, line: u64, problem: impl Display) -> Failure {
+    Failure::work(format!("{label}:{line}: {problem}"))
+}

@@ -1,0 +1,204 @@
+//! The table of a motion: a row for each sample, as CSV or as NPY.
+
+use super::{create, refuse_standard_output};
+use crate::error::{RequestError, StudyError};
+use crate::motion::{MotionRequest, MotionSummary};
+use opm_core::Quantity;
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::FileUnits;
+use opm_core::trajectory::{Sample, Trajectory};
+use opm_mcap::{PartialFile, RecordError, Sink, TableRecorder};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// What the table of a motion has beside the time, the task coordinates and the joints.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TableOptions {
+    /// The first derivatives by time, as `d.NAME`.
+    pub rates: bool,
+    /// The second derivatives by time, as `dd.NAME`.
+    pub accelerations: bool,
+    /// Units of a file, which the header then names: `S1 [mm]`. If not given, SI and radians without a name.
+    pub units: Option<FileUnits>,
+}
+
+/// A format of tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Csv,
+    Npy,
+}
+
+/// The columns of a table: `t`, task coordinates, dependent coordinates, joints, imaginary joints; then the rates of
+/// all of them but `t`, in the same order, and their accelerations.
+struct Columns {
+    options: TableOptions,
+    /// Names and quantities, without `t`.
+    coordinates: Vec<(String, Quantity)>,
+}
+
+impl Columns {
+    fn new(manipulator: &Manipulator, options: TableOptions) -> Self {
+        let tasks = manipulator.task_coordinates().iter();
+        let tasks = tasks.chain(manipulator.dependent_coordinates());
+        let joints = manipulator.coordinates().iter().map(|c| (c.name.clone(), c.quantity));
+        let imaginary = manipulator.imaginary().iter().map(|j| (j.name.clone(), j.quantity));
+        let coordinates =
+            tasks.map(|c| (c.name.to_owned(), c.quantity)).chain(joints).chain(imaginary).collect();
+        Self { options, coordinates }
+    }
+
+    /// The prefix of the name and the suffix of the unit of each derivative that is asked for.
+    fn derivatives(&self) -> impl Iterator<Item = (usize, &'static str, &'static str)> {
+        let TableOptions { rates, accelerations, .. } = self.options;
+        [(0, "", "", true), (1, "d.", "/s", rates), (2, "dd.", "/s2", accelerations)]
+            .into_iter()
+            .filter_map(|(order, name, unit, asked)| asked.then_some((order, name, unit)))
+    }
+
+    fn header(&self) -> Vec<String> {
+        let units = self.options.units;
+        let mut names = vec![if units.is_some() { "t [s]" } else { "t" }.to_owned()];
+        for (_, prefix, per) in self.derivatives() {
+            names.extend(self.coordinates.iter().map(|(name, quantity)| match units {
+                Some(units) => format!("{prefix}{name} [{}{per}]", units.symbol(*quantity)),
+                None => format!("{prefix}{name}"),
+            }));
+        }
+        names
+    }
+
+    /// The numbers of a sample; not a number where there is none.
+    fn write(&self, sample: &Sample, row: &mut Vec<f64>) {
+        let Sample { time, instant, solution, motion, reached, .. } = sample;
+        let moving = *reached && sample.regular;
+        row.clear();
+        row.push(*time);
+        for (order, ..) in self.derivatives() {
+            let known = if order == 0 { *reached } else { moving };
+            let parts: [&[f64]; 4] = match order {
+                0 => {
+                    let (dependent, joints) = (solution.dependent(), solution.joints());
+                    [&instant.pose, dependent, joints, solution.imaginary()]
+                }
+                1 => [
+                    &instant.velocity,
+                    &motion.dependent_rates,
+                    &motion.joint_rates,
+                    &motion.imaginary_rates,
+                ],
+                _ => [
+                    &instant.acceleration,
+                    &motion.dependent_accelerations,
+                    &motion.joint_accelerations,
+                    &motion.imaginary_accelerations,
+                ],
+            };
+            let values = parts.iter().enumerate().flat_map(|(number, part)| {
+                let known = known || number == 0;
+                part.iter().map(move |&value| if known { value } else { f64::NAN })
+            });
+            row.extend(values.zip(&self.coordinates).map(|(value, (_, quantity))| {
+                value / self.options.units.map_or(1.0, |units| units.factor(*quantity))
+            }));
+        }
+    }
+}
+
+/// Writes a motion as CSV while it is followed: see [`MotionRequest::follow`]. A cell without a number is empty: all
+/// but the time and the pose where the pose is out of reach, and rates where a joint has none.
+///
+/// # Errors
+/// A pose is not finite, a write fails ([`StudyError::Record`] for `place`), or the work was cancelled.
+pub fn write_motion_csv(
+    request: MotionRequest<'_>,
+    trajectory: Trajectory<'_>,
+    options: TableOptions,
+    (place, output): (&str, &mut dyn Write),
+    go_on: impl Fn(u64) -> bool,
+) -> Result<MotionSummary, StudyError> {
+    let columns = Columns::new(request.manipulator, options);
+    let failed = |error: io::Error| StudyError::record(place, RecordError::Io(error));
+    let mut output = io::BufWriter::new(output);
+    writeln!(output, "{}", columns.header().join(",")).map_err(failed)?;
+    let (mut row, mut line) = (Vec::new(), Vec::new());
+    let take = |_, sample: &Sample, _: &[_]| {
+        columns.write(sample, &mut row);
+        line.clear();
+        for (number, value) in row.iter().enumerate() {
+            let comma = if number == 0 { "" } else { "," };
+            let written = match value.is_nan() {
+                true => write!(line, "{comma}"),
+                false => write!(line, "{comma}{value:?}"),
+            };
+            written.map_err(failed)?;
+        }
+        line.push(b'\n');
+        output.write_all(&line).map_err(failed)
+    };
+    let summary = request.follow(trajectory, take, go_on)?;
+    output.flush().map_err(failed)?;
+    Ok(summary)
+}
+
+/// Writes a motion as a table in a file while it is followed, in the format of the name's ending: `.csv`, or `.npy` for
+/// a structured array with a float64 field for each column. It has not a number where CSV has an empty cell. The file
+/// gets its name when it is whole.
+///
+/// # Errors
+/// The name ends otherwise, the file cannot be written, a pose is not finite, or the work was cancelled.
+pub fn write_motion_table(
+    request: MotionRequest<'_>,
+    trajectory: Trajectory<'_>,
+    options: TableOptions,
+    path: &Path,
+    go_on: impl Fn(u64) -> bool,
+) -> Result<MotionSummary, StudyError> {
+    let format = format(path)?;
+    let place = path.display().to_string();
+    let failed = |error| StudyError::record(&place, error);
+    let mut file = create(path)?;
+    match format {
+        Format::Csv => {
+            let output = (&*place, &mut file as &mut dyn Write);
+            let summary = write_motion_csv(request, trajectory, options, output, go_on)?;
+            file.commit().map_err(|error| failed(RecordError::Io(error)))?;
+            Ok(summary)
+        }
+        Format::Npy => {
+            let columns = Columns::new(request.manipulator, options);
+            let header = columns.header();
+            let names: Vec<&str> = header.iter().map(String::as_str).collect();
+            let samples = trajectory.samples();
+            let mut table: TableRecorder<PartialFile> =
+                TableRecorder::npy(file, &names, samples).map_err(failed)?;
+            let (mut row, mut bytes) = (Vec::new(), Vec::new());
+            let take = |_, sample: &Sample, _: &[_]| {
+                columns.write(sample, &mut row);
+                bytes.clear();
+                bytes.extend(row.iter().flat_map(|value| value.to_le_bytes()));
+                table.push(&bytes).map_err(failed)
+            };
+            let summary = request.follow(trajectory, take, go_on)?;
+            table.finish().map_err(failed)?;
+            Ok(summary)
+        }
+    }
+}
+
+/// Whether a name is that of a table of a motion: it ends in `.csv` or `.npy`.
+pub fn is_motion_table(path: &Path) -> bool {
+    format(path).is_ok()
+}
+
+fn format(path: &Path) -> Result<Format, RequestError> {
+    refuse_standard_output(path)?;
+    let ending = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
+    if ending("csv") {
+        Ok(Format::Csv)
+    } else if ending("npy") {
+        Ok(Format::Npy)
+    } else {
+        Err(RequestError::TableEnding { path: path.to_owned() })
+    }
+}
