@@ -68,6 +68,7 @@
 mod analysis;
 mod columns;
 mod error;
+mod inscribed;
 mod kind;
 mod linkage;
 mod measure;
