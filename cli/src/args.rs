@@ -12,8 +12,11 @@ pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, PlotArgs};
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
-use crate::pose::Number;
+use crate::change::Change;
+use crate::pose::{GridAxis, Number};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+use opm_core::mechanism::OrientationCoordinates;
 use std::path::PathBuf;
 
 /// Columns of the help on a terminal that has as many.
@@ -107,6 +110,27 @@ pub struct MechanismArgs {
     /// exactly into these; angles count as lengths at the mechanism's size
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<Number>,
+    /// What is changed of the file.
+    #[command(flatten)]
+    pub change: ChangeArgs,
+}
+
+/// What is changed of a mechanism file.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+pub struct ChangeArgs {
+    /// Change a number of the file: a parameter of a leg (leg1.h=140mm) or of all legs (h=140mm), or limits
+    /// (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=... and S1.home=...
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<Change>,
+    /// Angles of orientations: `euler-angles` (zeta xi psi) or `tilt-torsion` (azimuth tilt torsion)
+    #[arg(long, value_name = "ANGLES", value_parser = coordinates())]
+    pub coordinates: Option<OrientationCoordinates>,
+}
+
+/// Parses which angles an orientation is written with.
+fn coordinates() -> impl TypedValueParser<Value = OrientationCoordinates> {
+    let names = PossibleValuesParser::new(OrientationCoordinates::NAMED.map(|(name, _)| name));
+    names.map(|name| OrientationCoordinates::from_name(&name).unwrap_or_default())
 }
 
 /// Find the partial subspaces and the imaginary joints of a mechanism
@@ -124,11 +148,16 @@ pub struct MechanismArgs {
 Examples:
   opm decompose plano-spherical-5dof
   opm decompose my-mechanism.toml --format json
-  opm decompose my-mechanism.toml --tolerance 0.5mm")]
+  opm decompose my-mechanism.toml --tolerance 0.5mm
+  opm decompose plano-spherical-5dof --coordinates tilt-torsion
+  opm decompose plano-spherical-5dof --vary h=100mm:160mm:7")]
 pub struct DecomposeArgs {
     /// The mechanism.
     #[command(flatten)]
     pub mechanism: MechanismArgs,
+    /// Decompose for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
+    pub vary: Option<GridAxis>,
 }
 
 /// List the mechanisms and motions that come with opm, or print one

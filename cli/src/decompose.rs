@@ -5,6 +5,8 @@ mod answer;
 use crate::args::{DecomposeArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::pose::GridAxis;
+use crate::runs::{self, Cell};
 use crate::text::{self, Table, chain, plural, short};
 use answer::Answer;
 use nalgebra::{Point3, Vector3};
@@ -31,6 +33,9 @@ const LISTED: usize = 6;
 
 pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::read(&args.mechanism)?;
+    if let Some(vary) = &args.vary {
+        return table(&loaded, vary, output);
+    }
     let mechanism = &loaded.file.mechanism;
     let found = survey(mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
     let Applies::Decomposed(decompositions) = &found.applies else {
@@ -83,6 +88,39 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         output.note(format_args!("{place}: no closed-form inverse kinematics: {error}{hint}"));
     }
     Ok(())
+}
+
+/// The decomposition for each value of a number of the mechanism file.
+fn table(loaded: &Loaded, vary: &GridAxis, output: &Output) -> Result<(), Failure> {
+    runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
+        let mechanism = &changed.file.mechanism;
+        let found = survey(mechanism).map_err(|error| Failure::at(&changed.label, error))?;
+        let mobility = found.mobility.mobility as u64;
+        let mut cells = vec![
+            Cell::new("applies", found.applies.name(), found.applies.name()),
+            Cell::new("mobility", mobility, mobility.to_string()),
+        ];
+        let (lower, upper, imaginary) = match &found.applies {
+            Applies::Decomposed(ways) => {
+                let Decomposition { lower, upper, imaginary_joints, .. } = &ways[0];
+                (lower.name(), upper.name(), Some(*imaginary_joints as u64))
+            }
+            Applies::Nearly | Applies::Outside(_) => ("-", "-", None),
+        };
+        let shown = imaginary.map_or("-".to_owned(), |joints| joints.to_string());
+        let closed = changed.compile().is_ok();
+        let header = "imaginary joints".to_owned();
+        cells.extend([
+            Cell::new("lower", lower, lower),
+            Cell::new("upper", upper, upper),
+            Cell { header, ..Cell::new("imaginary_joints", imaginary, shown) },
+            Cell {
+                header: "inverse kinematics".to_owned(),
+                ..Cell::new("closed_form", closed, if closed { "yes" } else { "no" })
+            },
+        ]);
+        Ok(cells)
+    })
 }
 
 fn warn(output: &Output, loaded: &Loaded, warnings: &[String]) {
@@ -351,8 +389,12 @@ impl Report<'_> {
                 line(&constraints);
             }
             line(&frame_table(task, way.is_one_subspace(), units));
-            if task.coordinates.iter().any(|c| c.kind() == CoordinateKind::Zeta) {
+            let has = |kind| task.coordinates.iter().any(|c| c.kind() == kind);
+            if has(CoordinateKind::Zeta) {
                 line(&"Euler angles: R = Rz(zeta) Ry(xi) Rz(psi)\n");
+            }
+            if has(CoordinateKind::Azimuth) {
+                line(&"tilt and torsion: R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)\n");
             }
         }
         line(&actuation(self.loaded, self.mobility));

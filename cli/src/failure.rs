@@ -192,6 +192,8 @@ fn flag(option: RequestOption) -> &'static str {
         RequestOption::Scalars => "--scalars",
         RequestOption::Color => "--color",
         RequestOption::Output => "--output",
+        RequestOption::Explain => "--explain",
+        RequestOption::Inscribed => "--inscribed",
         other => other.name(),
     }
 }

@@ -4,6 +4,7 @@
 
 mod args;
 mod batch;
+mod change;
 mod completions;
 mod decompose;
 mod examples;
@@ -22,6 +23,7 @@ mod output;
 mod plot;
 mod pose;
 mod progress;
+mod runs;
 mod schema;
 mod stream;
 mod text;

@@ -24,6 +24,7 @@ const LONGEST: u64 = 16 << 20;
 const MARGIN: f64 = 1.01;
 
 /// A mechanism file that was read.
+#[derive(Clone)]
 pub struct Loaded {
     /// Its name in messages: the path or the name as given.
     pub label: String,
@@ -49,6 +50,7 @@ pub fn open(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
 /// Reads a mechanism, and snaps it if it has a tolerance.
 pub fn read(given: &MechanismArgs) -> Result<Loaded, Failure> {
     let mut loaded = read_as_it_is(&given.file)?;
+    loaded.change(&given.change)?;
     if let Some(tolerance) = given.tolerance {
         loaded.snap(tolerance, "--tolerance")?;
     }

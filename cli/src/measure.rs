@@ -3,7 +3,9 @@
 use crate::args::{MeasureArgs, Output, SectionName};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch, watch_boxes};
+use crate::runs::{self, Cell};
 use crate::text::{self, Table, count, short};
 use crate::workspace::{modes, threads};
 use opm_core::manipulator::Manipulator;
@@ -27,9 +29,13 @@ const MOST_DIGITS: i32 = 15;
 
 pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     let mut loaded = load::read_as_it_is(&args.file)?;
+    loaded.change(&args.change)?;
     if let Some(tolerance) = args.joint_tolerance {
         loaded.snap(tolerance, "--joint-tolerance")?;
         loaded.note_snapped(output);
+    }
+    if let Some(vary) = &args.vary {
+        return table(args, &loaded, vary, output);
     }
     let manipulator = loaded.compile()?;
     let modes = modes(&args.mode, &manipulator)?;
@@ -57,6 +63,44 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The measure for each value of a number of the mechanism file.
+fn table(
+    args: &MeasureArgs,
+    loaded: &Loaded,
+    vary: &GridAxis,
+    output: &Output,
+) -> Result<(), Failure> {
+    let (progress, pool) = (interruptible()?, threads(args.threads)?);
+    let silent = Output { format: output.format, quiet: true };
+    let goal = Goal { tolerance: args.tolerance, budget: args.budget };
+    runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
+        let manipulator = changed.compile()?;
+        let modes = modes(&args.mode, &manipulator)?;
+        let domain = domain(args, &silent, &manipulator, modes, &pool, &progress)?;
+        let found = pool.install(|| measure(&manipulator, &domain, modes, &goal, &progress));
+        if found.stop == Stop::Cancelled {
+            return Err(Failure::interrupted("interrupted"));
+        }
+        let (unit, factor) = unit_product(&domain.powers(), loaded.file.units);
+        let ends = [found.value(), found.lower, found.upper].map(|end| end / factor);
+        let [value, lower, upper] = rounded(ends, resolving(ends[2] - ends[1], ends[2]));
+        let units = unit_product(&domain.powers(), FileUnits::SI).0;
+        Ok(vec![
+            Cell {
+                header: format!("measure [{unit}]"),
+                ..Cell::new("measure", found.value(), value)
+            },
+            Cell { header: "at least".to_owned(), ..Cell::new("lower", found.lower, lower) },
+            Cell { header: "at most".to_owned(), ..Cell::new("upper", found.upper, upper) },
+            Cell {
+                header: "share [%]".to_owned(),
+                ..Cell::new("fraction", found.fraction(), short(100.0 * found.fraction()))
+            },
+            Cell { header: "in".to_owned(), ..Cell::new("units", units, unit) },
+        ])
+    })
 }
 
 /// The domain of the measure: given by the flags, or fitted to the workspace.

@@ -102,6 +102,8 @@ fn picture(args: &PlotArgs, output: &Output) -> Result<Picture, Failure> {
         ("--pose", args.pose.is_some()),
         ("--mode", args.mode.is_some()),
         ("--tolerance", args.tolerance.is_some()),
+        ("--set", !args.change.set.is_empty()),
+        ("--coordinates", args.change.coordinates.is_some()),
     ] {
         if given {
             let problem = format!("{} is a recording, expected a mechanism", args.file.display());

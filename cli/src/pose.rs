@@ -235,6 +235,21 @@ impl Pose {
         self.0.iter().map(|(name, number)| (&**name, *number))
     }
 
+    /// The value of each of these coordinates, all of which must be given and no others.
+    pub fn each_of(&self, coordinates: &[(String, Quantity)]) -> Result<Vec<f64>, Misread> {
+        let names = || coordinates.iter().map(|(name, _)| &**name).collect::<Vec<_>>().join(", ");
+        if let Some((name, _)) = self.0.iter().find(|(n, _)| coordinates.iter().all(|c| c.0 != *n))
+        {
+            return Err(Misread(format!("no varying coordinate {name:?}, expected {}", names())));
+        }
+        let value =
+            |(name, quantity): &(String, Quantity)| match self.0.iter().find(|g| g.0 == *name) {
+                Some((_, number)) => number.value_of(name, *quantity),
+                None => Err(Misread(format!("{name} is not given, expected {}", names()))),
+            };
+        coordinates.iter().map(value).collect()
+    }
+
     fn fill(
         &self,
         mut values: Vec<f64>,
@@ -317,6 +332,17 @@ impl FromStr for GridAxis {
 }
 
 impl GridAxis {
+    /// The name of what varies.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The values in SI, for something of this quantity.
+    pub fn of_quantity(&self, quantity: Quantity) -> Result<Axis, Misread> {
+        let [min, max] = [self.min, self.max].map(|end| end.value_of(&self.name, quantity));
+        Ok(Axis::new(&*self.name, min?, max?, self.count))
+    }
+
     /// The axis in SI, for one of these coordinates.
     pub fn resolve(&self, coordinates: &[Coordinate]) -> Result<Axis, Failure> {
         let axis = || {
@@ -329,7 +355,7 @@ impl GridAxis {
 }
 
 /// The two ends of a range.
-fn ends(min: &str, max: &str) -> Result<[Number; 2], Misread> {
+pub fn ends(min: &str, max: &str) -> Result<[Number; 2], Misread> {
     let (low, high): (Number, Number) = (min.parse()?, max.parse()?);
     // Otherwise -10:10mm would start at minus ten metres.
     let bare = |n: Number| n.quantity.is_none() && n.value != 0.0;
@@ -379,7 +405,7 @@ impl OverAxis {
     }
 }
 
-fn assignment<'a>(text: &'a str, form: &str) -> Result<(&'a str, &'a str), Misread> {
+pub fn assignment<'a>(text: &'a str, form: &str) -> Result<(&'a str, &'a str), Misread> {
     match text.split_once('=').map(|(name, value)| (name.trim(), value.trim())) {
         Some((name, value)) if !name.is_empty() && !value.is_empty() => Ok((name, value)),
         _ => Err(Misread(format!("{:?}, expected {form}", text.trim()))),

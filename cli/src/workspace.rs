@@ -3,7 +3,10 @@
 //! The steps are: flags, request, sweep, analysis, recording, output.
 
 pub mod advice;
+mod explain;
+mod inscribed;
 mod report;
+mod several;
 mod work;
 
 pub use advice::grid_flags;
@@ -21,12 +24,18 @@ use opm_study::recording::{
     self, Findings, ShardCount, ShardFindings, ShardRecording, StoredShard, WorkspaceRecording,
 };
 use opm_study::{Analysis, PointOptions, Workspace, WorkspaceRequest};
-use opm_workspace::{Modes, Shard};
+use opm_workspace::{Modes, Sections, Shard};
 use std::path::Path;
 use std::sync::Arc;
 
 pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
+    if let Some(vary) = &args.vary {
+        return several::vary(args, &loaded, vary, output);
+    }
+    if args.all_modes {
+        return several::all_modes(args, &loaded, output);
+    }
     let manipulator = Arc::new(loaded.compile()?);
     let request = request(args, &manipulator)?.check(Arc::clone(&manipulator))?;
     request.refuse_unused_length()?;
@@ -42,6 +51,14 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         }
         (None, _) => None,
     };
+    if args.explain && request.modes() == Modes::Any {
+        let problem = "needs one working mode, and --mode is any";
+        return Err(Failure::flag("--explain", problem));
+    }
+    if args.explain && args.kind.sections() != Sections::Whole {
+        let problem = format!("is of poses, and --kind {} has none", args.kind.name());
+        return Err(Failure::flag("--explain", problem));
+    }
     let progress = interruptible()?;
     let work = Work { output, pool: &threads(args.threads)?, progress: &progress };
     let workspace = work.fit(request)?;
@@ -53,6 +70,8 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let (found, effort) = work.count(&workspace, Shard::WHOLE)?;
     let analysis = work.analyse(&workspace, found, &workspace.poses())?;
     advice::after(&workspace, &analysis, output);
+    let inscribed = inscribed::find(args, &workspace, &analysis)?;
+    let rejections = if args.explain { Some(work.explain(&workspace)?) } else { None };
     if let Some(recording) = recording {
         let (mechanism, poses) = (loaded.attachment(), &workspace.poses());
         let findings = Findings { mechanism, workspace: &workspace, poses, analysis: &analysis };
@@ -61,7 +80,17 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let units = loaded.file.units;
     let outcome =
         Outcome { workspace: &workspace, analysis: &analysis, effort, shard: None, units };
-    output.print(&outcome.json(), outcome.text())
+    let (mut json, mut text) = (outcome.json(), outcome.text());
+    if let Some(found) = inscribed {
+        json["inscribed"] = found.json();
+        text += &found.text(units);
+    }
+    if let Some(found) = rejections {
+        let report = explain::Report { workspace: &workspace, found: &found };
+        json["explain"] = report.json();
+        text += &report.text(units);
+    }
+    output.print(&json, text)
 }
 
 /// The request that the flags make.
@@ -74,7 +103,7 @@ fn request(args: &WorkspaceArgs, manipulator: &Manipulator) -> Result<WorkspaceR
     request.length = args.length.map(Number::characteristic_length).transpose()?;
     request.max_condition = args.max_condition;
     request.conditioning = args.conditioning;
-    request.shape = args.shape;
+    request.shape = args.shape || args.inscribed.is_some();
     request.points = points(&args.cloud);
     Ok(request)
 }

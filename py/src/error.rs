@@ -63,6 +63,8 @@ fn argument(option: RequestOption) -> &'static str {
         RequestOption::Scalars => "scalars",
         RequestOption::Color => "color",
         RequestOption::Output => "path",
+        RequestOption::Explain => "rejections",
+        RequestOption::Inscribed => "inscribed",
         other => other.name(),
     }
 }

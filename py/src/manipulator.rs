@@ -10,9 +10,10 @@ use crate::snap;
 use crate::solutions::{Names, Solutions};
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{self as core, Mode};
+use opm_core::mechanism::OrientationCoordinates;
 use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};
-use opm_core::mechanism::file::MechanismFile;
+use opm_core::mechanism::file::{FileUnits, Locations, MechanismFile};
 use opm_core::task;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
@@ -184,13 +185,14 @@ impl Manipulator {
         Ok(dict)
     }
 
-    /// The same mechanism with some of its :attr:`parameters` changed: assembled, decomposed and compiled anew.
+    /// The same mechanism with some of its :attr:`parameters` changed, or homes and limits of a list of joints: assembled, decomposed and compiled anew.
     ///
     /// Parameters
     /// ----------
     /// changes : mapping, optional
     ///     New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
-    ///     full name (``leg1.h``) sets it in one leg and takes precedence.
+    ///     full name (``leg1.h``) sets it in one leg and takes precedence. In a list of joints, ``S1.limits`` and ``S1.home``
+    ///     are those of one joint coordinate, and ``limits`` those of all joints that have any.
     /// **named
     ///     New values for names without dots.
     ///
@@ -219,10 +221,6 @@ impl Manipulator {
         changes: Option<&Bound<'_, PyMapping>>,
         named: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let Some(family) = &self.family else {
-            let message = "is a list of joints, which has no parameters: expected a family";
-            return Err(wrong(format!("{} {message}", self.inner.mechanism().name)));
-        };
         let mut values: Vec<(String, ParameterValue)> = Vec::new();
         let named = named.map(PyDictMethods::as_mapping);
         for given in changes.into_iter().chain(named) {
@@ -240,12 +238,46 @@ impl Manipulator {
         }
         py.detach(|| {
             let changes = values.iter().map(|(name, value)| (name.as_str(), *value));
-            let family = family.with(changes).map_err(|e| failed(&e))?;
-            let mechanism = family.assemble().map_err(|e| failed(&family.explain(&e)))?;
-            let inner = core::Manipulator::new(mechanism).map_err(|e| failed(&e))?;
-            let (text, label) = (OnceLock::new(), self.label.clone());
-            Ok(Self { inner: Arc::new(inner), text, label, family: Some(family) })
+            self.changed(self.file().with(changes).map_err(|e| failed(&e))?)
         })
+    }
+
+    /// The same mechanism with other angles for its orientation.
+    ///
+    /// Parameters
+    /// ----------
+    /// coordinates : str
+    ///     ``"euler-angles"``: ``zeta xi psi``, R = Rz(zeta) Ry(xi) Rz(psi). ``"tilt-torsion"``: ``azimuth tilt torsion``,
+    ///     R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth), with the tilt from 0 to pi. Where that is 0 or pi, the azimuth is
+    ///     free: :meth:`locate` takes that at home.
+    ///
+    /// Returns
+    /// -------
+    /// Manipulator
+    ///     A new manipulator; this one does not change.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The name is unknown, or the pose has no Euler angles.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import opm_kinematics as opm
+    /// >>> m = opm.examples.load("plano-spherical-5dof").with_coordinates("tilt-torsion")
+    /// >>> [c.name for c in m.task_coordinates]
+    /// ['x', 'y', 'azimuth', 'tilt', 'torsion']
+    fn with_coordinates(&self, py: Python<'_>, coordinates: &str) -> PyResult<Self> {
+        let Some(chosen) = OrientationCoordinates::from_name(coordinates) else {
+            let names = OrientationCoordinates::NAMED.map(|(name, _)| format!("{name:?}"));
+            return Err(wrong(format!(
+                "coordinates is {coordinates:?}, expected {}",
+                names.join(" or ")
+            )));
+        };
+        let mut file = self.file();
+        file.mechanism.task.coordinates = chosen;
+        py.detach(|| self.changed(file))
     }
 
     /// Mechanisms are equal if the texts of their files are equal, whatever the names of the files.
@@ -273,7 +305,7 @@ impl Manipulator {
     /// The mechanism file. After :meth:`with_parameters` it is in metres and radians and gives equal results to the bit.
     #[getter]
     pub fn text(&self) -> &str {
-        self.text.get_or_init(|| self.family.as_ref().map_or_else(String::new, Family::write))
+        self.text.get_or_init(|| self.file().text())
     }
 
     /// The coordinates of the pose: the columns of poses.
@@ -421,6 +453,24 @@ fn parameter(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ParameterValue> {
 }
 
 impl Manipulator {
+    /// Its mechanism file, in metres and radians.
+    fn file(&self) -> MechanismFile {
+        MechanismFile {
+            mechanism: self.inner.mechanism().clone(),
+            units: FileUnits::SI,
+            family: self.family.clone(),
+            mode: self.family.as_ref().map(Family::mode),
+            places: Locations::default(),
+        }
+    }
+
+    /// The manipulator of a changed file.
+    fn changed(&self, file: MechanismFile) -> PyResult<Self> {
+        let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;
+        let (inner, text, label) = (Arc::new(inner), OnceLock::new(), self.label.clone());
+        Ok(Self { inner, text, label, family: file.family })
+    }
+
     /// The name of its file, without folders.
     pub fn file_name(&self) -> String {
         let path = Path::new(&self.label);

@@ -7,12 +7,14 @@ mod measure;
 mod places;
 mod points;
 mod query;
+mod questions;
 mod recording;
 mod shards;
 
 pub use boundary::Outline;
 pub use conditioning::Conditioning;
 pub use query::modes;
+pub use questions::{Inscribed, Rejection};
 
 use crate::arguments;
 use crate::error::request;

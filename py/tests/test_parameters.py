@@ -77,5 +77,16 @@ def test_what_cannot_be_is_told(manipulator):
             manipulator.with_parameters(changes)
     with pytest.raises(opm.OpmError, match="`h` is given twice"):
         manipulator.with_parameters({"h": 0.1}, h=0.1)
-    with pytest.raises(opm.OpmError, match="is a list of joints, which has no parameters"):
-        opm.examples.load("plano-spherical-5dof-joints").with_parameters(h=0.1)
+    listed = opm.examples.load("plano-spherical-5dof-joints")
+    with pytest.raises(opm.OpmError, match="`h` is not a number of a list of joints"):
+        listed.with_parameters(h=0.1)
+    with pytest.raises(opm.OpmError, match="did you mean `leg1.h`"):
+        manipulator.with_parameters({"leg1.hh": 0.1})
+
+
+def test_limits_of_a_list_of_joints_are_changed_by_name() -> None:
+    listed = opm.examples.load("plano-spherical-5dof-joints")
+    changed = listed.with_parameters({"S1.limits": (-0.17, 0.17)})
+    assert changed == opm.Manipulator.parse(changed.text)
+    grid = {"x": (-0.2, 0.2, 21), "y": (-0.2, 0.2, 21)}
+    assert 0 < opm.sweep(changed, **grid).count < opm.sweep(listed, **grid).count

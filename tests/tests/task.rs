@@ -401,7 +401,7 @@ fn displaced_with_its_frames_a_mechanism_has_the_same_coordinates() {
                 axis: task.intersection.as_ref().map(|axis| axis.direction.into_inner()),
                 lower: hints(&task.lower, v, shared),
                 upper: hints(&task.upper, b, shared),
-                home: Vec::new(),
+                ..TaskHints::default()
             };
             let g = displacement(&mut rng);
             let there = Manipulator::with_decomposition(
@@ -453,7 +453,7 @@ fn given_frames_shift_home() {
             origin: Some(Point3::new(0.0, 0.0, 1.0)),
             ..FrameHints::default()
         },
-        home: Vec::new(),
+        ..TaskHints::default()
     };
     let manipulator = Manipulator::new(mechanism.clone()).unwrap();
     let home = manipulator.home_pose();
@@ -473,7 +473,9 @@ fn given_frames_shift_home() {
 #[test]
 fn names_of_coordinates_are_no_names_of_joints() {
     let text = opm_core::mechanism::examples::find("planar-3rrr").unwrap().text;
-    for kind in CoordinateKind::ALL.into_iter().filter(|kind| *kind != CoordinateKind::H) {
+    use CoordinateKind::{Azimuth, H, Tilt, Torsion};
+    let rare = [Azimuth, H, Tilt, Torsion];
+    for kind in CoordinateKind::ALL.into_iter().filter(|kind| !rare.contains(kind)) {
         let renamed = text.replacen("name = \"A1\"", &format!("name = {:?}", kind.name()), 1);
         assert_ne!(renamed, text);
         let error = Manipulator::read(&renamed).unwrap_err().to_string();

@@ -1,7 +1,7 @@
 //! Arguments of the command that measures a workspace.
 
-use crate::pose::Number;
-use crate::pose::OverAxis;
+use super::ChangeArgs;
+use crate::pose::{GridAxis, Number, OverAxis};
 use clap::{ValueEnum, ValueHint};
 use opm_workspace::measure::check_tolerance;
 use opm_workspace::{MOST_THREADS, Sections};
@@ -18,7 +18,7 @@ const MOST_BOXES: f64 = 1e12;
 /// of threads. A pose counts as in `opm workspace`: if it is in reach and within all joint limits.
 ///
 /// The measure is taken over the product of all ranges. Orientations are weighed by the Haar measure, which
-/// is uniform over rotations: xi by sin xi, nu by cos(nu - home). All orientations, each once, are
+/// is uniform over rotations: xi by sin xi, tilt by sin tilt, nu by cos(nu - home). All orientations, each once, are
 /// zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to
 /// positive xi counts orientations twice if zeta has a full revolution.
 ///
@@ -42,6 +42,7 @@ Examples:
   opm measure plano-spherical-5dof --section upper --over xi=0:60deg --tolerance 1e-4
   opm measure translational-helical-3dof --tolerance 1e-9 --over x=-1:1 --over y=-1:1 \\
       --over phi=30deg
+  opm measure plano-spherical-5dof --over x=-0.2:0.2 --over y=-0.2:0.3 --vary h=100mm:160mm:7
   opm measure plano-cylindrical-4dof --mode any --budget 1000000 --format json")]
 pub struct MeasureArgs {
     /// Mechanism file, or the name of a shipped example
@@ -50,6 +51,12 @@ pub struct MeasureArgs {
     /// Snap joints that miss their subspaces by at most this, as --tolerance of the other commands does
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub joint_tolerance: Option<Number>,
+    /// What is changed of the file.
+    #[command(flatten)]
+    pub change: ChangeArgs,
+    /// Measure for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
+    pub vary: Option<GridAxis>,
     /// Range of one coordinate, or a single value
     #[arg(long, value_name = "AXIS=MIN:MAX|AXIS=VALUE")]
     pub over: Vec<OverAxis>,

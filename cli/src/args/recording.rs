@@ -1,5 +1,6 @@
 //! Arguments of the commands that read a recording.
 
+use super::ChangeArgs;
 use crate::plot::options::{PanelName, PictureSize};
 use crate::pose::{Number, Pose, SliceValue};
 use clap::ValueHint;
@@ -57,6 +58,9 @@ pub struct PlotArgs {
     /// Accept joints of a mechanism that miss their subspaces by at most this length, as in `opm decompose`
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<Number>,
+    /// What is changed of a mechanism file.
+    #[command(flatten)]
+    pub change: ChangeArgs,
     /// Width and height in screen pixels, up to 4000 each, instead of a size that suits the panels; a
     /// PNG has twice as many pixels
     #[arg(long, value_name = "WxH")]

@@ -1,11 +1,11 @@
 //! Arguments of the commands that sweep a workspace, and join the shards of one.
 
 use super::MechanismArgs;
-use crate::pose::{GridAxis, Number};
+use crate::pose::{GridAxis, Number, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use opm_study::WorkspaceKind;
-use opm_workspace::{MOST_THREADS, Shard};
+use opm_workspace::{InscribedShape, MOST_THREADS, Shard};
 use std::path::PathBuf;
 
 /// Sweep a grid of poses: how many are in reach, and where they are
@@ -43,6 +43,13 @@ use std::path::PathBuf;
 /// exists already is not swept again. `opm merge` joins the parts, and takes --axes, --color, --scalars and
 /// --shape.
 ///
+/// --inscribed takes each point for a cell of the grid, and what lies beyond the grid for outside. The result is exact for
+/// these cells; where between two points the workspace ends is known to half a step, for a disc or a ball to half of a
+/// cell's diagonal. The disc in --kind dexterous is the regular dexterous workspace.
+///
+/// --explain solves every pose of the grid in one working mode. A leg that is out of reach has no joint values, so that
+/// its limits reject nothing there.
+///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with more than
 /// one value. It is an estimate: it may be too small by half a step at every edge of the box that the
 /// workspace does not touch. Angles have equal weight. `opm measure` gives bounds, and weighs orientations
@@ -58,6 +65,12 @@ Examples:
   opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
   opm workspace plano-spherical-5dof --kind reachable -o places.mcap
   opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid theta=-10deg:10deg:5
+  opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid y=-0.1:0.1:41 \\
+      --grid theta=-10deg:10deg:5 --inscribed disc
+  opm workspace plano-spherical-5dof --grid x=-0.3:0.3:61 --grid y=-0.3:0.3:61 --explain
+  opm workspace plano-spherical-5dof --grid x=-0.3:0.3:61 --vary h=100mm:160mm:7
+  opm workspace plano-spherical-5dof --coordinates tilt-torsion --kind dexterous \\
+      --grid tilt=20deg --grid azimuth=-180deg:170deg:36 --grid x=-0.2:0.2:81 --grid y=-0.2:0.2:81
   opm workspace plano-spherical-5dof --kind lower --grid x=0:0.2:201 --grid theta11=-0.7:0.9:17
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
@@ -86,6 +99,23 @@ pub struct WorkspaceArgs {
     /// Also find the boundary and the connected components, as all kinds but `grid` do
     #[arg(long)]
     pub shape: bool,
+    /// Also find what rejects the other poses: for each leg, joint and limit, how many it rejects alone, and how many
+    /// with others
+    #[arg(long, conflicts_with_all = ["shard", "max_condition", "vary", "all_modes"])]
+    pub explain: bool,
+    /// Also find the largest disc, ball or box in the set of points
+    #[arg(long, value_name = "disc|ball|box", value_parser = inscribed(), conflicts_with = "shard")]
+    pub inscribed: Option<InscribedShape>,
+    /// Centre of --inscribed, in every coordinate in which the set varies; without it, the best one
+    #[arg(long, value_name = "x=..,y=..", requires = "inscribed", allow_hyphen_values = true)]
+    pub centre: Option<Pose>,
+    /// Sweep for each of these values of a number that --set takes, and print a table; with --grid, the counts can be
+    /// compared
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["output", "all_modes"])]
+    pub vary: Option<GridAxis>,
+    /// Sweep the same grid in every working mode, and print a table
+    #[arg(long, conflicts_with_all = ["output", "mode"])]
+    pub all_modes: bool,
     /// Sweep only part I of N (I counts from 1), and write it to -o, for `opm merge`
     #[arg(
         long,
@@ -157,6 +187,12 @@ fn kind() -> impl TypedValueParser<Value = WorkspaceKind> {
     let value = |kind: WorkspaceKind| PossibleValue::new(kind.name()).help(kind.description());
     let names = PossibleValuesParser::new(WorkspaceKind::ALL.map(value));
     names.try_map(|name| name.parse::<WorkspaceKind>())
+}
+
+/// Parses a shape that is inscribed.
+fn inscribed() -> impl TypedValueParser<Value = InscribedShape> {
+    let names = PossibleValuesParser::new(InscribedShape::ALL.map(InscribedShape::name));
+    names.map(|name| InscribedShape::from_name(&name).unwrap_or(InscribedShape::Box))
 }
 
 /// Parses the largest condition number that counts.

@@ -34,7 +34,11 @@ pub fn draw(args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
             return Err(Failure::flag(flag, problem));
         }
     }
-    let given = MechanismArgs { file: args.file.clone(), tolerance: args.tolerance };
+    let given = MechanismArgs {
+        file: args.file.clone(),
+        tolerance: args.tolerance,
+        change: args.change.clone(),
+    };
     let loaded = load::open(&given, output)?;
     let figure = figure(&loaded, args, output)?;
     drawn(args, |size| figure.draw(size))

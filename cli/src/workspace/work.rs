@@ -10,7 +10,7 @@ use opm_study::recording::{
     Findings, ShardCount, ShardFindings, ShardRecording, WorkspaceRecording,
 };
 use opm_study::{Analysis, CheckedRequest, PoseSource, StudyError, Workspace};
-use opm_workspace::{Cancelled, Progress, Shard};
+use opm_workspace::{Cancelled, Progress, Rejections, Shard};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Instant;
 
@@ -78,6 +78,13 @@ impl Work<'_> {
         };
         analysis.conditioning = conditioning;
         Ok(analysis)
+    }
+
+    /// Finds what rejects the poses.
+    pub fn explain(&self, workspace: &Workspace) -> Result<Rejections, Failure> {
+        let poses = workspace.grid().poses();
+        self.watch("explaining", poses, || workspace.rejections(self.progress))
+            .map_err(Failure::from)
     }
 
     /// Records every point that was counted.

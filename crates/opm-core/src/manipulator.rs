@@ -268,6 +268,9 @@ impl Manipulator {
             | CoordinateKind::Zeta
             | CoordinateKind::Xi
             | CoordinateKind::Psi
+            | CoordinateKind::Azimuth
+            | CoordinateKind::Tilt
+            | CoordinateKind::Torsion
             | CoordinateKind::Mu
             | CoordinateKind::Nu => return false,
         };
@@ -382,11 +385,17 @@ impl Manipulator {
         let (coordinates, independent) = (&dependent.coordinates, &dependent.independent);
         let Ok(mut all) = self.completed(&self.home_pose(), self.home_mode) else { return };
         let kind = |i: usize| self.task.coordinates[i].kind();
-        if let Some(&zeta) = independent.iter().find(|&&i| kind(i) == CoordinateKind::Zeta) {
+        let first =
+            |&&i: &&usize| matches!(kind(i), CoordinateKind::Zeta | CoordinateKind::Azimuth);
+        if let Some(&zeta) = independent.iter().find(first) {
             let (v, b) = self.task.sections(&all);
             let displacement = if zeta < self.task.lower_count { v } else { b };
             let r = displacement.spherical();
-            all[zeta] -= r[(1, 0)].atan2(r[(0, 0)]);
+            let angles: [usize; 3] = [zeta, zeta + 1, zeta + 2];
+            let mut euler = self.task.angles.to_euler(angles.map(|i| all[i]));
+            euler[0] -= r[(1, 0)].atan2(r[(0, 0)]);
+            let moved = self.task.angles.of_euler(euler);
+            angles.into_iter().zip(moved).for_each(|(i, angle)| all[i] = angle);
         }
         for (coordinate, &i) in self.dependent_coordinates.iter_mut().zip(coordinates) {
             coordinate.home = all[i];

@@ -11,7 +11,7 @@ pub mod joint;
 pub mod leg;
 mod screws;
 
-pub use hints::{FrameHints, TaskHints, TaskKey};
+pub use hints::{FrameHints, OrientationCoordinates, TaskHints, TaskKey};
 pub use screws::{ScrewError, ScrewJoint};
 
 use crate::mechanism::joint::{Joint, JointCoordinate};

@@ -21,7 +21,8 @@
 //! translational space, `x y z` move it along the frame's directions, and `w h` along the first two, where the third
 //! one is that of `I`;
 //! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
-//! `Rz(zeta) Ry(xi) Rz(psi)` and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
+//! `Rz(zeta) Ry(xi) Rz(psi)`; [`OrientationCoordinates`] can make them `azimuth tilt torsion`,
+//! `Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)`; and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
 //! their home values at home.
 //!
 //! # Frames
@@ -75,8 +76,8 @@ pub use crate::group::{Displacement, Subspace, SubspaceKind};
 use crate::decomposition::Decomposition;
 use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::group::{CylindricalDisplacement, IntersectionMotion, MotionType, Path, PlanarPath};
-use crate::mechanism::leg::Section;
-use crate::mechanism::{Mechanism, TaskKey};
+use crate::mechanism::leg::{Leg, Section};
+use crate::mechanism::{Mechanism, OrientationCoordinates, TaskKey};
 use crate::numeric::angle::sin_cos_of_each;
 use frame::Meeting;
 use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
@@ -100,6 +101,8 @@ pub struct Task {
     pub lower_count: usize,
     /// The height of a Schoenflies section; `None` where there is none.
     pub(crate) height: Option<Height>,
+    /// The angles that the orientation of the pose is written with, if it has one.
+    pub(crate) angles: OrientationCoordinates,
     /// The inverse of the platform's orientation at home, in the frame of the section that has the Euler
     /// angles; `None` where the pose has no Euler angles, and where it is the identity.
     home_orientation_inverse: Option<Matrix3<f64>>,
@@ -216,14 +219,6 @@ impl Task {
         });
         let lower_count = coordinates.len();
         coordinates.extend(of_upper);
-        // Files keep the names of all coordinates from joints but this one, which few mechanisms have.
-        let h = CoordinateKind::H;
-        if coordinates.iter().any(|c| c.kind() == h)
-            && let Some(leg) = (mechanism.legs.iter())
-                .find(|leg| leg.joints.iter().any(|joint| joint.name == h.name()))
-        {
-            return Err(TaskError::JointName { leg: leg.name.clone(), joint: h.name() });
-        }
         for (name, value) in &mechanism.task.home {
             match coordinates.iter_mut().find(|c| c.name == name) {
                 Some(coordinate) => coordinate.home = *value,
@@ -240,6 +235,15 @@ impl Task {
             let orientation = euler(home(0), home(1), home(2));
             (orientation != Matrix3::identity()).then(|| orientation.transpose())
         });
+        let angles = mechanism.task.coordinates;
+        if angles == OrientationCoordinates::TiltTorsion {
+            let Some(first) = zeta else {
+                let problem = FrameProblem::NoOrientation;
+                return Err(TaskError::Frame { key: TaskKey::Coordinates, problem });
+            };
+            coordinate::write_tilt_and_torsion(&mut coordinates[first..first + 3]);
+        }
+        refuse_names_of_joints(mechanism, &coordinates)?;
         let motion = |frame: &Subspace| match &intersection {
             Some(axis) => {
                 let direction = frame.direction(&axis.direction);
@@ -258,6 +262,7 @@ impl Task {
             coordinates,
             lower_count,
             height,
+            angles,
             home_orientation_inverse,
             in_plane: [InPlane::default(); 2],
         };
@@ -334,7 +339,16 @@ impl Task {
         }
     }
 
-    /// The path of `v · exp(I τ)` as the first coordinate grows from its value at home, where that is `start`.
+    /// Whether [`Task::row`] is the path of a row: the azimuth moves the lower section along no path of one screw.
+    pub(crate) fn rows_are_paths(&self) -> bool {
+        match self.angles {
+            OrientationCoordinates::EulerAngles => true,
+            OrientationCoordinates::TiltTorsion => self.euler_section() == Some(Section::Upper),
+        }
+    }
+
+    /// The path of `v · exp(I τ)` as the first coordinate grows from its value at home, where that is `start`;
+    /// of Euler angles, not of tilt and torsion: see [`Task::rows_are_paths`].
     #[inline(always)]
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
@@ -369,8 +383,8 @@ impl Task {
     pub(crate) fn form(&self, section: Section) -> Form {
         let shared = self.shared();
         match section {
-            Section::Lower => Form { kind: self.lower.kind, shared },
-            Section::Upper => Form { kind: self.upper.kind, shared },
+            Section::Lower => Form { kind: self.lower.kind, shared, angles: self.angles },
+            Section::Upper => Form { kind: self.upper.kind, shared, angles: self.angles },
         }
     }
 
@@ -428,4 +442,21 @@ impl Task {
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
     }
+}
+
+/// Refuses joints with the name of one of these coordinates. Files keep the names of all coordinates from joints but
+/// those that few mechanisms have.
+fn refuse_names_of_joints(
+    mechanism: &Mechanism,
+    coordinates: &[TaskCoordinate],
+) -> Result<(), TaskError> {
+    use CoordinateKind::{Azimuth, H, Tilt, Torsion};
+    let rare = coordinates.iter().filter(|c| matches!(c.kind(), H | Azimuth | Tilt | Torsion));
+    for TaskCoordinate { name, .. } in rare {
+        let has = |leg: &&Leg| leg.joints.iter().any(|joint| joint.name == *name);
+        if let Some(leg) = mechanism.legs.iter().find(has) {
+            return Err(TaskError::JointName { leg: leg.name.clone(), joint: name });
+        }
+    }
+    Ok(())
 }

@@ -333,7 +333,7 @@ impl Manipulator {
                 let mut found = LocalTwist::zeros();
                 let own = task.in_plane(section, &all[task.range(section)]);
                 found.iter_mut().zip(own).for_each(|(to, value)| *to = *value);
-                found
+                task.screw_rates(section, found)
             };
             let (rates, accelerations) = (vector(rates), vector(accelerations));
             [screws.twist(&rates), screws.twist(&accelerations) + screws.bias(&rates)]

@@ -299,8 +299,8 @@ fn tallest(grid: &Grid) -> usize {
     let several = |axis: &Axis| axis.count > 1;
     let upper = &grid.axes()[grid.lower()..];
     let kinds = grid.coordinates()[grid.lower()..].iter().map(|coordinate| coordinate.kind);
-    let tilt =
-        kinds.zip(upper).position(|(kind, axis)| kind == Some(CoordinateKind::Xi) && several(axis));
+    let is_tilt = |kind| matches!(kind, Some(CoordinateKind::Xi | CoordinateKind::Tilt));
+    let tilt = kinds.zip(upper).position(|(kind, axis)| is_tilt(kind) && several(axis));
     match tilt.or_else(|| upper.iter().rposition(several)) {
         Some(number) => grid.lower() + number,
         None => grid.axes().iter().position(several).unwrap_or(0),

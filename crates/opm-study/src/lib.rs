@@ -69,6 +69,7 @@
 mod analysis;
 mod columns;
 mod error;
+mod inscribed;
 mod kind;
 mod linkage;
 mod measure;

@@ -183,6 +183,11 @@ impl CheckedRequest {
         self.grid.as_ref()
     }
 
+    /// The working modes that count.
+    pub fn modes(&self) -> Modes {
+        self.modes
+    }
+
     /// The values that a recording stores with every point.
     pub fn points(&self) -> &PointChoice {
         &self.points

@@ -1,14 +1,14 @@
 //! Workspaces that are fully defined and can be swept and analysed.
 
-use crate::error::StudyError;
+use crate::error::{RequestError, StudyError};
 use crate::kind::WorkspaceKind;
 use crate::measure::{Measure, grid_measure};
 use crate::poses::PoseSource;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes, Progress, SetAxis, SetError,
-    Sweep, Visits,
+    ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes, Progress, Rejections, Sections,
+    SetAxis, SetError, Sweep, Visits,
 };
 use std::sync::Arc;
 
@@ -97,6 +97,18 @@ impl Workspace {
             Some(limit) => sweep.with_limit(limit).expect("the request was checked"),
             None => sweep,
         }
+    }
+
+    /// What rejects the poses of the grid.
+    ///
+    /// # Errors
+    /// Several working modes count, the kind is not one of poses of both sections, or the work was cancelled.
+    pub fn rejections(&self, progress: &Progress) -> Result<Rejections, StudyError> {
+        let Modes::One(mode) = self.modes else { return Err(RequestError::ExplainModes.into()) };
+        if self.kind.sections() != Sections::Whole {
+            return Err(RequestError::ExplainKind { kind: self.kind }.into());
+        }
+        Ok(Rejections::new(&self.manipulator, &self.grid, mode, progress)?)
     }
 
     /// The poses, from a sweep.

@@ -115,9 +115,7 @@ impl Range {
         let [min, max] = match coordinate.quantity {
             Quantity::Length => [home - size, home + size],
             // Elsewhere zeta and psi tell a tilt from its opposite.
-            Quantity::Angle
-                if coordinate.kind() == CoordinateKind::Xi && follows_xi(manipulator) =>
-            {
+            Quantity::Angle if is_tilt(coordinate.kind()) && follows_tilt(manipulator) => {
                 [-PI, PI].map(|end| end + whole_turns(home))
             }
             Quantity::Angle => one_turn(coordinate.kind(), home),
@@ -132,9 +130,11 @@ impl Range {
         self.extent.max - self.extent.min
     }
 
-    /// Whether it is an Euler angle about the intersection motion or the platform's axis.
-    fn is_euler_angle(&self) -> bool {
-        matches!(self.kind, CoordinateKind::Zeta | CoordinateKind::Psi)
+    /// Whether it is an angle that others make up for at a tilt of zero: an Euler angle about the intersection motion or
+    /// the platform's axis, or the azimuth.
+    fn is_free_where_level(&self) -> bool {
+        use CoordinateKind::{Azimuth, Psi, Zeta};
+        matches!(self.kind, Zeta | Psi | Azimuth)
     }
 
     /// The range with half its width more on both sides, if it may grow: thin parts may lie between the
@@ -169,9 +169,15 @@ impl Range {
     }
 }
 
-/// Whether the third Euler angle follows from the second, so that a negative tilt is another pose.
-fn follows_xi(manipulator: &Manipulator) -> bool {
-    manipulator.dependent_coordinates().iter().any(|c| c.kind() == CoordinateKind::Psi)
+/// Whether it is the angle between the third directions, before and after.
+fn is_tilt(kind: CoordinateKind) -> bool {
+    matches!(kind, CoordinateKind::Xi | CoordinateKind::Tilt)
+}
+
+/// Whether the third angle of an orientation follows from the tilt, so that a negative tilt is another pose.
+fn follows_tilt(manipulator: &Manipulator) -> bool {
+    use CoordinateKind::{Psi, Torsion};
+    manipulator.dependent_coordinates().iter().any(|c| matches!(c.kind(), Psi | Torsion))
 }
 
 /// The search for the extent of the workspace, by sweeps of coarse grids.
@@ -242,8 +248,8 @@ impl<'a> Search<'a> {
             let mut found = ranges.clone();
             let mut farther = false;
             // At a tilt of zero, zeta and psi are angles about the same axis: going on along one of them
-            // gives orientations again that the other has given.
-            let tilt = ranges.iter().find(|range| range.kind == CoordinateKind::Xi);
+            // gives orientations again that the other has given. The azimuth has no meaning there.
+            let tilt = ranges.iter().find(|range| is_tilt(range.kind));
             let level = tilt.is_some_and(|tilt| {
                 let slack = FOLLOWED * tilt.width();
                 let nearest = PI * (tilt.extent.min / PI).round();
@@ -251,7 +257,7 @@ impl<'a> Search<'a> {
             });
             for (number, range) in found.iter_mut().enumerate() {
                 let least = FOLLOWED * range.width();
-                if range.extent.unbounded || least == 0.0 || level && range.is_euler_angle() {
+                if range.extent.unbounded || least == 0.0 || level && range.is_free_where_level() {
                     continue;
                 }
                 let mut ends = [0.0; 2];
@@ -448,10 +454,12 @@ struct Hit {
 /// The range of an angle whose full revolutions do not matter. Of Euler angles and tilts it gives every
 /// orientation or direction once, that of home among them.
 pub(crate) fn one_turn(kind: CoordinateKind, home: f64) -> [f64; 2] {
-    use CoordinateKind::{H, Mu, Nu, Phi, Psi, Theta, W, X, Xi, Y, Z, Zeta};
+    use CoordinateKind::{
+        Azimuth, H, Mu, Nu, Phi, Psi, Theta, Tilt, Torsion, W, X, Xi, Y, Z, Zeta,
+    };
     match kind {
-        Xi => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
-        Zeta | Psi => [-PI, PI].map(|end| end + whole_turns(home)),
+        Xi | Tilt => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
+        Zeta | Psi | Azimuth | Torsion => [-PI, PI].map(|end| end + whole_turns(home)),
         Nu => [home - FRAC_PI_2, home + FRAC_PI_2],
         Theta | Phi | Mu => [home - PI, home + PI],
         X | Y | Z | H | W => unreachable!("a length has no revolutions"),

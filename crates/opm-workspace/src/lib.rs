@@ -40,6 +40,8 @@
 //! | which poses are far from singular | [`ConditionLimit`], [`Conditioned`], [`ConditioningIndex`] |
 //! | the set of reachable poses | [`GridSet`], [`Components`], [`boundary`], [`mask_boundary`] |
 //! | places that some or all orientations reach | [`Visits`] |
+//! | what rejects the other poses | [`Rejections`] |
+//! | the largest disc, ball or box in a set | [`inscribed()`] |
 //! | areas and volumes with guaranteed bounds | [`measure`](mod@measure) |
 //!
 //! Numbers are SI and radians. Work is done on the current rayon thread pool.
@@ -50,10 +52,12 @@ mod condition;
 mod conditioning;
 mod extent;
 mod grid;
+mod inscribed;
 pub mod measure;
 mod ordered;
 mod poses;
 mod progress;
+mod rejections;
 mod replay;
 mod set;
 mod sweep;
@@ -67,8 +71,10 @@ pub use condition::{ConditionError, ConditionLimit, Conditioned};
 pub use conditioning::ConditioningIndex;
 pub use extent::{Extent, default_grid};
 pub use grid::{Axis, Coordinate, Grid, GridError, Sections};
+pub use inscribed::{Inscribed, InscribedError, InscribedShape, inscribed};
 pub use poses::Poses;
 pub use progress::{Cancelled, Progress};
+pub use rejections::{Cause, Rejection, Rejections};
 pub use replay::replay;
 pub use set::{GridSet, SetAxis, SetError};
 pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};

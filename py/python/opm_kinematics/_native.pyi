@@ -391,13 +391,14 @@ class Manipulator:
     def with_parameters(
         self, changes: Mapping[str, _Parameter] | None = None, /, **named: _Parameter
     ) -> Manipulator:
-        """The same mechanism with some of its :attr:`parameters` changed: assembled, decomposed and compiled anew.
+        """The same mechanism with some of its :attr:`parameters` changed, or homes and limits of a list of joints: assembled, decomposed and compiled anew.
 
         Parameters
         ----------
         changes : mapping, optional
             New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
-            full name (``leg1.h``) sets it in one leg and takes precedence.
+            full name (``leg1.h``) sets it in one leg and takes precedence. In a list of joints, ``S1.limits`` and ``S1.home``
+            are those of one joint coordinate, and ``limits`` those of all joints that have any.
         **named
             New values for names without dots.
 
@@ -419,6 +420,33 @@ class Manipulator:
         >>> longer = m.with_parameters({"leg1.h": 0.13, "limits.S": (-0.25, 0.25)}, a2=0.05)
         >>> longer.parameters["leg1.h"], longer.parameters["leg2.h"], longer.parameters["leg2.a2"]
         (0.13, 0.12, 0.05)
+        """
+    def with_coordinates(self, coordinates: str) -> Manipulator:
+        """The same mechanism with other angles for its orientation.
+
+        Parameters
+        ----------
+        coordinates : str
+            ``"euler-angles"``: ``zeta xi psi``, R = Rz(zeta) Ry(xi) Rz(psi). ``"tilt-torsion"``: ``azimuth tilt torsion``,
+            R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth), with the tilt from 0 to pi. Where that is 0 or pi, the azimuth is
+            free: :meth:`locate` takes that at home.
+
+        Returns
+        -------
+        Manipulator
+            A new manipulator; this one does not change.
+
+        Raises
+        ------
+        OpmError
+            The name is unknown, or the pose has no Euler angles.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("plano-spherical-5dof").with_coordinates("tilt-torsion")
+        >>> [c.name for c in m.task_coordinates]
+        ['x', 'y', 'azimuth', 'tilt', 'torsion']
         """
     @property
     def task_coordinates(self) -> list[TaskCoordinate]:
@@ -972,6 +1000,54 @@ class Conditioning:
         """Number of poses that have an index."""
 
 @final
+class Rejection:
+    """One cause that rejects poses of a grid: a leg that does not reach them, or a joint that is past a limit."""
+
+    @property
+    def leg(self) -> str:
+        """Name of the leg."""
+    @property
+    def section(self) -> str | None:
+        """``"lower"`` or ``"upper"``, the section that does not close; None for a limit."""
+    @property
+    def joint(self) -> str | None:
+        """Name of the joint coordinate that is past a limit; None for a leg that does not reach."""
+    @property
+    def limit(self) -> str | None:
+        """``"lowest"`` or ``"highest"``; None for a leg that does not reach."""
+    @property
+    def alone(self) -> int:
+        """Number of poses that nothing else rejects."""
+    @property
+    def with_others(self) -> int:
+        """Number of poses that other causes reject too."""
+
+@final
+class Inscribed:
+    """The largest disc, ball or box in a set of points of a grid."""
+
+    @property
+    def shape(self) -> str:
+        """``"disc"``, ``"ball"`` or ``"box"``."""
+    @property
+    def centre(self) -> dict[str, float]:
+        """The centre by coordinate, radians and metres."""
+    @property
+    def radii(self) -> dict[str, float]:
+        """The radius by coordinate, of a box half of each side; radians and metres."""
+    @property
+    def error(self) -> dict[str, float]:
+        """How far the true boundary may be from the cells of the grid: half of a cell's diagonal for a disc or a ball, half a step
+        along each coordinate for a box.
+        """
+    @property
+    def measure(self) -> float:
+        """Area or volume, with the units of its coordinates multiplied."""
+    @property
+    def at_edge(self) -> bool:
+        """Whether it touches the edge of the grid, beyond which the workspace may go on."""
+
+@final
 class Sweep:
     """A swept grid: a workspace of some kind, whose points are poses, places or orientations."""
 
@@ -1096,6 +1172,56 @@ class Sweep:
             As for :func:`sweep`.
         shards : int, optional
             As for :func:`sweep`.
+        """
+    def rejections(self) -> list[Rejection]:
+        """What rejects the other poses of the grid: each leg that does not reach them, and each limit.
+
+        Every pose is solved in the working mode. A leg that is out of reach has no joint values, so that its limits reject
+        nothing there.
+
+        Returns
+        -------
+        list[Rejection]
+            The causes that reject any pose, leg by leg.
+
+        Raises
+        ------
+        OpmError
+            The mode is ``"any"``, or the kind has no poses of both sections.
+        """
+    def inscribed(
+        self,
+        shape: str,
+        *,
+        centre: Mapping[str, float] | None = None,
+        executor: _Executor | None = None,
+        shards: int | None = None,
+    ) -> Inscribed | None:
+        """The largest disc, ball or box in the set of points.
+
+        Each point stands for a cell of the grid, and what lies beyond the grid is outside. The disc in the kind
+        ``"dexterous"`` is the regular dexterous workspace.
+
+        Parameters
+        ----------
+        shape : str
+            ``"disc"`` in two coordinates, ``"ball"`` in three, or ``"box"`` in two or three.
+        centre : mapping, optional
+            The centre by coordinate, radians and metres. The best one if not given.
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`.
+        shards : int, optional
+            As for :func:`sweep`.
+
+        Returns
+        -------
+        Inscribed or None
+            None if the set is empty, or the given centre is not inside it.
+
+        Raises
+        ------
+        OpmError
+            The set does not suit the shape: it varies in other coordinates, or a disc would have different units.
         """
     def conditioning(self, *, executor: _Executor | None = None, shards: int | None = None) -> Conditioning:
         """The global conditioning index, and the smallest and largest local one, of every reachable pose.

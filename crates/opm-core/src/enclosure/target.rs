@@ -314,6 +314,7 @@ pub mod task {
     use crate::group::{
         CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion, SubspaceKind,
     };
+    use crate::mechanism::OrientationCoordinates;
     use crate::mechanism::leg::Section;
     use crate::task::Task;
     use nalgebra::Complex;
@@ -406,8 +407,9 @@ pub mod task {
                 IntersectionMotion::Spherical(SphericalMotion::Rotation),
                 Coordinate::Linear(turn),
             ) => {
+                pose = euler_angles(task, &pose);
                 pose[0] = Coordinate::Linear(Affine::constant(0.0));
-                Some((turn, orientation(task, &pose)))
+                Some((turn, of_euler_angles(task, &pose)))
             }
             _ => None,
         }
@@ -435,9 +437,24 @@ pub mod task {
         }
     }
 
-    /// The rotation from home for Euler angles.
+    /// The Euler angles of an orientation's coordinates, of which the second alone may be polar.
+    fn euler_angles<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> [Coordinate<N>; 3] {
+        match (task.angles, pose) {
+            (
+                OrientationCoordinates::TiltTorsion,
+                &[Coordinate::Linear(azimuth), tilt, Coordinate::Linear(torsion)],
+            ) => [pose[0], tilt, Coordinate::Linear(torsion - azimuth)],
+            _ => *pose,
+        }
+    }
+
+    /// The rotation from home for the coordinates of an orientation.
     fn orientation<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> Target<N> {
-        let [zeta, xi, psi] = pose.map(|coordinate| coordinate.unit_vector(0.0));
+        of_euler_angles(task, &euler_angles(task, pose))
+    }
+
+    fn of_euler_angles<const N: usize>(task: &Task, angles: &[Coordinate<N>; 3]) -> Target<N> {
+        let [zeta, xi, psi] = angles.map(|angle| angle.unit_vector(0.0));
         let absolute = euler(zeta, xi, psi);
         Target::Spherical(match task.home_orientation_inverse() {
             Some(inverse) => absolute.after(inverse),

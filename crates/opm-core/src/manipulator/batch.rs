@@ -366,7 +366,8 @@ impl Block {
             if coordinate.quantity == Quantity::Angle {
                 for (open, &value) in status.open.iter_mut().zip(column) {
                     let from_home = value - coordinate.home;
-                    let large = value.abs().max(from_home.abs()) > MOST_REDUCED;
+                    // Of tilt and torsion, the difference of two is an angle.
+                    let large = value.abs().max(from_home.abs()) > 0.5 * MOST_REDUCED;
                     *open |= u64::from(large);
                 }
             }

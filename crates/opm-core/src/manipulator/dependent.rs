@@ -293,7 +293,9 @@ fn closed(
                 let function = constraint.function(task, target, coordinate, &mut pose, size);
                 (function.slope() * unit).abs() / constraint.unit(size)
             };
+            // In the azimuth, a condition is no harmonic function.
             let mut preferred = coordinates;
+            preferred.retain(|&i| task.coordinates[i].kind() != CoordinateKind::Azimuth);
             preferred
                 .sort_by_key(|&i| (preference(task.coordinates[i].kind()), std::cmp::Reverse(i)));
             let steepest = preferred.iter().map(slope).fold(0.0, f64::max);
@@ -312,9 +314,12 @@ fn closed(
 /// The order in which coordinates are made dependent: angles before lengths.
 fn preference(kind: CoordinateKind) -> u8 {
     match kind {
-        CoordinateKind::Zeta | CoordinateKind::Theta | CoordinateKind::Phi => 0,
-        CoordinateKind::Psi | CoordinateKind::Nu => 1,
-        CoordinateKind::Xi | CoordinateKind::Mu => 2,
+        CoordinateKind::Zeta
+        | CoordinateKind::Theta
+        | CoordinateKind::Phi
+        | CoordinateKind::Azimuth => 0,
+        CoordinateKind::Psi | CoordinateKind::Nu | CoordinateKind::Torsion => 1,
+        CoordinateKind::Xi | CoordinateKind::Mu | CoordinateKind::Tilt => 2,
         CoordinateKind::X
         | CoordinateKind::Y
         | CoordinateKind::Z

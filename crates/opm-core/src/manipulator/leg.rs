@@ -232,7 +232,8 @@ impl CompiledLeg {
         };
         let lower = compile(Section::Lower, &task.lower, &split.lower)?;
         let upper = compile(Section::Upper, &task.upper, &split.upper)?;
-        let (shapes, bounds, shells) = (lower.shapes(), lower.bounds(), lower.shells());
+        let (shapes, bounds) = (lower.shapes(), lower.bounds());
+        let shells = if task.rows_are_paths() { lower.shells() } else { [None; 2] };
         // An upper section that does not give τ may be out of reach; a spherical joint never is.
         let gives_tau = bridged && split_section == Section::Upper;
         let may_fail = !gives_tau && !matches!(upper.chain, Chain::Ball(_) | Chain::Rigid);

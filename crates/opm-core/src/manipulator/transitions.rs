@@ -94,9 +94,12 @@ impl CompiledSection {
 
 impl Manipulator {
     /// The transitions of a leg within a slice. `None` where they have no closed form: with limits on the
-    /// rotation vector of a spherical joint.
+    /// rotation vector of a spherical joint, and along an azimuth.
     #[doc(hidden)]
     pub fn transitions(&self, branch: &LegBranch) -> Option<Transitions> {
+        if !self.task.rows_are_paths() {
+            return None;
+        }
         let leg = &self.legs[branch.leg];
         let size = self.length + leg.lower.size(self);
         let spherical = leg.shell(branch.branches.lower).is_some();

@@ -39,6 +39,7 @@
 //! | `w` | the positive direction of coordinate `w` | upper planes with `w` |
 //! | `normal` | the plane's normal about which `y` and the angle are positive | planes that share a translation and have an angle or `y` |
 //! | `origin` | the point that lengths are measured from | all sections with a length among their coordinates |
+//! | `coordinates` | `"euler-angles"` (default) or `"tilt-torsion"`: the angles of an orientation, [`OrientationCoordinates`](super::OrientationCoordinates); in the files of families too | the one with `zeta xi psi` |
 //!
 //! Every key may be left out. `opm decompose` prints the resulting frames.
 //!
@@ -48,8 +49,8 @@
 //! `mode`, `branch`, and the imaginary joints of the legs (`tau.leg1`). An unknown key is a
 //! problem, and its message suggests the nearest known key.
 
+mod change;
 pub(crate) mod checks;
-#[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod hint;
 #[cfg(feature = "files")]
@@ -66,7 +67,9 @@ pub(crate) mod schema;
 mod units;
 mod writer;
 
+pub use change::text;
 pub(crate) use checks::LARGEST;
+pub(super) use hint::nearest;
 pub use problem::{FileErrors, Location, Locations, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 pub(super) use writer::quoted;

@@ -17,9 +17,43 @@ pub struct TaskHints {
     pub lower: FrameHints,
     /// The upper section's frame.
     pub upper: FrameHints,
+    /// The angles that an orientation is written with.
+    pub coordinates: OrientationCoordinates,
     /// Home values of task coordinates by name, metres or radians; the others follow from the
     /// geometry.
     pub home: Vec<(String, f64)>,
+}
+
+/// The angles with which the orientation of a spherical section is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+pub enum OrientationCoordinates {
+    /// Euler angles: `zeta xi psi` with `R = Rz(zeta) Ry(xi) Rz(psi)`.
+    #[default]
+    EulerAngles,
+    /// Tilt and torsion: `azimuth tilt torsion` with `R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)` (I. A. Bonev,
+    /// *Geometric analysis of parallel mechanisms*, 2002). The third direction is tilted towards the azimuth, and a
+    /// torsion of zero is a tilt alone, whichever way.
+    TiltTorsion,
+}
+
+impl OrientationCoordinates {
+    /// Both, with their names in files and options.
+    pub const NAMED: [(&'static str, Self); 2] =
+        [("euler-angles", Self::EulerAngles), ("tilt-torsion", Self::TiltTorsion)];
+
+    /// The name in files and options.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::EulerAngles => "euler-angles",
+            Self::TiltTorsion => "tilt-torsion",
+        }
+    }
+
+    /// The choice with a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMED.into_iter().find(|(known, _)| *known == name).map(|(_, choice)| choice)
+    }
 }
 
 /// Hints for the frame of one section, in base coordinates.
@@ -55,6 +89,8 @@ impl TaskHints {
 pub enum TaskKey {
     /// `axis`: [`TaskHints::axis`].
     Axis,
+    /// `coordinates`: [`TaskHints::coordinates`].
+    Coordinates,
     /// `axis` of a section: [`FrameHints::axis`].
     AxisOf(Section),
     /// `x` of a section: [`FrameHints::x`].
@@ -68,10 +104,11 @@ pub enum TaskKey {
 }
 
 impl TaskKey {
-    /// The last part of the key: `x`, `w`, `normal`, `origin`, or `axis`.
+    /// The last part of the key: `x`, `w`, `normal`, `origin`, `axis`, or `coordinates`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Axis | Self::AxisOf(_) => "axis",
+            Self::Coordinates => "coordinates",
             Self::X(_) => "x",
             Self::W(_) => "w",
             Self::Normal(_) => "normal",
@@ -84,7 +121,7 @@ impl fmt::Display for TaskKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.name();
         match self {
-            Self::Axis => f.write_str(name),
+            Self::Axis | Self::Coordinates => f.write_str(name),
             Self::AxisOf(section)
             | Self::X(section)
             | Self::W(section)

@@ -2,6 +2,8 @@
 
 use crate::group::{MotionType, Subspace, SubspaceKind};
 use crate::numeric::Quantity;
+use crate::numeric::angle::near;
+use std::f64::consts::PI;
 
 /// What a task coordinate measures; the table in the docs of [`task`](crate::task) says which subspaces
 /// have it.
@@ -30,6 +32,13 @@ pub enum CoordinateKind {
     Xi,
     /// `psi`: the third Euler angle, about the third direction.
     Psi,
+    /// `azimuth`: the direction towards which the third direction is tilted, from the first direction towards the second;
+    /// it has no meaning at a tilt of zero.
+    Azimuth,
+    /// `tilt`: the angle of the third direction with that at a tilt of zero; singular where its sine is zero.
+    Tilt,
+    /// `torsion`: the rotation about the third direction that a tilt alone would not make.
+    Torsion,
     /// `mu`: the first tilt of the axis of the intersection motion, about the first direction.
     Mu,
     /// `nu`: its second tilt, about the second direction; singular where its cosine is zero.
@@ -38,7 +47,7 @@ pub enum CoordinateKind {
 
 impl CoordinateKind {
     /// Every kind.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::X,
         Self::Y,
         Self::Z,
@@ -49,6 +58,9 @@ impl CoordinateKind {
         Self::Zeta,
         Self::Xi,
         Self::Psi,
+        Self::Azimuth,
+        Self::Tilt,
+        Self::Torsion,
         Self::Mu,
         Self::Nu,
     ];
@@ -66,6 +78,9 @@ impl CoordinateKind {
             Self::Zeta => "zeta",
             Self::Xi => "xi",
             Self::Psi => "psi",
+            Self::Azimuth => "azimuth",
+            Self::Tilt => "tilt",
+            Self::Torsion => "torsion",
             Self::Mu => "mu",
             Self::Nu => "nu",
         }
@@ -80,9 +95,16 @@ impl CoordinateKind {
     pub const fn quantity(self) -> Quantity {
         match self {
             Self::X | Self::Y | Self::Z | Self::H | Self::W => Quantity::Length,
-            Self::Theta | Self::Phi | Self::Zeta | Self::Xi | Self::Psi | Self::Mu | Self::Nu => {
-                Quantity::Angle
-            }
+            Self::Theta
+            | Self::Phi
+            | Self::Zeta
+            | Self::Xi
+            | Self::Psi
+            | Self::Azimuth
+            | Self::Tilt
+            | Self::Torsion
+            | Self::Mu
+            | Self::Nu => Quantity::Angle,
         }
     }
 }
@@ -173,6 +195,21 @@ pub(super) fn of_height(
     let kind = if taken { CoordinateKind::H } else { CoordinateKind::Z };
     let in_plane = coordinates.iter().filter(|c| c.quantity == Quantity::Length).count();
     (in_plane, TaskCoordinate::new(kind, frame.home().z))
+}
+
+/// Replaces Euler angles, with their values at home, by tilt and torsion; the tilt at home is in [0, π].
+pub(super) fn write_tilt_and_torsion(of_section: &mut [TaskCoordinate]) {
+    let [zeta, xi, psi] = [0, 1, 2].map(|i: usize| of_section[i].home);
+    let reduced = near(xi, 0.0);
+    let (azimuth, tilt) =
+        if reduced < 0.0 { (near(zeta + PI, 0.0), -reduced) } else { (zeta, reduced) };
+    // Rz(π) Ry(-tilt) Rz(-π) = Ry(tilt): the torsion is the same.
+    let home = [
+        (CoordinateKind::Azimuth, azimuth),
+        (CoordinateKind::Tilt, tilt),
+        (CoordinateKind::Torsion, zeta + psi),
+    ];
+    of_section.clone_from_slice(&listed(home));
 }
 
 fn listed<const N: usize>(coordinates: [(CoordinateKind, f64); N]) -> Vec<TaskCoordinate> {

@@ -4,6 +4,7 @@ use crate::group::{
     CylindricalDisplacement, Displacement, IdentityDisplacement, MotionType, PlanarDisplacement,
     SubspaceKind,
 };
+use crate::mechanism::OrientationCoordinates;
 use crate::numeric::angle::sin_cos;
 use nalgebra::{Complex, Matrix3, Vector3};
 
@@ -13,6 +14,28 @@ pub(crate) struct Form {
     pub kind: SubspaceKind,
     /// `None` where the two subspaces share the identity alone.
     pub shared: Option<MotionType>,
+    /// The angles of its orientation, if it has one.
+    pub angles: OrientationCoordinates,
+}
+
+impl OrientationCoordinates {
+    /// The Euler angles `zeta xi psi` for three angles of this kind. It is linear.
+    #[inline(always)]
+    pub(crate) fn to_euler(self, [first, second, third]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::EulerAngles => [first, second, third],
+            Self::TiltTorsion => [first, second, third - first],
+        }
+    }
+
+    /// Three angles of this kind for the Euler angles.
+    #[inline(always)]
+    pub(crate) fn of_euler(self, [zeta, xi, psi]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::EulerAngles => [zeta, xi, psi],
+            Self::TiltTorsion => [zeta, xi, zeta + psi],
+        }
+    }
 }
 
 /// The values of a section's coordinates, and those at home; zeros beyond the last.
@@ -31,7 +54,7 @@ pub(crate) fn lower_angles(form: Form, values: SectionValues) -> Option<[f64; 3]
     match (form.kind, form.shared) {
         (SubspaceKind::Planar, Some(MotionType::Translation) | None) => Some([q(2), 0.0, 0.0]),
         (SubspaceKind::Spherical, Some(_)) => Some([q(0), q(1), 0.0]),
-        (SubspaceKind::Spherical, None) => Some(at),
+        (SubspaceKind::Spherical, None) => Some(form.angles.to_euler(at)),
         (SubspaceKind::Planar, Some(MotionType::Rotation))
         | (
             SubspaceKind::Identity
@@ -51,7 +74,7 @@ pub(crate) fn upper_angles(form: Form, values: SectionValues) -> Option<[f64; 3]
     match (form.kind, form.shared) {
         (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => Some([q(2), 0.0, 0.0]),
         (SubspaceKind::Planar, Some(MotionType::Translation)) => Some([q(1), 0.0, 0.0]),
-        (SubspaceKind::Spherical, _) => Some(at),
+        (SubspaceKind::Spherical, _) => Some(form.angles.to_euler(at)),
         (
             SubspaceKind::Identity
             | SubspaceKind::Cylindrical

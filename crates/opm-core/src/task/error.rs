@@ -164,6 +164,8 @@ pub enum FrameProblem {
     },
     /// The hint orients the intersection motion, and the two subspaces share none.
     NoIntersection,
+    /// The hint chooses the angles of an orientation, and the pose has none.
+    NoOrientation,
     /// The hint is perpendicular to the line whose sense it chooses.
     Perpendicular {
         /// The direction given.
@@ -200,6 +202,9 @@ impl fmt::Display for FrameProblem {
             Self::NoIntersection => f.write_str(
                 "orients the motion that the two subspaces share, but these share none, expected `axis` of \
                  `lower` or `upper`",
+            ),
+            Self::NoOrientation => f.write_str(
+                "is tilt-torsion, but this mechanism's pose has no Euler angles that tilt and torsion could replace",
             ),
             Self::Perpendicular { given, line } => {
                 let (given, along) = (triple(given), triple(line));

@@ -1,13 +1,15 @@
 //! The coordinates of the pose from the two displacements of `g = v · b`.
 
-use super::Task;
+use super::{CoordinateKind, Task};
 use crate::group::{
     CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement, MotionType,
     PlanarMotion, SpatialMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
 };
+use crate::mechanism::OrientationCoordinates;
 use crate::numeric::Quantity;
 use crate::numeric::angle::{atan2, near, sin_cos};
 use nalgebra::{Complex, Matrix3, Vector3};
+use std::f64::consts::PI;
 
 /// The sine of an angle between two axes that counts as zero: the rounding of a rotation.
 const POLE: f64 = 1e-13;
@@ -16,7 +18,8 @@ impl Task {
     /// The coordinates of `v · b`, however the displacement along the intersection motion is distributed
     /// between `v` and `b`. Angles are within π of home, except those of a cylinder, which count revolutions.
     /// Of the two triples of Euler angles of a rotation it is the one nearer to home; where they are singular,
-    /// `zeta` and `psi` are changed from home by equal amounts. `rise` is the height above home, metres; zero where there
+    /// `zeta` and `psi` are changed from home by equal amounts. Of tilt and torsion, the tilt is in [0, π]; where it is 0 or
+    /// π, the azimuth is that at home. `rise` is the height above home, metres; zero where there
     /// is no Schoenflies section.
     ///
     /// # Panics
@@ -64,7 +67,7 @@ impl Task {
                 }
             }
             Displacement::Spherical(r) if self.shared().is_none() => {
-                pose.extend(self.euler_angles(&r, [home(0), home(1), home(2)]));
+                pose.extend(self.angles(&r, [home(0), home(1), home(2)]));
             }
             Displacement::Spherical(r) => {
                 let [mu, nu] = tilt_angles(&r.column(2).into_owned());
@@ -90,7 +93,7 @@ impl Task {
                 home(2) + g.rotation.arg(),
             ]),
             Displacement::Spherical(r) => {
-                pose.extend(self.euler_angles(&r, [home(0), home(1), home(2)]));
+                pose.extend(self.angles(&r, [home(0), home(1), home(2)]));
             }
             Displacement::Cylindrical(g) if translation => pose.push(home(0) + g.angle),
             Displacement::Cylindrical(g) => {
@@ -126,11 +129,26 @@ impl Task {
         }
     }
 
-    /// The Euler angles of a displacement of a sphere from home, the triple nearest to the values at home.
-    fn euler_angles(&self, r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
-        match &self.home_orientation_inverse {
-            Some(inverse) => euler_angles(&(r * inverse.transpose()), home),
-            None => euler_angles(r, home),
+    /// The angles of a displacement of a sphere from home, those nearest to the values at home.
+    fn angles(&self, r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
+        let orientation = match &self.home_orientation_inverse {
+            Some(inverse) => r * inverse.transpose(),
+            None => *r,
+        };
+        match self.angles {
+            OrientationCoordinates::EulerAngles => euler_angles(&orientation, home),
+            OrientationCoordinates::TiltTorsion => tilt_and_torsion(&orientation, home),
+        }
+    }
+
+    /// Replaces a negative tilt by the opposite azimuth.
+    pub(crate) fn make_tilt_positive(&self, pose: &mut [f64]) {
+        let tilt = self.coordinates.iter().position(|c| c.kind() == CoordinateKind::Tilt);
+        let Some(tilt) = tilt else { return };
+        let reduced = near(pose[tilt], 0.0);
+        pose[tilt] = reduced.abs();
+        if reduced < 0.0 {
+            pose[tilt - 1] = near(pose[tilt - 1] + PI, self.coordinates[tilt - 1].home);
         }
     }
 
@@ -192,24 +210,46 @@ pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
     [(-axis.y).atan2(axis.z), axis.x.atan2(axis.y.hypot(axis.z))]
 }
 
-/// The angles `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`: of all triples, the one nearest to `home`.
-fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
-    let sine = (r[(0, 2)] * r[(0, 2)] + r[(1, 2)] * r[(1, 2)]).sqrt();
-    if sine < POLE {
-        // Only zeta ± psi is known.
-        let (up, xi) = if r[(2, 2)] > 0.0 { (1.0, 0.0) } else { (-1.0, std::f64::consts::PI) };
-        let sum = near(atan2(up * r[(1, 0)], up * r[(0, 0)]), home[0] + up * home[2]);
-        let extra = 0.5 * (sum - home[0] - up * home[2]);
-        return [home[0] + extra, xi, home[2] + up * extra];
-    }
+/// The angles `zeta xi psi` of a rotation, where this is the sine of `xi`, which is not zero.
+fn with_sine(r: &Matrix3<f64>, sine: f64) -> [f64; 3] {
     let zeta = atan2(r[(1, 2)], r[(0, 2)]);
     // Near the singularity the error of zeta is the rounding over the sine, but zeta ± psi is accurate: psi
     // is computed from what this zeta leaves of the rotation.
     let (sin, cos) = sin_cos(zeta);
     let psi = atan2(cos * r[(1, 0)] - sin * r[(0, 0)], cos * r[(1, 1)] - sin * r[(0, 1)]);
-    let plain = [zeta, atan2(sine, r[(2, 2)]), psi];
-    let half = std::f64::consts::PI;
-    let other = [plain[0] + half, -plain[1], plain[2] + half];
+    [zeta, atan2(sine, r[(2, 2)]), psi]
+}
+
+/// The angles `azimuth tilt torsion` with `Rz(azimuth) Ry(tilt) Rz(torsion - azimuth) = r`, the tilt in [0, π]. Where
+/// that is 0 or π, the azimuth is that at home.
+fn tilt_and_torsion(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
+    let sine = (r[(0, 2)] * r[(0, 2)] + r[(1, 2)] * r[(1, 2)]).sqrt();
+    let angles = if sine >= POLE {
+        with_sine(r, sine)
+    } else {
+        let (tilt, azimuth) = (if r[(2, 2)] > 0.0 { 0.0 } else { PI }, home[0]);
+        // What this azimuth leaves of the rotation: Ry(tilt) Rz(psi), of which the second column is (-sin psi, cos psi, 0)
+        // but for the sign of the first component.
+        let (sin, cos) = sin_cos(azimuth);
+        let psi = atan2(cos * r[(1, 0)] - sin * r[(0, 0)], cos * r[(1, 1)] - sin * r[(0, 1)]);
+        [azimuth, tilt, psi]
+    };
+    let [azimuth, tilt, torsion] = OrientationCoordinates::TiltTorsion.of_euler(angles);
+    [near(azimuth, home[0]), tilt, near(torsion, home[2])]
+}
+
+/// The angles `zeta xi psi` with `Rz(zeta) Ry(xi) Rz(psi) = r`: of all triples, the one nearest to `home`.
+fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
+    let sine = (r[(0, 2)] * r[(0, 2)] + r[(1, 2)] * r[(1, 2)]).sqrt();
+    if sine < POLE {
+        // Only zeta ± psi is known.
+        let (up, xi) = if r[(2, 2)] > 0.0 { (1.0, 0.0) } else { (-1.0, PI) };
+        let sum = near(atan2(up * r[(1, 0)], up * r[(0, 0)]), home[0] + up * home[2]);
+        let extra = 0.5 * (sum - home[0] - up * home[2]);
+        return [home[0] + extra, xi, home[2] + up * extra];
+    }
+    let plain = with_sine(r, sine);
+    let other = [plain[0] + PI, -plain[1], plain[2] + PI];
     let placed =
         |angles: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| near(angles[i], home[i])) };
     let distance = |angles: &[f64; 3]| -> f64 {

@@ -530,9 +530,10 @@ impl Manipulator {
         for (section, component, column) in of(Section::Lower).chain(of(Section::Upper)) {
             let (mut lower, mut upper) = (LocalTwist::zeros(), LocalTwist::zeros());
             let mut along = 0.0;
+            let rates = task.screw_rates(section, LocalTwist::ith(component, 1.0));
             match section {
-                Section::Lower => lower = v.adjoint_of_inverse(&v_screws.moved[component]),
-                Section::Upper => upper = b_screws.moved[component],
+                Section::Lower => lower = v.adjoint_of_inverse(&v_screws.twist(&rates)),
+                Section::Upper => upper = b_screws.twist(&rates),
             }
             // A rate along the intersection motion may belong to either section. It is moved to the section
             // that has a component for it.

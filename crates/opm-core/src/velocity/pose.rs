@@ -3,16 +3,27 @@
 //! Both displacements are products of exponentials of their coordinates, relative to home, in the order of
 //! the table in [`crate::task`]: `(x, y, theta)` are two translations and a rotation, `(zeta, xi, psi)` are
 //! rotations about z, y and z, and `(mu, nu)` are rotations about x and y. [`Screws`] gives their
-//! derivatives.
+//! derivatives. Tilt and torsion are no such displacements, but Euler angles are linear in them.
 
 use super::screws::Screws;
 use crate::group::{
     CylindricalMotion, IntersectionMotion, LocalTwist, PlanarMotion, SphericalMotion, SubspaceKind,
 };
+use crate::mechanism::leg::Section;
 use crate::numeric::angle::unit;
 use crate::task::Task;
 
 impl Task {
+    /// The rates of a section's screws for those of its coordinates other than a height, or the accelerations.
+    #[inline]
+    pub(crate) fn screw_rates(&self, section: Section, rates: LocalTwist) -> LocalTwist {
+        if self.euler_section() == Some(section) {
+            self.angles.to_euler(rates.into()).into()
+        } else {
+            rates
+        }
+    }
+
     /// The screws of the coordinates of `v` at a pose, in the frame of the lower section.
     pub(crate) fn lower_screws(&self, pose: &[f64]) -> Screws {
         let q = |i: usize| pose[i] - self.coordinates[i].home;

@@ -4,7 +4,7 @@ use crate::kind::{PosePart, WorkspaceKind};
 use crate::names::{INVERSE_CONDITION, TIP};
 use crate::text::count;
 use opm_core::manipulator::FollowingCoordinate;
-use opm_workspace::GridError;
+use opm_workspace::{GridError, InscribedError, InscribedShape};
 use std::path::PathBuf;
 
 /// An option of a request. Every front end spells it in its own way: `--kind`, or `kind=`.
@@ -31,6 +31,10 @@ pub enum RequestOption {
     Color,
     /// The file of a recording.
     Output,
+    /// What rejects poses.
+    Explain,
+    /// The largest disc, ball or box.
+    Inscribed,
 }
 
 impl RequestOption {
@@ -47,6 +51,8 @@ impl RequestOption {
             Self::Scalars => "scalars",
             Self::Color => "color",
             Self::Output => "path",
+            Self::Explain => "explain",
+            Self::Inscribed => "inscribed",
         }
     }
 }
@@ -80,6 +86,27 @@ pub enum SetPart {
 #[error("{}: {}", self.option().name(), self.problem(RequestOption::name))]
 #[non_exhaustive]
 pub enum RequestError {
+    /// Several working modes count, of which each rejects poses for reasons of its own.
+    ExplainModes,
+    /// The kind has no poses of both sections to explain.
+    ExplainKind {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// The points are on no grid.
+    NoSet {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
+    /// The set does not suit the shape that is to be inscribed.
+    Inscribed(InscribedError),
+    /// A disc or a ball in coordinates of different units.
+    Round {
+        /// The shape.
+        shape: InscribedShape,
+        /// The names of the coordinates.
+        coordinates: Vec<String>,
+    },
     /// The limit on the condition number is below one, or not a number.
     MaxCondition(f64),
     /// The characteristic length is out of range.
@@ -234,6 +261,10 @@ impl RequestError {
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
+            Self::ExplainModes | Self::ExplainKind { .. } => RequestOption::Explain,
+            Self::NoSet { .. } | Self::Inscribed(_) | Self::Round { .. } => {
+                RequestOption::Inscribed
+            }
             Self::NoImaginaryJoints { .. }
             | Self::OneSubspace { .. }
             | Self::NoPart { .. }
@@ -259,6 +290,22 @@ impl RequestError {
             Self::Length(length) => {
                 format!("{length:?} m, expected a positive length, 1e-75 to 1e75 m")
             }
+            Self::ExplainModes => {
+                format!("needs one working mode, and {} is any", spell(RequestOption::Mode))
+            }
+            Self::ExplainKind { kind } => {
+                format!("is of poses, and {} {kind} has none", spell(RequestOption::Kind))
+            }
+            Self::NoSet { kind } => format!(
+                "needs points on a grid, and those of {} {kind} are on none",
+                spell(RequestOption::Kind)
+            ),
+            Self::Inscribed(error) => error.to_string(),
+            Self::Round { shape, coordinates } => format!(
+                "a {} needs coordinates of one unit, and {} are lengths and angles; a box does not",
+                shape.name(),
+                coordinates.join(", ")
+            ),
             Self::UnusedLength => format!(
                 "no condition number uses it; {}, {} or {} {INVERSE_CONDITION} \
                  asks for one",

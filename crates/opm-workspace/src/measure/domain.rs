@@ -377,6 +377,8 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
         // In a domain of the lower section the values of the imaginary joints follow its coordinates.
         None => Kind::Imaginary(cuts[number - lower].clone()),
         Some(CoordinateKind::Xi) => Kind::Tilt { shift: 0.0, weight: "sin xi" },
+        // The Euler angles are linear in tilt and torsion, with a determinant of one.
+        Some(CoordinateKind::Tilt) => Kind::Tilt { shift: 0.0, weight: "sin tilt" },
         Some(CoordinateKind::Nu) => Kind::Tilt {
             shift: FRAC_PI_2 - home,
             weight: if home == 0.0 { "cos nu" } else { "cos(nu - home)" },
@@ -391,6 +393,8 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
             | CoordinateKind::Phi
             | CoordinateKind::Zeta
             | CoordinateKind::Psi
+            | CoordinateKind::Azimuth
+            | CoordinateKind::Torsion
             | CoordinateKind::Mu,
         ) => Kind::Plain,
     };

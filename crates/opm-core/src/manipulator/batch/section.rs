@@ -12,6 +12,7 @@ use crate::group::{
     SubspaceKind, TranslationalMotion, TranslationalPlane, TranslationalSpace,
 };
 use crate::manipulator::ImaginaryJoint;
+use crate::mechanism::OrientationCoordinates;
 use crate::mechanism::leg::Section;
 use crate::numeric::angle::sin_cos_reduced;
 use crate::task::{
@@ -104,8 +105,11 @@ pub fn displace(
     let lanes = lanes.min(LANES);
     // With a constant form, the loop has no branches.
     macro_rules! each {
-        ($kind:ident, $shared:expr) => {{
-            let form = Form { kind: SubspaceKind::$kind, shared: $shared };
+        ($kind:ident, $shared:expr) => {
+            each!($kind, $shared, OrientationCoordinates::EulerAngles)
+        };
+        ($kind:ident, $shared:expr, $angles:expr) => {{
+            let form = Form { kind: SubspaceKind::$kind, shared: $shared, angles: $angles };
             for lane in 0..lanes {
                 let values = SectionValues { at: poses.at(lane), home };
                 let angles = match section {
@@ -126,14 +130,21 @@ pub fn displace(
         }};
     }
     use MotionType::{Rotation, Translation};
-    let Form { kind, shared } = task.form(section);
+    use OrientationCoordinates::{EulerAngles, TiltTorsion};
+    let Form { kind, shared, angles } = task.form(section);
     match (kind, shared) {
         (SubspaceKind::Identity, _) => {}
         (SubspaceKind::Planar, Some(Rotation)) => each!(Planar, Some(Rotation)),
         (SubspaceKind::Planar, Some(Translation)) => each!(Planar, Some(Translation)),
         (SubspaceKind::Planar, None) => each!(Planar, None),
-        (SubspaceKind::Spherical, Some(_)) => each!(Spherical, Some(Rotation)),
-        (SubspaceKind::Spherical, None) => each!(Spherical, None),
+        (SubspaceKind::Spherical, Some(_)) => match angles {
+            EulerAngles => each!(Spherical, Some(Rotation)),
+            TiltTorsion => each!(Spherical, Some(Rotation), TiltTorsion),
+        },
+        (SubspaceKind::Spherical, None) => match angles {
+            EulerAngles => each!(Spherical, None),
+            TiltTorsion => each!(Spherical, None, TiltTorsion),
+        },
         (SubspaceKind::Cylindrical, Some(Rotation)) => each!(Cylindrical, Some(Rotation)),
         (SubspaceKind::Cylindrical, Some(Translation)) => each!(Cylindrical, Some(Translation)),
         (SubspaceKind::Cylindrical, None) => each!(Cylindrical, None),

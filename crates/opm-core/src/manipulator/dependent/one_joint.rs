@@ -122,8 +122,9 @@ impl OneJoint {
                 pose[self.all[0]] = near(of_displacement(&displacement, home)[0], home(0));
             }
             Motion::Axis(s) | Motion::LastAngle(s) => {
-                let [zeta, xi, psi] = [0, 1, 2].map(|i| pose[self.all[i]]);
-                let other = [near(zeta + PI, home(0)), -xi, near(psi + PI, home(2))];
+                let home = task.angles.to_euler([0, 1, 2].map(home));
+                let [zeta, xi, psi] = task.angles.to_euler([0, 1, 2].map(|i| pose[self.all[i]]));
+                let other = [near(zeta + PI, home[0]), -xi, near(psi + PI, home[2])];
                 let off = |[_, xi, psi]: [f64; 3]| {
                     let found = angles(task, &s, xi, sign);
                     found.map_or(f64::INFINITY, |found| near(found[2] - psi, 0.0).abs())
@@ -133,7 +134,7 @@ impl OneJoint {
                 // Near their singularity only the sum of the two angles is known, or their difference.
                 let follows = angles(task, &s, xi, sign).map_or(psi, |found| near(found[2], psi));
                 let rest = if xi.cos() > 0.0 { psi - follows } else { follows - psi };
-                let chosen = [zeta + rest, xi, follows];
+                let chosen = task.angles.of_euler([zeta + rest, xi, follows]);
                 self.all.iter().zip(chosen).for_each(|(&i, angle)| pose[i] = angle);
             }
         }
@@ -167,7 +168,14 @@ impl OneJoint {
         };
         let still = || shifted(subspace.kind.identity());
         let found: [f64; 3] = match self.motion {
-            Motion::None => of_displacement(&still(), home),
+            Motion::None => match still() {
+                // The rotation about the third direction is that of the first Euler angle.
+                Displacement::Spherical(r) => {
+                    let [zeta, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
+                    task.angles.of_euler([zeta + r[(1, 0)].atan2(r[(0, 0)]), xi, psi])
+                }
+                other => of_displacement(&other, home),
+            },
             Motion::Turn(s) => {
                 let rotation = unit(from_home(2)) * still().planar().rotation.conj();
                 let q = if s.x < 0.0 { rotation.conj() } else { rotation };
@@ -188,9 +196,9 @@ impl OneJoint {
                 of_displacement(&at((from_home(given) - start) / rate), home)
             }
             Motion::Third => {
-                for i in [1, 2] {
-                    pose[self.all[i]] = home(i);
-                }
+                let [_, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
+                let angles = task.angles.of_euler([pose[self.all[0]], xi, psi]);
+                self.all.iter().zip(angles).for_each(|(&i, angle)| pose[i] = angle);
                 return Ok(());
             }
             Motion::Axis(s) | Motion::LastAngle(s) => {
@@ -200,7 +208,10 @@ impl OneJoint {
                     Displacement::Spherical(r) => r[(1, 0)].atan2(r[(0, 0)]),
                     _ => 0.0,
                 };
-                found
+                if let Motion::LastAngle(_) = self.motion {
+                    found[0] = pose[self.all[0]];
+                }
+                task.angles.of_euler(found)
             }
         };
         for (&coordinate, value) in self.all.iter().zip(found) {

@@ -2,7 +2,7 @@
 //! are stored. Files are read and written by this list, and parameters are changed by name with it.
 
 use super::Family;
-use crate::mechanism::file::{FileUnits, checks, quoted};
+use crate::mechanism::file::{FileUnits, checks, nearest, quoted};
 use crate::numeric::Quantity;
 use std::fmt::Write;
 
@@ -83,6 +83,16 @@ impl Parameter<'_> {
         match self.target {
             ParameterRef::Limits(..) => name.strip_prefix("limits.") == Some(self.key),
             _ => name == self.key,
+        }
+    }
+
+    /// What it measures.
+    fn quantity(&self) -> Quantity {
+        match self.target {
+            ParameterRef::Number(quantity, _)
+            | ParameterRef::Optional(quantity, _)
+            | ParameterRef::Limits(quantity, _) => quantity,
+            ParameterRef::Point(_) => Quantity::Length,
         }
     }
 
@@ -188,7 +198,7 @@ impl Family {
             let every = every.filter(|p| p.value().is_some() && p.is_called(name));
             match every.map(|p| p.set(value)).collect::<Vec<_>>() {
                 set if set.is_empty() => {
-                    problems.push(format!("`{name}` is not a parameter; {}", known(&groups)));
+                    problems.push(format!("`{name}` is not a parameter; {}", meant(name, &groups)));
                 }
                 set => {
                     let problem = set.into_iter().find_map(Result::err);
@@ -204,22 +214,44 @@ impl Family {
         if problems.is_empty() { Ok(family) } else { Err(ParameterErrors { problems }) }
     }
 
+    /// What a parameter measures, by its full name or by one without the group; `None` if there is no such parameter.
+    pub fn quantity_of(&self, name: &str) -> Option<Quantity> {
+        let mut family = self.clone();
+        let groups = family.groups();
+        let called = |group: &Group<'_>, parameter: &Parameter<'_>| {
+            let own = name.strip_prefix(group.name.as_str()).and_then(|n| n.strip_prefix('.'));
+            parameter.is_called(name) || own.is_some_and(|own| parameter.is_called(own))
+        };
+        groups.iter().find_map(|group| {
+            let found = group.parameters.iter().find(|parameter| called(group, parameter))?;
+            Some(found.quantity())
+        })
+    }
+
     /// The text of a mechanism file of this family, in metres and radians. Reading it gives the
     /// same parameters to the last bit.
     pub fn write(&self) -> String {
+        self.write_in(FileUnits::SI)
+    }
+
+    /// The same in other units.
+    pub fn write_in(&self, units: FileUnits) -> String {
         let mut family = self.clone();
         let (word, name, mode) = (self.word(), self.name().to_owned(), self.mode());
         let mut text = format!(
-            "format = 1\nname = {}\nunits = {{ length = \"m\", angle = \"rad\" }}\nfamily = \"{word}\"\n",
-            quoted(&name)
+            "format = 1\nname = {}\nunits = {{ length = \"{}\", angle = \"{}\" }}\nfamily = \"{word}\"\n",
+            quoted(&name),
+            units.length.symbol(),
+            units.angle.symbol()
         );
         let mut body = String::new();
         for group in family.groups() {
             let entry = |p: &Parameter<'_>| {
+                let factor = units.factor(p.quantity());
                 let value = match p.value()? {
                     ParameterValue::None => return None,
-                    ParameterValue::Number(value) => format!("{value:?}"),
-                    ParameterValue::Pair([a, b]) => format!("[{a:?}, {b:?}]"),
+                    ParameterValue::Number(value) => format!("{:?}", value / factor),
+                    ParameterValue::Pair([a, b]) => format!("[{:?}, {:?}]", a / factor, b / factor),
                 };
                 Some((matches!(p.target, ParameterRef::Limits(..)), format!("{} = {value}", p.key)))
             };
@@ -255,11 +287,16 @@ impl Family {
     /// Describes why these parameters do not assemble, each problem with the name of its leg, in SI
     /// units.
     pub fn explain(&self, error: &super::AssemblyError) -> ParameterErrors {
+        self.explain_in(error, FileUnits::SI)
+    }
+
+    /// The same in other units.
+    pub fn explain_in(&self, error: &super::AssemblyError, units: FileUnits) -> ParameterErrors {
         let mut family = self.clone();
         let groups = family.groups();
         let legs: Vec<_> = groups.iter().filter(|group| group.table != TableKey::Home).collect();
         let explained = error.problems.iter().map(|problem| {
-            let what = problem.describe(FileUnits::SI);
+            let what = problem.describe(units);
             match problem.leg.and_then(|leg| legs.get(leg)) {
                 Some(leg) => format!("{}: {what}", leg.name),
                 None => what,
@@ -267,6 +304,22 @@ impl Family {
         });
         ParameterErrors { problems: explained.collect() }
     }
+}
+
+/// The name that was probably meant, and the known names.
+fn meant(name: &str, groups: &[Group<'_>]) -> String {
+    let group_of = |group: &&Group<'_>| {
+        name.strip_prefix(group.name.as_str()).is_some_and(|rest| rest.starts_with('.'))
+    };
+    let (prefix, own) = match groups.iter().find(group_of) {
+        Some(group) => name.split_at(group.name.len() + 1),
+        None => ("", name),
+    };
+    let every = groups.iter().filter(|group| prefix.is_empty() || group_of(group));
+    let names = every.flat_map(|group| &group.parameters).filter(|p| p.value().is_some());
+    let nearest = nearest(own, &names.map(Parameter::name).collect::<Vec<_>>());
+    let hint = nearest.map_or_else(String::new, |own| format!("did you mean `{prefix}{own}`? "));
+    hint + &known(groups)
 }
 
 /// Lists the known names, with legs that have the same parameters in one group.

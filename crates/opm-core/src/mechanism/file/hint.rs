@@ -1,18 +1,22 @@
 //! Hints for an unknown word: the known words, and the one that was probably meant.
 
+/// The known word that was probably meant.
+pub(in crate::mechanism) fn nearest<W: AsRef<str>>(found: &str, words: &[W]) -> Option<String> {
+    // Exchanging two letters takes two edits: still a slip in a word of four letters.
+    let allowed = found.chars().count().div_ceil(3).max(1);
+    let distances = words.iter().map(|word| (edits(found, word.as_ref()), word.as_ref()));
+    let (distance, word) = distances.min_by_key(|&(distance, _)| distance)?;
+    (distance <= allowed).then(|| word.to_owned())
+}
+
 /// The text `expected A, B, C`, or `did you mean A? expected one of A, B, C` if one is similar.
+#[cfg(feature = "files")]
 pub fn expected_one_of(found: &str, words: &[&str]) -> String {
     let list = words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     let expected = if words.len() == 1 { "expected" } else { "expected one of" };
-    // Exchanging two letters takes two edits: still a slip in a word of four letters.
-    let allowed = found.chars().count().div_ceil(3).max(1);
-    let nearest =
-        words.iter().map(|word| (edits(found, word), word)).min_by_key(|&(distance, _)| distance);
-    match nearest {
-        Some((distance, word)) if distance <= allowed => {
-            format!("did you mean `{word}`? {expected} {list}")
-        }
-        _ => format!("{expected} {list}"),
+    match nearest(found, words) {
+        Some(word) => format!("did you mean `{word}`? {expected} {list}"),
+        None => format!("{expected} {list}"),
     }
 }
 

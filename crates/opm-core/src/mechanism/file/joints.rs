@@ -5,13 +5,15 @@ use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::{Leg, Section};
-use crate::mechanism::{FrameHints, Mechanism, TaskHints, TaskKey};
+use crate::mechanism::{FrameHints, Mechanism, OrientationCoordinates, TaskHints, TaskKey};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
 
 pub(super) const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "leg"];
 pub(super) const LEG_KEYS: &[&str] = &["name", "joints"];
-pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper"];
+pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates"];
+/// The keys of `[task]` in the file of a family, of which the frames are given.
+pub(super) const FAMILY_TASK_KEYS: &[&str] = &["coordinates"];
 pub(super) const FRAME_KEYS: &[&str] = &["x", "axis", "w", "normal", "origin"];
 pub(super) const TYPES: [(&str, Type); 6] = [
     ("revolute", Type::Revolute),
@@ -145,8 +147,18 @@ fn read_task(task: &Table<'_>, locations: &mut Locations<usize>) -> TaskHints {
         axis: task_direction(task, TaskKey::Axis, locations),
         lower: read_frame(task, Section::Lower, locations),
         upper: read_frame(task, Section::Upper, locations),
+        coordinates: read_angles(task, locations),
         home: Vec::new(),
     }
+}
+
+/// Reads which angles an orientation is written with.
+pub(super) fn read_angles(
+    task: &Table<'_>,
+    locations: &mut Locations<usize>,
+) -> OrientationCoordinates {
+    let value = task_value(task, TaskKey::Coordinates, locations);
+    value.and_then(|value| value.word(&OrientationCoordinates::NAMED)).unwrap_or_default()
 }
 
 fn read_frame(task: &Table<'_>, section: Section, locations: &mut Locations<usize>) -> FrameHints {

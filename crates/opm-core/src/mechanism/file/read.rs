@@ -75,10 +75,14 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
         return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
     };
     let form = family.word(&FORMS)?;
-    root.allow(form.keys);
-    let (family, mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
+    root.allow(&[form.keys, &["task"]].concat());
+    let mut noted = Locations::default();
+    let task = root.get("task").and_then(|value| value.table(joints::FAMILY_TASK_KEYS));
+    let coordinates = task.map(|task| joints::read_angles(&task, &mut noted)).unwrap_or_default();
+    let (family, mut mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
+    mechanism.task.coordinates = coordinates;
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
-    Some((MechanismFile { mechanism, units, mode, family, places }, Locations::default()))
+    Some((MechanismFile { mechanism, units, mode, family, places }, noted))
 }
 
 /// Reads the file's units. Units that are not understood become SI, so that the rest can be

@@ -2,7 +2,7 @@
 
 use super::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
-use crate::mechanism::{Mechanism, TaskHints};
+use crate::mechanism::{Mechanism, OrientationCoordinates, TaskHints};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
@@ -45,6 +45,11 @@ pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String 
     text
 }
 
+/// The table `[task]` of a mechanism, or nothing if there are no hints.
+pub(super) fn task(hints: &TaskHints, units: FileUnits, digits: Digits) -> String {
+    Writer { units, digits }.task(hints)
+}
+
 #[derive(Clone, Copy)]
 struct Writer {
     units: FileUnits,
@@ -71,6 +76,9 @@ impl Writer {
             if !keys.is_empty() {
                 lines.push(format!("{name} = {{ {} }}", keys.join(", ")));
             }
+        }
+        if hints.coordinates != OrientationCoordinates::default() {
+            lines.push(format!("coordinates = {}", quoted(hints.coordinates.name())));
         }
         if lines.is_empty() { String::new() } else { format!("\n[task]\n{}\n", lines.join("\n")) }
     }

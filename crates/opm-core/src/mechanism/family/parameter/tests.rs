@@ -106,7 +106,7 @@ fn every_problem_is_reported_with_its_parameter() {
         .unwrap_err()
         .problems;
     let expected = [
-        "`leg1.hh` is not a parameter; home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, \
+        "`leg1.hh` is not a parameter; did you mean `leg1.h`? home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, \
          a1, a2, alpha1, alpha2, eta, beta, limits.S, limits.phi1, limits.phi2, limits.theta2, \
          limits.theta3; leg4 has base, b1, b2, limits.phi1, limits.phi2",
         "`a1` is 10000000000 m, expected an absolute value of at most 1000000000 m",

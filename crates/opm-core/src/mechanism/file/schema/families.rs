@@ -7,6 +7,7 @@ use super::values::{
 use crate::mechanism::family::{
     FORMS, Family, FamilyForm, Group, Parameter, ParameterRef, TableKey,
 };
+use crate::mechanism::file::joints::FAMILY_TASK_KEYS;
 use crate::mechanism::file::parameters::{keys, limit_keys};
 use serde_json::{Value, json};
 
@@ -136,7 +137,9 @@ fn form_of(family: &FamilyForm) -> Value {
         })
         .collect();
     legs.dedup();
-    form(family.keys, &legs, &narrower)
+    let task = form(FAMILY_TASK_KEYS, &[], &[]);
+    narrower.push(("task", task));
+    form(&[family.keys, &["task"]].concat(), &legs, &narrower)
 }
 
 /// Whether a leg must have the parameter.

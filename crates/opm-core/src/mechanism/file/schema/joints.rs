@@ -4,6 +4,7 @@ use super::Properties;
 use super::values::{
     array, cases, closed, described, direction, exactly, form, name, number, object, point,
 };
+use crate::mechanism::OrientationCoordinates;
 use crate::mechanism::file::joints::{
     FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
 };
@@ -51,8 +52,19 @@ fn task_key(key: &str) -> Value {
         "axis" => direction("the side to which the intersection motion is positive"),
         "lower" => frame("The frame of the lower section, next to the base."),
         "upper" => frame("The frame of the upper section, next to the platform."),
+        "coordinates" => orientation_coordinates(),
         _ => Value::Bool(true),
     }
+}
+
+/// What `coordinates` means.
+fn orientation_coordinates() -> Value {
+    let words = OrientationCoordinates::NAMED.map(|(word, _)| word);
+    json!({
+        "description": "The angles of an orientation: euler-angles (zeta xi psi, the default), or tilt-torsion \
+                        (azimuth tilt torsion, with R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)).",
+        "enum": words,
+    })
 }
 
 fn frame_key(key: &str) -> Value {

@@ -72,7 +72,7 @@ prop_compose! {
     fn task()(
         axis in proptest::option::of(direction()), lower in frame(), upper in frame(),
     ) -> TaskHints {
-        TaskHints { axis: axis.map(Unit::into_inner), lower, upper, home: Vec::new() }
+        TaskHints { axis: axis.map(Unit::into_inner), lower, upper, ..TaskHints::default() }
     }
 }
 

@@ -1,0 +1,119 @@
+//! Tables of several runs: one for each value of `--vary`, or for each working mode.
+
+use crate::args::Output;
+use crate::change::Varied;
+use crate::failure::Failure;
+use crate::load::Loaded;
+use crate::text::{self, Table};
+use opm_core::mechanism::file::FileUnits;
+use serde_json::{Map, Value, json};
+
+/// One result of a run.
+pub struct Cell {
+    /// Its name in JSON, and the header of its column.
+    pub name: &'static str,
+    /// The header, where that says more.
+    pub header: String,
+    pub json: Value,
+    pub text: String,
+}
+
+impl Cell {
+    pub fn new(name: &'static str, json: impl Into<Value>, text: impl Into<String>) -> Self {
+        Self { name, header: name.to_owned(), json: json.into(), text: text.into() }
+    }
+}
+
+/// One run.
+struct Run {
+    json: Value,
+    text: String,
+    /// The results, or why there are none.
+    found: Result<Vec<Cell>, String>,
+}
+
+/// The runs of a command.
+pub struct Runs {
+    /// What distinguishes them, in JSON.
+    key: String,
+    /// The header of its column.
+    header: String,
+    runs: Vec<Run>,
+}
+
+impl Runs {
+    pub fn new(key: &str, header: &str) -> Self {
+        Self { key: key.to_owned(), header: header.to_owned(), runs: Vec::new() }
+    }
+
+    /// Adds a run. A run whose work fails is a row that says why; wrong usage and interruptions end all.
+    pub fn add(
+        &mut self,
+        json: impl Into<Value>,
+        text: impl Into<String>,
+        found: Result<Vec<Cell>, Failure>,
+    ) -> Result<(), Failure> {
+        let found = match found {
+            Ok(cells) => Ok(cells),
+            Err(Failure::Work(problem)) => Err(problem.to_string()),
+            Err(other) => return Err(other),
+        };
+        self.runs.push(Run { json: json.into(), text: text.into(), found });
+        Ok(())
+    }
+
+    /// Prints the table, under a title.
+    pub fn print(&self, output: &Output, title: &str, more: Value) -> Result<(), Failure> {
+        let rows: Vec<Value> = (self.runs.iter())
+            .map(|run| {
+                let mut row = Map::new();
+                row.insert(self.key.clone(), run.json.clone());
+                match &run.found {
+                    Ok(cells) => {
+                        row.extend(cells.iter().map(|c| (c.name.to_owned(), c.json.clone())))
+                    }
+                    Err(problem) => {
+                        row.insert("problem".to_owned(), problem.clone().into());
+                    }
+                }
+                Value::Object(row)
+            })
+            .collect();
+        let mut json = more;
+        json["runs"] = rows.into();
+        let first = self.runs.iter().find_map(|run| run.found.as_ref().ok());
+        let headers = first.into_iter().flatten().map(|cell| format!(">{}", cell.header));
+        let mut table = Table::new([self.header.clone()].into_iter().chain(headers));
+        let mut problems = String::new();
+        for run in &self.runs {
+            let cells = run.found.iter().flatten().map(|cell| cell.text.clone());
+            match &run.found {
+                Ok(_) => table.row([run.text.clone()].into_iter().chain(cells)),
+                Err(problem) => {
+                    table.row([run.text.clone(), "-".to_owned()]);
+                    problems += &format!("{}: {problem}\n", run.text.trim());
+                }
+            }
+        }
+        let problems = if problems.is_empty() { problems } else { format!("\n{problems}") };
+        output.print(&json, format_args!("{title}\n\n{table}{problems}"))
+    }
+}
+
+/// Runs a command for each value of a number of the mechanism file, and prints a table.
+pub fn vary(
+    loaded: &Loaded,
+    varied: &Varied<'_>,
+    output: &Output,
+    mut run: impl FnMut(&Loaded) -> Result<Vec<Cell>, Failure>,
+) -> Result<(), Failure> {
+    let units = loaded.file.units;
+    let mut runs = Runs::new("value", &text::header(varied.name, varied.quantity, units));
+    for &value in &varied.values {
+        // A mechanism that does not assemble is a result.
+        let found = loaded.with(varied.name, value).and_then(|changed| run(&changed));
+        runs.add(value, text::number(value, varied.quantity, units), found)?;
+    }
+    let more = json!({ "vary": varied.name, "units": FileUnits::SI.symbol(varied.quantity) });
+    runs.print(output, &loaded.file.mechanism.name, more)
+}

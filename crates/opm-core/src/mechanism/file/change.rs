@@ -1,0 +1,226 @@
+//! A mechanism file with some of its numbers changed: the parameters of a family, or the values at home and the limits of
+//! the joints of a list.
+
+use super::{Digits, FileUnits, MechanismFile, checks, nearest, write, writer};
+use crate::mechanism::family::{Family, ParameterErrors, ParameterValue};
+use crate::mechanism::joint::JointCoordinate;
+use crate::mechanism::{Mechanism, TaskHints};
+use crate::numeric::Quantity;
+
+impl MechanismFile {
+    /// What a number of the file measures, by the name that [`MechanismFile::with`] takes; `None` if there is no such
+    /// number.
+    pub fn quantity_of(&self, name: &str) -> Option<Quantity> {
+        match &self.family {
+            Some(family) => family.quantity_of(name),
+            None => {
+                let (joint, _) = split(name)?;
+                let mut all = self.mechanism.coordinates();
+                all.find(|c| joint.is_none_or(|joint| joint == c.name)).map(|c| c.quantity)
+            }
+        }
+    }
+
+    /// The same file with some numbers changed, SI.
+    ///
+    /// The names are those of [`Family::parameters`] (see [`Family::with`]). In a list of joints, `S1.limits` are the
+    /// limits of a joint coordinate, and `S1.home` is its value at home; `limits` alone are those of all joints that have
+    /// any.
+    ///
+    /// # Errors
+    /// A name or a value is wrong, or a leg does not reach home.
+    pub fn with<'n>(
+        &self,
+        changes: impl IntoIterator<Item = (&'n str, ParameterValue)>,
+    ) -> Result<Self, ParameterErrors> {
+        let mut file = self.clone();
+        match &self.family {
+            Some(family) => {
+                let family = family.with(changes)?;
+                let mechanism =
+                    family.assemble().map_err(|error| family.explain_in(&error, self.units))?;
+                file.mechanism.legs = mechanism.legs;
+                file.mechanism.platform = mechanism.platform;
+                file.mechanism.task =
+                    TaskHints { coordinates: self.mechanism.task.coordinates, ..mechanism.task };
+                file.mode = Some(family.mode());
+                file.family = Some(family);
+            }
+            None => {
+                let mut problems = Vec::new();
+                for (name, value) in changes {
+                    let problem = change(&mut file.mechanism, name, value).err();
+                    problems.extend(problem.map(|problem| format!("`{name}` {problem}")));
+                }
+                if problems.is_empty() {
+                    let problems_of = |c| excludes_home(c, self.units);
+                    problems.extend(file.mechanism.coordinates().filter_map(problems_of));
+                }
+                if !problems.is_empty() {
+                    return Err(ParameterErrors { problems });
+                }
+            }
+        }
+        Ok(file)
+    }
+
+    /// The text of the file, in its units.
+    pub fn text(&self) -> String {
+        text(&self.mechanism, self.family.as_ref(), self.units)
+    }
+}
+
+/// The text of a mechanism file with these units: the parameters of the mechanism's family, or its joints.
+pub fn text(mechanism: &Mechanism, family: Option<&Family>, units: FileUnits) -> String {
+    match family {
+        Some(family) => {
+            // The frames of a family are given.
+            let coordinates = mechanism.task.coordinates;
+            let hints = TaskHints { coordinates, ..TaskHints::default() };
+            family.write_in(units) + &writer::task(&hints, units, Digits::All)
+        }
+        None => write(mechanism, units, Digits::All),
+    }
+}
+
+/// What is changed of a joint.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Home,
+    Limits,
+}
+
+/// The joint coordinate of a name, or all of them, and what of it the name changes.
+fn split(name: &str) -> Option<(Option<&str>, Part)> {
+    let (joint, part) = match name.rsplit_once('.') {
+        Some((joint, part)) => (Some(joint), part),
+        None => (None, name),
+    };
+    match (joint, part) {
+        (Some(_), "home") => Some((joint, Part::Home)),
+        (_, "limits") => Some((joint, Part::Limits)),
+        _ => None,
+    }
+}
+
+/// Changes a joint of a list, or says what is wrong.
+fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Result<(), String> {
+    let names: Vec<String> = mechanism.coordinates().map(|c| c.name.clone()).collect();
+    let list = || names.join(", ");
+    let Some((joint, part)) = split(name) else {
+        let parts =
+            names.iter().flat_map(|name| [format!("{name}.limits"), format!("{name}.home")]);
+        let hint = nearest(name, &parts.collect::<Vec<_>>());
+        let hint = hint.map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+        return Err(format!(
+            "is not a number of a list of joints; {hint}expected JOINT.limits or JOINT.home, JOINT one of {}",
+            list()
+        ));
+    };
+    let all = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    let all = all.flat_map(|joint| &mut joint.coordinates);
+    let chosen: Vec<&mut JointCoordinate> = match joint {
+        Some(joint) => all.filter(|c| c.name == joint).collect(),
+        None => all.filter(|c| c.limits.is_some()).collect(),
+    };
+    if chosen.is_empty() {
+        let Some(joint) = joint else { return Err("changes nothing: no joint has limits".into()) };
+        let hint = nearest(joint, &names);
+        let hint = hint.map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+        return Err(format!("names no joint {joint}; {hint}expected one of {}", list()));
+    }
+    let size = |value, quantity| checks::size(checks::finite(value)?, quantity, FileUnits::SI);
+    for coordinate in chosen {
+        let quantity = coordinate.quantity;
+        match (part, value) {
+            (Part::Home, ParameterValue::Number(value)) => {
+                coordinate.home = size(value, quantity)?;
+            }
+            (Part::Limits, ParameterValue::None) => coordinate.limits = None,
+            (Part::Limits, ParameterValue::Pair([low, high])) => {
+                let limits = [size(low, quantity)?, size(high, quantity)?];
+                coordinate.limits = Some(checks::ordered(limits, quantity, FileUnits::SI)?);
+            }
+            (Part::Home, _) => return Err("expected a number".into()),
+            (Part::Limits, _) => return Err("expected limits LOWEST:HIGHEST, or none".into()),
+        }
+    }
+    Ok(())
+}
+
+/// The problem of a joint whose limits exclude its value at home.
+fn excludes_home(coordinate: &JointCoordinate, units: FileUnits) -> Option<String> {
+    let [low, high] = coordinate.limits?;
+    let show = |value| units.show(value, coordinate.quantity);
+    (!(low..=high).contains(&coordinate.home)).then(|| {
+        format!(
+            "the limits of {} exclude home: it is {} there, expected it between {} and {}",
+            coordinate.name,
+            show(coordinate.home),
+            show(low),
+            show(high)
+        )
+    })
+}
+
+#[cfg(all(test, feature = "files"))]
+mod tests {
+    use super::*;
+    use crate::mechanism::examples::find;
+    use crate::mechanism::file::read;
+
+    fn example(name: &str) -> MechanismFile {
+        read(find(name).unwrap().text).unwrap()
+    }
+
+    #[test]
+    fn a_written_file_is_read_as_the_same() {
+        for name in ["plano-spherical-5dof", "planar-3rrr", "plano-spherical-5dof-joints"] {
+            let file = example(name);
+            let again = read(&file.text()).unwrap();
+            assert_eq!(again.units, file.units);
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+            for (one, other) in file.mechanism.joints().zip(again.mechanism.joints()) {
+                assert!((one.point - other.point).norm() < 1e-12, "{name}");
+                let pairs = one.coordinates.iter().zip(&other.coordinates);
+                for (one, other) in pairs {
+                    assert!(near(one.home, other.home), "{name}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn limits_and_homes_of_joints_are_changed_by_name() {
+        let file = example("plano-spherical-5dof-joints");
+        let limits = ParameterValue::Pair([-0.5, 0.5]);
+        let changed = file.with([("S1.limits", limits)]).unwrap();
+        let of = |file: &MechanismFile, name: &str| {
+            file.mechanism.coordinates().find(|c| c.name == name).unwrap().clone()
+        };
+        assert_eq!(of(&changed, "S1").limits, Some([-0.5, 0.5]));
+        assert_eq!(of(&changed, "S2"), of(&file, "S2"));
+        let problem = |name: &str, value| file.with([(name, value)]).unwrap_err().to_string();
+        assert!(problem("S7.limits", limits).contains("did you mean `S"));
+        assert!(problem("S1.limit", limits).contains("did you mean `S1.limits`"));
+        assert!(problem("S1.limits", ParameterValue::Pair([5.0, 6.0])).contains("exclude home"));
+        assert!(problem("S1.home", limits).contains("expected a number"));
+    }
+
+    #[test]
+    fn parameters_of_a_family_keep_the_coordinates() {
+        use crate::mechanism::OrientationCoordinates::TiltTorsion;
+        let mut file = example("plano-spherical-5dof");
+        file.mechanism.task.coordinates = TiltTorsion;
+        let changed = file.with([("leg1.h", ParameterValue::Number(0.13))]).unwrap();
+        assert_eq!(changed.mechanism.task.coordinates, TiltTorsion);
+        let again = read(&changed.text()).unwrap();
+        assert_eq!(again.mechanism.task.coordinates, TiltTorsion);
+        assert_eq!(again.family, changed.family);
+        let error = file.with([("leg1.hh", ParameterValue::Number(0.13))]).unwrap_err();
+        assert!(error.to_string().contains("did you mean `leg1.h`"), "{error}");
+        assert_eq!(file.quantity_of("leg1.h"), Some(Quantity::Length));
+        assert_eq!(file.quantity_of("limits.S"), Some(Quantity::Length));
+        assert_eq!(file.quantity_of("leg1.q"), None);
+    }
+}

@@ -1,0 +1,111 @@
+//! The largest disc or ball with a free centre, by an exact Euclidean distance transform.
+
+use super::cells::{Cells, Found};
+
+/// The largest disc or ball, with its centre on the lattice of half steps.
+pub(super) fn largest_ball(cells: &Cells) -> Option<Found> {
+    let dimension = cells.dimension();
+    // One layer has no lattice across it.
+    let counts: [usize; 3] = std::array::from_fn(|axis| match axis < dimension {
+        true => 2 * cells.counts[axis] + 1,
+        false => 1,
+    });
+    let mut squares = outside(cells, counts, dimension);
+    let mut stride = 1;
+    for axis in 0..dimension {
+        let mut line = Line::new(counts[axis], 0.5 * cells.step[axis]);
+        for first in 0..squares.len() {
+            if first / stride % counts[axis] == 0 {
+                line.transform(&mut squares, first, stride);
+            }
+        }
+        stride *= counts[axis];
+    }
+    let mut best = (0.0, 0);
+    for (number, &square) in squares.iter().enumerate() {
+        if square > best.0 {
+            best = (square, number);
+        }
+    }
+    let (square, number) = best;
+    let at = [number % counts[0], number / counts[0] % counts[1], number / counts[0] / counts[1]];
+    let centre = std::array::from_fn(|axis| cells.at(axis, at[axis]));
+    (square > 0.0).then(|| (centre, [square.sqrt(); 3]))
+}
+
+/// Zero at the points of the lattice that touch a cell outside, infinity elsewhere.
+fn outside(cells: &Cells, counts: [usize; 3], dimension: usize) -> Vec<f64> {
+    let mut squares = vec![f64::INFINITY; counts.iter().product()];
+    let number = |[i, j, k]: [usize; 3]| (k * counts[1] + j) * counts[0] + i;
+    let depth = |k: usize| if dimension == 3 { 2 * k..=2 * k + 2 } else { 0..=0 };
+    for [i, j, k] in cells.outside() {
+        for z in depth(k) {
+            for y in 2 * j..=2 * j + 2 {
+                for x in 2 * i..=2 * i + 2 {
+                    squares[number([x, y, z])] = 0.0;
+                }
+            }
+        }
+    }
+    for (number, square) in squares.iter_mut().enumerate() {
+        let at =
+            [number % counts[0], number / counts[0] % counts[1], number / counts[0] / counts[1]];
+        if (0..dimension).any(|axis| at[axis] == 0 || at[axis] + 1 == counts[axis]) {
+            *square = 0.0;
+        }
+    }
+    squares
+}
+
+/// The transform of one line: the lower envelope of the parabolas `f(q) + (h (p - q))²`.
+struct Line {
+    values: Vec<f64>,
+    step: f64,
+    /// The vertices of the parabolas of the envelope.
+    vertices: Vec<usize>,
+    /// Where each of them begins.
+    from: Vec<f64>,
+}
+
+impl Line {
+    fn new(count: usize, step: f64) -> Self {
+        Self { values: vec![0.0; count], step, vertices: Vec::new(), from: Vec::new() }
+    }
+
+    fn transform(&mut self, all: &mut [f64], first: usize, stride: usize) {
+        let Self { values, step, vertices, from } = self;
+        for (p, value) in values.iter_mut().enumerate() {
+            *value = all[first + p * stride];
+        }
+        vertices.clear();
+        from.clear();
+        let square = *step * *step;
+        for q in (0..values.len()).filter(|&q| values[q].is_finite()) {
+            let mut begins = f64::NEG_INFINITY;
+            while let (Some(&last), Some(&start)) = (vertices.last(), from.last()) {
+                // Where the parabola of q comes below that of the last vertex.
+                let (a, b) = (last as f64, q as f64);
+                begins = 0.5 * ((values[q] - values[last]) / (square * (b - a)) + a + b);
+                if begins > start {
+                    break;
+                }
+                vertices.pop();
+                from.pop();
+                begins = f64::NEG_INFINITY;
+            }
+            vertices.push(q);
+            from.push(begins);
+        }
+        if vertices.is_empty() {
+            return;
+        }
+        let mut part = 0;
+        for p in 0..values.len() {
+            while part + 1 < vertices.len() && from[part + 1] < p as f64 {
+                part += 1;
+            }
+            let off = vertices[part].abs_diff(p) as f64;
+            all[first + p * stride] = values[vertices[part]] + square * off * off;
+        }
+    }
+}

@@ -1,0 +1,88 @@
+"""Tilt and torsion, what rejects poses, and the largest disc or box in a workspace."""
+
+import math
+import pickle
+
+import numpy as np
+import opm_kinematics as opm
+import pytest
+
+GRID = {"x": (-0.3, 0.3, 31), "y": (-0.3, 0.3, 31)}
+
+
+def rotation(axis: int, angle: float) -> np.ndarray:
+    """The matrix of a rotation about y (1) or z (2)."""
+    c, s = math.cos(angle), math.sin(angle)
+    if axis == 1:
+        return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+def test_tilt_and_torsion_are_those_of_the_formula() -> None:
+    m = opm.examples.load("plano-spherical-5dof").with_coordinates("tilt-torsion")
+    assert [c.name for c in m.task_coordinates] == ["x", "y", "azimuth", "tilt", "torsion"]
+    azimuth, tilt, torsion = 2.1, 0.4, -0.3
+    pose = [0.01, 0.02, azimuth, tilt, torsion]
+    placed = m.platform_poses([pose])[0]
+    expected = rotation(2, azimuth) @ rotation(1, tilt) @ rotation(2, torsion - azimuth)
+    assert np.allclose(placed[:3, :3], expected, atol=1e-12)
+    assert m == pickle.loads(pickle.dumps(m)) == opm.Manipulator.parse(m.text)
+    longer = m.with_parameters({"leg1.h": 0.13})
+    assert [c.name for c in longer.task_coordinates][2:] == ["azimuth", "tilt", "torsion"]
+    with pytest.raises(opm.OpmError, match='expected "euler-angles" or "tilt-torsion"'):
+        m.with_coordinates("tilt")
+    with pytest.raises(opm.OpmError, match="has no Euler angles"):
+        opm.examples.load("planar-3rrr").with_coordinates("tilt-torsion")
+
+
+def test_rejections_are_those_of_inverse_kinematics() -> None:
+    m = opm.examples.load("plano-spherical-5dof")
+    sweep = opm.sweep(m, **GRID)
+    found = sweep.rejections()
+    x, y = np.meshgrid(*(np.linspace(low, high, n) for low, high, n in GRID.values()), indexing="ij")
+    poses = np.zeros((x.size, 5))
+    poses[:, 0], poses[:, 1] = x.ravel(), y.ravel()
+    solved = m.inverse(poses)
+    rejected = np.count_nonzero(~(solved.reachable & solved.within_limits))
+    assert sweep.poses - sweep.count == rejected
+    assert sum(one.alone for one in found) <= rejected
+    # Where every leg closes, the limits alone reject.
+    limit = 0.3
+    past = {name: np.abs(solved.joints[:, m.joints.index(name)]) > limit for name in ("S1", "S2", "S3")}
+    count = sum(past.values())
+    for name, where in past.items():
+        alone = np.count_nonzero(solved.reachable & where & (count == 1))
+        assert sum(one.alone for one in found if one.joint == name) == alone
+    assert pickle.loads(pickle.dumps(found[0])) == found[0]
+    with pytest.raises(opm.OpmError, match="needs one working mode"):
+        opm.sweep(m, mode="any", **GRID).rejections()
+
+
+def test_the_largest_disc_is_inside_and_no_point_allows_a_larger_one() -> None:
+    m = opm.examples.load("plano-spherical-5dof")
+    sweep = opm.sweep(m, **GRID)
+    disc = sweep.inscribed("disc")
+    assert disc is not None
+    mask = sweep.mask()
+    step = 0.02
+    edges = np.pad(mask, 1)
+    outside = (np.argwhere(~edges) - 1) * step - 0.3
+    radius = disc.radii["x"]
+
+    def clearance(at: np.ndarray) -> float:
+        gaps = np.maximum(np.abs(outside - at) - step / 2, 0)
+        return float(np.sqrt((gaps**2).sum(axis=1)).min())
+
+    centre = np.array([disc.centre["x"], disc.centre["y"]])
+    assert clearance(centre) == pytest.approx(radius, abs=1e-12)
+    inside = np.argwhere(mask) * step - 0.3
+    assert max(map(clearance, inside)) <= radius + 1e-12
+    given = sweep.inscribed("disc", centre={"x": 0.0, "y": 0.0})
+    assert given is not None and given.radii["x"] == pytest.approx(clearance(np.zeros(2)), abs=1e-12)
+    box = sweep.inscribed("box")
+    assert box is not None and box.measure == pytest.approx(4 * box.radii["x"] * box.radii["y"])
+    assert pickle.loads(pickle.dumps(box)) == box
+    with pytest.raises(opm.OpmError, match="varies in three coordinates"):
+        sweep.inscribed("ball")
+    with pytest.raises(opm.OpmError, match="centre is not complete"):
+        sweep.inscribed("disc", centre={"x": 0.0})
