@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::progress::{interruptible, watch_reading};
 use crate::workspace::{Effort, Outcome, Work, advice, grid_flags, points, threads};
+use opm_core::mechanism::file::FileUnits;
 use opm_study::recording::{Attachment, Findings, Shards, StoredShard, WorkspaceRecording};
 use opm_study::{MissingShards, StudyError, Workspace, WorkspaceKind};
 use opm_workspace::{ConditionLimit, Progress};
@@ -98,7 +99,7 @@ fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, 
     if workspace.kind() != WorkspaceKind::Grid {
         command += &format!(" --kind {}", workspace.kind());
     }
-    command += &format!(" {}", grid_flags(workspace.grid()));
+    command += &format!(" {}", grid_flags(workspace.grid(), FileUnits::SI));
     let mode = workspace.mode_name();
     if !mode.is_empty() {
         command += &format!(" --mode {}", quoted(&mode));

@@ -61,7 +61,7 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     }
     let progress = interruptible()?;
     let work = Work { output, pool: &threads(args.threads)?, progress: &progress };
-    let workspace = work.fit(request)?;
+    let workspace = work.fit(request, loaded.file.units)?;
     advice::before(&workspace, output);
     if let (Some(shard), Some(path)) = (args.shard, path) {
         return sweep_shard(&workspace, &loaded, Part { shard, path, force: args.force }, &work);

@@ -1,15 +1,18 @@
 //! Notes and warnings about a workspace: options that may be a mistake, and flags that help.
 
 use crate::args::Output;
+use crate::pose::Number;
 use crate::text::count;
 use opm_core::Quantity;
+use opm_core::mechanism::file::FileUnits;
 use opm_core::numeric::number::readable;
 use opm_study::{Analysis, Workspace, WorkspaceKind};
-use opm_workspace::{Axis, Grid, Sections};
+use opm_workspace::{Axis, Coordinate, Grid, Sections};
 
 /// Prints which grid was fitted, and where the workspace extends beyond it.
-pub fn of_fitted(workspace: &Workspace, output: &Output) {
-    output.note(format_args!("grid fitted to the workspace: {}", grid_flags(workspace.grid())));
+pub fn of_fitted(workspace: &Workspace, units: FileUnits, output: &Output) {
+    let flags = grid_flags(workspace.grid(), units);
+    output.note(format_args!("grid fitted to the workspace: {flags}"));
     for name in workspace.unbounded().unwrap_or_default() {
         output.warn(format_args!(
             "the workspace continues beyond this grid along {name}; limit a joint, or give --grid"
@@ -84,13 +87,24 @@ fn fewer(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
     Some(format!("these are {number} orientations; ask for fewer, for example {flags}"))
 }
 
-/// The flags for a grid, in SI.
-pub fn grid_flags(grid: &Grid) -> String {
-    let flags: Vec<String> = (grid.axes().iter())
-        .map(|Axis { name, min, max, count }| match count {
-            1 => format!("--grid {name}={min}"),
-            _ => format!("--grid {name}={min}:{max}:{count}"),
-        })
-        .collect();
-    flags.join(" ")
+/// The flags for a grid, in these units.
+pub fn grid_flags(grid: &Grid, units: FileUnits) -> String {
+    let flag = |(Axis { name, min, max, count }, c): (&Axis, &Coordinate)| {
+        let end = |value: &f64| in_unit(*value, c.quantity, units);
+        match count {
+            1 => format!("--grid {name}={}", end(min)),
+            _ => format!("--grid {name}={}:{}:{count}", end(min), end(max)),
+        }
+    };
+    grid.axes().iter().zip(grid.coordinates()).map(flag).collect::<Vec<_>>().join(" ")
+}
+
+/// A value as a flag takes it: in these units if few digits are exactly this value, otherwise in SI.
+fn in_unit(value: f64, quantity: Quantity, units: FileUnits) -> String {
+    /// Nanometres, and millionths of degrees.
+    const DIGITS: f64 = 1e6;
+    let rounded = (value / units.factor(quantity) * DIGITS).round() / DIGITS + 0.0;
+    let text = format!("{rounded}{}", units.symbol(quantity));
+    let read = text.parse().ok().and_then(|number: Number| number.value_of("", quantity).ok());
+    if read == Some(value) { text } else { value.to_string() }
 }

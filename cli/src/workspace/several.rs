@@ -45,7 +45,7 @@ pub fn all_modes(args: &WorkspaceArgs, loaded: &Loaded, output: &Output) -> Resu
         true => {
             let mut fitted = whole.clone();
             fitted.conditioning = false;
-            let fitted = work.fit(fitted.check(Arc::clone(&manipulator))?)?;
+            let fitted = work.fit(fitted.check(Arc::clone(&manipulator))?, loaded.file.units)?;
             fitted.grid().axes().to_vec()
         }
     };
@@ -77,7 +77,7 @@ fn cells(
 ) -> Result<Vec<Cell>, Failure> {
     let request = request.check(manipulator)?;
     request.refuse_unused_length()?;
-    let workspace = work.fit(request)?;
+    let workspace = work.fit(request, units)?;
     let (found, _) = work.count(&workspace, Shard::WHOLE)?;
     let analysis = work.analyse(&workspace, found, &workspace.poses())?;
     let (kind, points) = (workspace.kind(), &analysis.count);

@@ -6,6 +6,7 @@ use crate::args::Output;
 use crate::failure::Failure;
 use crate::progress::watch;
 use crate::text::count;
+use opm_core::mechanism::file::FileUnits;
 use opm_study::recording::{
     Findings, ShardCount, ShardFindings, ShardRecording, WorkspaceRecording,
 };
@@ -22,8 +23,8 @@ pub struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Fits a grid if none is given.
-    pub fn fit(&self, request: CheckedRequest) -> Result<Workspace, Failure> {
+    /// Fits a grid if none is given, and notes it in the units of the mechanism file.
+    pub fn fit(&self, request: CheckedRequest, units: FileUnits) -> Result<Workspace, Failure> {
         if request.grid().is_some() {
             return request.fit(self.progress).map_err(StudyError::from).map_err(Failure::from);
         }
@@ -31,7 +32,7 @@ impl Work<'_> {
         let find = || pool.install(|| request.fit(progress));
         let workspace = watch(self.output, "fitting a grid", None, || progress.done(), find)
             .map_err(|Cancelled| Failure::interrupted("interrupted while fitting a grid"))?;
-        advice::of_fitted(&workspace, self.output);
+        advice::of_fitted(&workspace, units, self.output);
         Ok(workspace)
     }
 
