@@ -12,14 +12,14 @@ pub(super) fn largest_ball(cells: &Cells) -> Option<Found> {
     });
     let mut squares = outside(cells, counts, dimension);
     let mut stride = 1;
-    for axis in 0..dimension {
-        let mut line = Line::new(counts[axis], 0.5 * cells.step[axis]);
+    for (count, step) in counts.into_iter().zip(cells.step).take(dimension) {
+        let mut line = Line::new(count, 0.5 * step);
         for first in 0..squares.len() {
-            if first / stride % counts[axis] == 0 {
+            if first / stride % count == 0 {
                 line.transform(&mut squares, first, stride);
             }
         }
-        stride *= counts[axis];
+        stride *= count;
     }
     let mut best = (0.0, 0);
     for (number, &square) in squares.iter().enumerate() {
