@@ -70,7 +70,7 @@ impl Runs {
                 row.insert(self.key.clone(), run.json.clone());
                 match &run.found {
                     Ok(cells) => {
-                        row.extend(cells.iter().map(|c| (c.name.to_owned(), c.json.clone())))
+                        row.extend(cells.iter().map(|c| (c.name.to_owned(), c.json.clone())));
                     }
                     Err(problem) => {
                         row.insert("problem".to_owned(), problem.clone().into());

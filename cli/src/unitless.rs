@@ -72,7 +72,7 @@ fn suspicion(given: &Given<'_>, size: f64, units: FileUnits) -> Option<String> {
     let (other, large) = match quantity {
         Quantity::Length => {
             let times = (value - home).abs() / size;
-            let large = format!("{:.0} times the size of the mechanism", times);
+            let large = format!("{times:.0} times the size of the mechanism");
             ("mm", (times > FAR).then_some(large)?)
         }
         Quantity::Angle => {

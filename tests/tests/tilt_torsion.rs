@@ -3,10 +3,10 @@
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
-use opm_core::Manipulator;
+use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::OrientationCoordinates::TiltTorsion;
 use opm_core::mechanism::{Mechanism, TaskHints, examples, file};
-use opm_core::task::CoordinateKind;
+use opm_core::task::{CoordinateKind, TaskCoordinate};
 use opm_workspace::measure::{CoordinateRange, Domain, Goal, measure};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sections, Sweep, Visits};
 use std::f64::consts::{PI, TAU};
@@ -37,7 +37,7 @@ fn both(name: &str) -> [Manipulator; 2] {
 fn with_orientations() -> Vec<&'static str> {
     let suits = |name: &&str| {
         Manipulator::example(name).is_ok_and(|manipulator| {
-            let kinds = manipulator.task_coordinates().iter().map(|c| c.kind());
+            let kinds = manipulator.task_coordinates().iter().map(TaskCoordinate::kind);
             let euler = [CoordinateKind::Zeta, CoordinateKind::Xi, CoordinateKind::Psi];
             kinds.filter(|kind| euler.contains(kind)).count() == 3
         })
@@ -49,7 +49,7 @@ fn with_orientations() -> Vec<&'static str> {
 
 /// The number of the azimuth, after which the tilt and the torsion come.
 fn first(manipulator: &Manipulator) -> usize {
-    let kinds = manipulator.task_coordinates().iter().map(|c| c.kind());
+    let kinds = manipulator.task_coordinates().iter().map(TaskCoordinate::kind);
     kinds.into_iter().position(|kind| kind == CoordinateKind::Azimuth).unwrap()
 }
 
@@ -155,7 +155,7 @@ fn sweeps_agree_with_inverse_kinematics_pose_by_pose() {
         let mut solution = tilted.solution();
         let expected = (0..grid.poses()).filter(|&number| {
             let found = tilted.inverse(&grid.pose(number), mode, &mut solution).unwrap();
-            found.is_some_and(|found| found.within_limits())
+            found.is_some_and(Solution::within_limits)
         });
         let (found, expected) =
             (sweep.count(&Progress::default()).unwrap().reachable, expected.count() as u64);
@@ -188,7 +188,7 @@ fn twenty_degrees_in_all_directions_without_torsion_are_a_grid() {
             let azimuth = -PI + TAU * turn as f64 / turns as f64;
             let pose = [x, y, azimuth, 20_f64.to_radians(), -azimuth];
             let reached = euler.inverse(&pose, mode, &mut solution).unwrap();
-            reached.is_some_and(|reached| reached.within_limits())
+            reached.is_some_and(Solution::within_limits)
         });
         expected += u64::from(all);
     }
