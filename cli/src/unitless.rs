@@ -10,6 +10,8 @@ use std::f64::consts::TAU;
 
 /// A length so many times as large as the mechanism was probably meant in another unit.
 const FAR: f64 = 10.0;
+/// Numbers from here on are refused by name.
+const ABSURD: f64 = 1e15;
 
 /// A coordinate that a flag gives a value.
 struct Given<'a> {
@@ -68,7 +70,7 @@ fn note(
 /// What is odd about a number without a unit, and what to write.
 fn suspicion(given: &Given<'_>, size: f64, units: FileUnits) -> Option<String> {
     let &Given { name, quantity, home, number } = given;
-    let value = number.without_unit()?;
+    let value = number.without_unit().filter(|value| value.abs() < ABSURD)?;
     let (other, large) = match quantity {
         Quantity::Length => {
             let times = (value - home).abs() / size;

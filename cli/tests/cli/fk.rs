@@ -92,7 +92,7 @@ fn without_a_closed_form_it_says_so() {
     // Newton's method does not converge from there: the work failed.
     let far = opm(&["fk", name, "--joints", "S1=1,S2=0,S3=0,S4=0"]);
     far.fails(1, &[name, "no assembly found from this start"]);
-    let start = opm(&["fk", name, "--joints", "S1=0,S2=0,S3=0,S4=0", "--near", "w=2"]);
+    let start = opm(&["fk", name, "--joints", "S1=0,S2=0,S3=0,S4=0", "--near", "w=2000mm"]);
     start.fails_with_one_line(1, &[name, "the start is out of reach", "leg1: "]);
 }
 

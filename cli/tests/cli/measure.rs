@@ -114,7 +114,7 @@ fn without_ranges_they_are_fitted() {
     let run = opm(&["measure", HELICAL, "--tolerance", "0.1"]);
     assert!(run.text().contains("phi"));
     assert!(run.stderr.contains("measured over --over x="), "{}", run.stderr);
-    let flags: Vec<&str> = run.stderr.lines().next().unwrap().split_whitespace().skip(3).collect();
+    let flags: Vec<&str> = run.stderr.lines().next().unwrap().split_whitespace().skip(4).collect();
     let again = opm(&[&["measure", HELICAL, "--tolerance", "0.1"], &flags[..]].concat());
     let results =
         |text: &str| text.lines().filter(|line| !line.contains("boxes in")).collect::<String>();

@@ -116,6 +116,8 @@ fn the_examples_in_the_help_parse() {
         }
         let help = opm(&[command, "--help"]);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
+        // A backslash continues a line.
+        let examples = examples.replace("\\\n", " ");
         let lines = examples.lines().map(str::trim).take_while(|line| !line.is_empty());
         for line in lines.filter(|line| line.starts_with("opm ")) {
             let line = line.split([';', '|', '>']).next().unwrap();
