@@ -200,14 +200,10 @@ impl Newton<'_> {
                 Quantity::Length => off / m.closure.size,
             };
         };
-        for (leg, compiled) in m.legs.iter().enumerate() {
+        for (leg, solved) in m.legs.iter().zip(&solution.legs) {
             for section in [Section::Lower, Section::Upper] {
-                if !compiled.section(section).driven {
-                    continue;
-                }
-                let coordinates = compiled.section(section).coordinates.iter();
-                let displacements = solution.legs[leg].section(section);
-                for (coordinate, displacement) in coordinates.zip(displacements) {
+                let coordinates = leg.section(section).coordinates.iter();
+                for (coordinate, displacement) in coordinates.zip(solved.section(section)) {
                     let Some(ChainCoordinate { number, actuated: Some(actuated), home, limits }) =
                         coordinate
                     else {
