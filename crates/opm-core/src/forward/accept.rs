@@ -5,10 +5,9 @@ use super::matches::{Match, Matches};
 use super::search::Search;
 use super::{Assemblies, Assembly, Unmet};
 use crate::group::Displacement;
-use crate::manipulator::{Dependent, Manipulator, Mode, Section, Solution, Unreachable};
+use crate::manipulator::{Dependent, Manipulator, Mode, Products, Section, Solution, Unreachable};
 use crate::numeric::Quantity;
 use nalgebra::Isometry3;
-use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
 /// A leg's solution at an assembled pose has the values of the actuated joints to within this, in radians or
@@ -53,13 +52,13 @@ impl Assembly {
 
 impl Manipulator {
     /// Writes the assembly at a pose, where the actuated joints have these displacements from home. The other joints
-    /// are those of a solution there, improved where that does not close to rounding. `tried` is a buffer.
+    /// are those of a solution there, improved where that does not close to rounding.
     pub(super) fn write_assembly(
         &self,
         Place { pose, target, mode }: Place<'_>,
         displacements: &[f64],
         solution: &Solution,
-        tried: &mut Vec<f64>,
+        products: &mut Products,
         out: &mut Assembly,
     ) {
         let write = |to: &mut Vec<f64>, from: &[f64]| {
@@ -82,9 +81,9 @@ impl Manipulator {
             };
             *joint = given + TAU * revolutions;
         }
-        out.residual = self.closure.residual(&out.joints, target);
+        out.residual = self.closure.residual(&out.joints, target, products);
         if out.residual > SETTLED {
-            out.residual = self.closure.settle(&mut out.joints, target, out.residual, tried);
+            out.residual = self.closure.settle(&mut out.joints, target, out.residual, products);
         }
     }
 }
@@ -135,27 +134,22 @@ impl Search<'_> {
         m.task().write_pose(v, b, self.rise, &mut all);
         m.write_independent(&mut all, &mut pose);
         if m.check_pose(&pose).is_ok() {
-            m.arch.dispatch(AssembleAt { search: self, all: &all, pose: &pose });
+            self.assemble_at(&all, &pose);
         }
         self.poses = [all, pose];
     }
 
     /// The same at a pose: all of its coordinates, and the independent ones.
-    #[inline(always)]
     fn assemble_at(&mut self, all: &[f64], pose: &[f64]) {
         let m = self.manipulator;
         let (v, b) = m.task().sections(all);
         let rise = m.task().rise(all);
         let target = m.task().raised(rise, m.task().isometry(&v, &b));
         let mut matches = std::mem::take(&mut self.matches);
-        let mut open = None;
-        for (leg, found) in matches.iter_mut().enumerate() {
+        let open = matches.iter_mut().enumerate().find_map(|(leg, found)| {
             self.match_leg(leg, [&v, &b], rise, found);
-            if found.list.is_empty() {
-                open = Some(found.least);
-                break;
-            }
-        }
+            found.list.is_empty().then_some(found.least)
+        });
         match open {
             Some(error) => self.reject(error),
             None => self.accept_matches(&matches, all, pose, &target),
@@ -165,7 +159,6 @@ impl Search<'_> {
 
     /// Accepts every combination of solutions of the legs at a pose. `all` has all of its coordinates, and `pose` the
     /// independent ones.
-    #[inline(always)]
     fn accept_matches(
         &mut self,
         matches: &[Matches],
@@ -183,9 +176,8 @@ impl Search<'_> {
                 let Match { mode: own, solution, .. } = &list[rest % list.len()];
                 rest /= list.len();
                 mode = mode.with(*own);
-                self.solution.legs[leg] = *solution;
+                m.write_leg(leg, solution, &mut self.solution);
             }
-            m.write_legs(&mut self.solution);
             if m.task().height.is_some() {
                 self.solution.solved.pose.copy_from_slice(all);
                 m.write_lifts(&mut self.solution);
@@ -230,8 +222,8 @@ impl Search<'_> {
         let m = self.manipulator;
         let place = Place { pose, target, mode };
         let mut assembly = Assembly::buffer(m);
-        let (solution, tried) = (&self.solution, &mut self.tried);
-        m.write_assembly(place, self.displacements, solution, tried, &mut assembly);
+        let (solution, products) = (&self.solution, &mut self.products);
+        m.write_assembly(place, self.displacements, solution, products, &mut assembly);
         if assembly.residual > SETTLED && assembly.residual < MATCH {
             // Near a singularity of a section, Newton's method on the whole mechanism restores digits that
             // the sections have lost.
@@ -277,21 +269,5 @@ impl Search<'_> {
         let Assemblies { loose, unmet, .. } = &mut self.out;
         unmet.retain(|unmet| !matches!(unmet, Unmet::Section(section) if loose.contains(section)));
         self.out
-    }
-}
-
-/// [`Search::assemble_at`], with the instructions of the processor at hand.
-struct AssembleAt<'s, 'a, 'p> {
-    search: &'s mut Search<'a>,
-    all: &'p [f64],
-    pose: &'p [f64],
-}
-
-impl WithSimd for AssembleAt<'_, '_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.search.assemble_at(self.all, self.pose);
     }
 }

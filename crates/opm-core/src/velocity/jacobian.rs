@@ -159,14 +159,6 @@ impl Basis {
     }
 }
 
-/// The joints whose rates are asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Rows {
-    All,
-    /// Those of actuated and of locked joints. Other rows have no meaning.
-    Driven,
-}
-
 /// Twists of the lower section after its displacement `v`.
 struct Moved {
     /// The unit twist of the intersection motion.
@@ -256,7 +248,7 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
-        let regular = self.differentiate_joints(at, Rows::All, out);
+        let regular = self.differentiate_joints(at, out);
         self.pose_columns(at, out);
         self.platform_columns(at, out);
         self.independent_columns(out);
@@ -265,13 +257,7 @@ impl Manipulator {
 
     /// Computes the rates of the joints alone, at a pose that is in reach: all but [`Jacobians::pose`] and
     /// [`Jacobians::platform`]. Returns `false` if some joints have no rates.
-    #[inline(always)]
-    pub(crate) fn differentiate_joints(
-        &self,
-        at: &Solution,
-        rows: Rows,
-        out: &mut Jacobians,
-    ) -> bool {
+    pub(crate) fn differentiate_joints(&self, at: &Solution, out: &mut Jacobians) -> bool {
         out.singular.clear();
         out.v = at.solved.v;
         let task = self.task();
@@ -279,14 +265,14 @@ impl Manipulator {
         let lower = out.basis.lower.map(|twist| at.solved.v.adjoint(&twist));
         let moved = Moved { along, lower };
         for number in 0..self.legs.len() {
-            let differential = self.differential_for(rows, at, number);
+            let differential = self.leg_differential(at, number);
             let leg = &self.legs[number];
             if let Some(lean) = &leg.lean {
                 let displacements = at.legs[number].section(lean.section);
                 out.leans[number] = lean.moved_screw(leg, displacements);
             }
             let tau_rates = if self.note_singular(number, &differential, &mut out.singular) {
-                self.leg_rows(number, rows, (&differential, at.legs[number].tau), &moved, out)
+                self.leg_rows(number, &differential, at.legs[number].tau, &moved, out)
             } else {
                 self.clear_rows(number, out);
                 [0.0; 6]
@@ -364,12 +350,12 @@ impl Manipulator {
 
     /// Computes the rows of a leg, and returns the rates along the intersection motion for each component of the section
     /// twist.
-    #[inline(always)]
+    #[inline]
     fn leg_rows(
         &self,
         number: usize,
-        wanted: Rows,
-        (LegDifferential { lower, upper }, tau): (&LegDifferential, JointDisplacement),
+        LegDifferential { lower, upper }: &LegDifferential,
+        tau: JointDisplacement,
         moved: &Moved,
         out: &mut Jacobians,
     ) -> [f64; 6] {
@@ -432,9 +418,6 @@ impl Manipulator {
             };
             for (coordinate, joint) in compiled.coordinates.iter().zip(0..) {
                 let Some(coordinate) = coordinate else { continue };
-                if wanted == Rows::Driven && coordinate.actuated.is_none() {
-                    continue;
-                }
                 let row = coordinate.number;
                 let by_along = if section == leg.split_section {
                     0.0
