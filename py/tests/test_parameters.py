@@ -63,7 +63,7 @@ def test_its_text_and_its_pickle_are_it_to_the_bit(name):
 
 def test_what_cannot_be_is_told(manipulator):
     for changes, message in [
-        ({"leg1.hh": 1.0}, "`leg1.hh` is not a parameter; home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, a1"),
+        ({"leg1.hh": 1.0}, "`leg1.hh` is not a parameter; did you mean `leg1.h`[?] home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, a1"),
         ({"h": -1.0}, "leg1: `h` is -1 m, expected a length of at least 0; leg2"),
         ({"h": float("nan")}, "`h` is NaN, expected a finite number"),
         ({"limits.S": (0.3, -0.3)}, "`limits.S` are reversed: 0.3 m is above -0.3 m"),

@@ -23,7 +23,7 @@ def test_tilt_and_torsion_are_those_of_the_formula() -> None:
     assert [c.name for c in m.task_coordinates] == ["x", "y", "azimuth", "tilt", "torsion"]
     azimuth, tilt, torsion = 2.1, 0.4, -0.3
     pose = [0.01, 0.02, azimuth, tilt, torsion]
-    placed = m.platform_poses([pose])[0]
+    placed = m.transform([pose])[0]
     expected = rotation(2, azimuth) @ rotation(1, tilt) @ rotation(2, torsion - azimuth)
     assert np.allclose(placed[:3, :3], expected, atol=1e-12)
     assert m == pickle.loads(pickle.dumps(m)) == opm.Manipulator.parse(m.text)
@@ -63,7 +63,7 @@ def test_the_largest_disc_is_inside_and_no_point_allows_a_larger_one() -> None:
     sweep = opm.sweep(m, **GRID)
     disc = sweep.inscribed("disc")
     assert disc is not None
-    mask = sweep.mask()
+    mask = sweep.mask().reshape(31, 31)
     step = 0.02
     edges = np.pad(mask, 1)
     outside = (np.argwhere(~edges) - 1) * step - 0.3
