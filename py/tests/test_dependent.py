@@ -57,7 +57,7 @@ def test_a_motion_has_them_with_their_rates():
     m = opm.examples.load("five-bar")
     times = np.linspace(0, 2, 9)
     places = np.column_stack([0.1 * np.sin(3 * times), 0.3 + 0.03 * np.cos(2 * times)])
-    followed = opm.trajectory(m, places, times=times, rate=500)
+    followed = opm.trajectory(m, places, times=times, rate=500, ends="natural")
     assert followed.reachable.all() and followed.dependent.shape == (1001, 1)
     np.testing.assert_allclose(followed.dependent, m.dependent(followed.poses), atol=1e-12)
     for value, rate in (("dependent", "dependent_rates"), ("dependent_rates", "dependent_accelerations")):

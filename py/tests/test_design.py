@@ -112,7 +112,7 @@ def test_both_ways_to_design_improve_on_chance(manipulator):
         low, high = (np.nanmin(solved.imaginary, axis=0), np.nanmax(solved.imaginary, axis=0))
         for column, (below, above) in enumerate(found.imaginary_range.values()):
             assert below - 1e-9 <= low[column] and high[column] <= above + 1e-9
-    with pytest.raises(opm.OpmError, match="`hh` is not a parameter; home has x"):
+    with pytest.raises(opm.OpmError, match="`hh` is not a parameter; did you mean `h`[?] home has x"):
         design.undivided(manipulator, design.Variables({"hh": (0.0, 1.0)}), budget=3, **asked)
 
 

@@ -39,6 +39,8 @@ def objects(manipulator):
         decomposition.legs[0],
         swept,
         swept.boundary()[0],
+        swept.inscribed("disc"),
+        opm.sweep(m, x=(-0.3, 0.3, 61)).rejections()[0],
         opm.sweep(m, x=(-0.1, 0.1, 5)).conditioning(),
         opm.measure(m, over={"x": (-0.1, 0.1), "y": 0.01}),
         followed,
