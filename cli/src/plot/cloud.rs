@@ -15,7 +15,9 @@ pub struct JointCloud {
     /// The kind of the workspace.
     kind: WorkspaceKind,
     joints: Vec<Joint>,
-    /// Joints that are left out for lack of space.
+    /// Whether all of them are values of joints.
+    only_joints: bool,
+    /// Values that are left out for lack of space.
     left_out: usize,
     /// A single joint, or every pair.
     content: Vec<(usize, usize, Content)>,
@@ -48,7 +50,9 @@ impl JointCloud {
                 .map(|(a, b)| (a, b, Content::Cloud(Cloud::new(ranges[a], ranges[b]))))
                 .collect(),
         };
-        Some(Self { kind, left_out: names.len() - joints.len(), joints, content, points: 0 })
+        let only_joints = joints.iter().all(|joint| source.joint_quantity(&joint.field).is_some());
+        let left_out = names.len() - joints.len();
+        Some(Self { kind, only_joints, left_out, joints, content, points: 0 })
     }
 
     /// Adds the points of a message.
@@ -83,17 +87,14 @@ impl JointCloud {
         }
         if self.left_out > 0 {
             let (drawn, all) = (self.joints.len(), self.joints.len() + self.left_out);
-            notes.push(format!("{drawn} of {all} joints are drawn; --values chooses others."));
+            notes.push(format!("{drawn} of {all} values are drawn; --values chooses others."));
         }
         notes
     }
 
-    /// The heading of the values. A set of places has its share of the orientations instead of joints.
+    /// The heading of the values.
     fn values(&self) -> &'static str {
-        match self.kind {
-            WorkspaceKind::Reachable | WorkspaceKind::Dexterous => "Values",
-            _ => "Joint values",
-        }
+        if self.only_joints { "Joint values" } else { "Values" }
     }
 
     /// The finished tiles.

@@ -1,4 +1,4 @@
-//! The picture of a motion: all values over time.
+//! The picture of a motion: all values over time, or over the input of a linkage.
 
 use super::label::value_label;
 use super::options::PanelName;
@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::text::count;
 use opm_core::Quantity;
 use opm_mcap::Flat;
-use opm_mcap::trajectory::VALID;
+use opm_mcap::trajectory::JOINTS_TOPIC;
 use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
 use std::collections::BTreeMap;
 
@@ -37,13 +37,12 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
     }
     let wanted = Wanted::new(args)?;
     let mut motion = Motion::new(source);
+    let mut values = vec![];
     source.messages(|message| {
         let known = TOPICS.iter().position(|topic| topic.name == message.topic);
         if let (Some(topic), Some(flat)) = (known, message.flat) {
-            let mut values = std::mem::take(&mut motion.values);
             message.values(&mut values)?;
             motion.add(topic, flat, message.time, &values);
-            motion.values = values;
         }
         Ok::<(), Stop>(())
     })?;
@@ -118,9 +117,15 @@ fn rows_of(panel: PanelName) -> &'static [Group] {
     }
 }
 
-/// All values over time.
+/// All values over time, or over the input of a linkage.
 struct Motion<'a> {
     source: &'a Source<'a>,
+    /// The name of the joint that moves the linkage.
+    input: Option<String>,
+    /// What the curves are drawn over, the divisor of its SI values, and its range so far.
+    over: Measure,
+    factor: f64,
+    range: [f64; 2],
     /// Time of the first message, in nanoseconds.
     start: u64,
     /// Time of the motion at that message, in seconds.
@@ -129,15 +134,14 @@ struct Motion<'a> {
     traces: Vec<Option<Vec<Trace>>>,
     /// Time of the current messages.
     now: Option<u64>,
-    /// Topics with a message at that time.
-    heard: [bool; TOPICS.len()],
+    /// The values of each topic at that time; none if it has no message there.
+    current: Vec<Option<Vec<f64>>>,
     instants: u64,
     end: u64,
     invalid: Vec<[f64; 2]>,
     valid: bool,
-    /// The values of `/condition` at that time. They are drawn where the mechanism is in reach.
-    measures: Vec<f64>,
-    values: Vec<f64>,
+    /// Whether the mechanism follows at the current time.
+    follows: bool,
 }
 
 impl<'a> Motion<'a> {
@@ -145,19 +149,27 @@ impl<'a> Motion<'a> {
         let run = source.metadata("run");
         let offset =
             run.get("start").and_then(|start| start.parse().ok()).filter(|s: &f64| s.is_finite());
+        let input = source.input();
+        let (over, factor) = match &input {
+            Some((name, quantity)) => source.measure(name, Some(*quantity), Rate::Position),
+            None => (Measure::time(), 1.0),
+        };
         Self {
             source,
+            input: input.map(|(name, _)| name),
+            over,
+            factor,
+            range: [f64::MAX, f64::MIN],
             offset: offset.unwrap_or(0.0),
             start: source.recording.time_range.map_or(0, |range| range[0]),
             traces: TOPICS.iter().map(|_| None).collect(),
             now: None,
-            heard: [false; TOPICS.len()],
+            current: vec![None; TOPICS.len()],
             instants: 0,
             end: 0,
             invalid: vec![],
             valid: true,
-            measures: vec![],
-            values: vec![],
+            follows: true,
         }
     }
 
@@ -172,75 +184,85 @@ impl<'a> Motion<'a> {
             self.instants += 1;
             self.end = time;
         }
-        self.heard[topic] = true;
-        let seconds = self.seconds(time);
-        if TOPICS[topic].kind == TopicKind::Condition {
-            let valid = flat.names.iter().position(|name| name == VALID);
-            self.judge(seconds, valid.is_none_or(|valid| values[valid] != 0.0));
-        }
         let source = self.source;
-        let traces = self.traces[topic].get_or_insert_with(|| traces(source, TOPICS[topic], flat));
-        let values = flat.names.iter().zip(values).filter(|(name, _)| !skipped(topic, name));
-        if TOPICS[topic].kind == TopicKind::Condition {
-            self.measures.clear();
-            self.measures.extend(values.map(|(_, value)| value));
-            return;
+        self.traces[topic].get_or_insert_with(|| traces(source, TOPICS[topic], flat));
+        let values = flat.names.iter().zip(values);
+        let mut drawn = self.current[topic].take().unwrap_or_default();
+        drawn.clear();
+        for (name, value) in values {
+            match skipped(topic, name) {
+                true => self.follows = *value != 0.0,
+                false => drawn.push(*value),
+            }
         }
-        for (trace, (_, value)) in traces.iter_mut().zip(values) {
-            trace.curve.push(seconds, value / trace.factor);
-        }
+        self.current[topic] = Some(drawn);
     }
 
     /// Ends an instant. What had values before and has none now has a gap. So have the measures where
     /// the joints pause: out of reach, `/condition` goes on, but there is no posture to measure.
     fn finish(&mut self) {
         let Some(time) = self.now.take() else { return };
-        let seconds = self.seconds(time);
-        let heard = std::mem::take(&mut self.heard);
+        let place = self.place(self.seconds(time));
+        self.range = [self.range[0].min(place), self.range[1].max(place)];
+        let follows = std::mem::replace(&mut self.follows, true);
+        self.judge(place, follows);
         let of = |kind| (0..TOPICS.len()).filter(move |&n| TOPICS[n].kind == kind);
-        let posture = of(TopicKind::Joints).any(|topic| heard[topic]);
+        let posture = of(TopicKind::Joints).any(|topic| self.current[topic].is_some());
         for (topic, traces) in self.traces.iter_mut().enumerate() {
-            let traces = traces.iter_mut().flatten();
-            match TOPICS[topic].kind {
-                TopicKind::Condition if heard[topic] && posture => {
-                    for (trace, value) in traces.zip(&self.measures) {
-                        trace.curve.push(seconds, value / trace.factor);
-                    }
-                }
-                TopicKind::Condition => {
-                    traces.for_each(|trace| trace.curve.push(seconds, f64::NAN));
-                }
-                _ if heard[topic] => {}
-                _ => traces.for_each(|trace| trace.curve.push(seconds, f64::NAN)),
+            let values = self.current[topic].take();
+            let values = values.filter(|_| TOPICS[topic].kind != TopicKind::Condition || posture);
+            for (number, trace) in traces.iter_mut().flatten().enumerate() {
+                let value = values.as_ref().map_or(f64::NAN, |values| values[number]);
+                trace.curve.push(place, value / trace.factor);
             }
         }
     }
 
-    fn judge(&mut self, seconds: f64, valid: bool) {
+    /// Where the current values are drawn: at this time, or at the value of the input.
+    fn place(&self, seconds: f64) -> f64 {
+        let Some(input) = &self.input else { return seconds };
+        let topics = self.traces.iter().zip(&self.current).zip(TOPICS);
+        let joints = topics.filter(|(_, topic)| topic.name == JOINTS_TOPIC);
+        let values = joints.filter_map(|((traces, values), _)| traces.as_ref().zip(values.as_ref()));
+        let mut named = values.flat_map(|(traces, values)| traces.iter().zip(values));
+        let found = named.find(|(trace, _)| trace.name == *input);
+        found.map_or(f64::NAN, |(_, value)| value / self.factor)
+    }
+
+    /// Extends the span in which the mechanism cannot follow, or begins a new one. An input may go back.
+    fn judge(&mut self, place: f64, valid: bool) {
         match (valid, self.valid, self.invalid.last_mut()) {
-            (false, false, Some(span)) => span[1] = seconds,
-            (false, ..) => self.invalid.push([seconds; 2]),
+            (false, false, Some([low, high])) => {
+                *low = low.min(place);
+                *high = high.max(place);
+            }
+            (false, ..) => self.invalid.push([place; 2]),
             (true, ..) => {}
         }
         self.valid = valid;
     }
 
     fn figure(self, wanted: &Wanted, args: &PlotArgs) -> Result<TimeFigure, Failure> {
-        let seconds = self.seconds(self.end);
-        let heading = self.heading(seconds - self.offset);
-        let Self { source, traces, mut invalid, offset, .. } = self;
-        let all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
+        let heading = self.heading();
+        let Self { source, input, over, range, traces, mut invalid, .. } = self;
+        let mut all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
         check_names(args, &all)?;
+        // Over itself, an input is a straight line.
+        all.retain(|trace| input.as_ref() != Some(&trace.name) || args.values.contains(&trace.name));
         let violations = violations(source);
         let mut notes = listed(&violations, count_of(source, &violations));
         // Violations between samples are marked too, if they are recorded.
         invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
         if !invalid.is_empty() {
-            notes.insert(0, "Shaded: the mechanism cannot follow.".to_owned());
+            let shaded = match input {
+                None => "Shaded: the mechanism cannot follow.",
+                Some(_) => "Shaded: a joint is beyond its limits, in one direction of the input at least.",
+            };
+            notes.insert(0, shaded.to_owned());
         }
         if let Some(thinned) = all.iter().find(|trace| trace.curve.is_thinned()) {
             notes.push(format!(
-                "Each curve is drawn by the extremes of its {} samples in thousands of spans of time.",
+                "Each curve is drawn by the extremes of its {} samples in thousands of spans.",
                 count(thinned.curve.samples())
             ));
         }
@@ -279,14 +301,15 @@ impl<'a> Motion<'a> {
         let notes = [notes, source.notes()].concat();
         Ok(TimeFigure {
             heading: Heading { notes, ..heading },
-            time: [offset, seconds],
+            over,
+            range,
             rows: rows.collect(),
             invalid,
             marks: violations.iter().map(|violation| violation.start).collect(),
         })
     }
 
-    fn heading(&self, seconds: f64) -> Heading {
+    fn heading(&self) -> Heading {
         let run = self.source.metadata("run");
         let mut parts = vec![];
         for (key, label) in
@@ -296,7 +319,14 @@ impl<'a> Motion<'a> {
                 parts.push(format!("{label}{value}"));
             }
         }
-        parts.push(format!("{} samples in {} s", count(self.instants), value_label(seconds)));
+        let samples = count(self.instants);
+        parts.push(match self.input {
+            Some(_) => format!("{samples} positions"),
+            None => {
+                let seconds = value_label(self.seconds(self.end) - self.offset);
+                format!("{samples} samples in {seconds} s")
+            }
+        });
         let lines = vec![format!("{}; {}", parts.join(", "), self.source.units_line())];
         Heading { title: self.source.title(), lines, notes: vec![] }
     }

@@ -18,7 +18,7 @@ use opm_workspace::{Axis, mask_boundary};
 const CHOSEN: u64 = 8;
 /// Share of the colour scale that the slices take: the brightest colours are not used.
 const COLORS: f64 = 0.95;
-/// A value below this share of a grid's largest value counts as zero.
+/// A value below this share of a grid's largest value, or of one metre or radian, counts as zero.
 const ROUNDING: f64 = 1e-12;
 
 /// Slices that are being built.
@@ -35,6 +35,10 @@ pub struct Slices<'a> {
     color: Option<Colored>,
     /// The position of home, if it is in the picture.
     home: Option<[f64; 2]>,
+    /// Whether the tiles were chosen here, and not by --slice.
+    chosen: bool,
+    /// The number of tiles that are left out, because nothing is in them.
+    empty: usize,
 }
 
 struct Colored {
@@ -97,12 +101,25 @@ impl<'a> Slices<'a> {
         // If every place is reached at every orientation, there is nothing to colour.
         let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
         let mut slices =
-            Self { layout, view: view.map(seen), held, varied, tiles: vec![], color, home: None };
+            Self {
+                layout,
+                view: view.map(seen),
+                held,
+                varied,
+                tiles: vec![],
+                color,
+                home: None,
+                chosen: false,
+                empty: 0,
+            };
         let values =
             match (varied, selected.into_iter().find(|(number, _)| Some(*number) == varied)) {
                 (None, _) => vec![0],
                 (_, Some((_, values))) => values,
-                (Some(number), None) => slices.spread(source, number)?,
+                (Some(number), None) => {
+                    slices.chosen = true;
+                    slices.spread(source, number)?
+                }
             };
         let extents = &source.recording.extents;
         let content = |slices: &Self| slices.content(extents);
@@ -265,6 +282,20 @@ impl<'a> Slices<'a> {
         }
     }
 
+    /// Leaves tiles out that hold nothing, unless they were asked for. One stays.
+    pub fn drop_empty(&mut self) {
+        let empty = |content: &Content| match content {
+            Content::Cells(cells, _) => cells.extent().is_none(),
+            Content::Cloud(cloud) => cloud.points() == 0,
+            Content::Histogram(_) => false,
+        };
+        let held = self.tiles.iter().filter(|tile| !empty(&tile.1)).count();
+        if self.chosen && held > 0 {
+            self.empty = self.tiles.len() - held;
+            self.tiles.retain(|tile| !empty(&tile.1));
+        }
+    }
+
     /// The finished tiles.
     pub fn section(mut self, source: &Source<'_>) -> Section {
         let coordinates = &self.layout.coordinates;
@@ -380,14 +411,18 @@ impl<'a> Slices<'a> {
         let coordinates = &self.layout.coordinates;
         if let Some(varied) = self.varied
             && let Some(axis) = &coordinates[varied].axis
-            && (self.tiles.len() as u64) < axis.count
+            && ((self.tiles.len() + self.empty) as u64) < axis.count
         {
             notes.push(format!(
                 "Slices: {} of the {} values of {} on the grid.",
-                self.tiles.len(),
+                self.tiles.len() + self.empty,
                 axis.count,
                 axis.name
             ));
+        }
+        if self.empty > 0 {
+            let slices = if self.empty == 1 { "slice" } else { "slices" };
+            notes.push(format!("Left out: {} {slices} that hold nothing.", self.empty));
         }
         let bounded = |tile: &(u64, Content)| match &tile.1 {
             Content::Cells(cells, _) => self.boundary(cells).is_some(),
@@ -415,10 +450,10 @@ impl<'a> Slices<'a> {
     }
 }
 
-/// A value of the grid; exactly zero if it differs from zero only by the rounding of the ends.
-fn rounded(axis: &Axis, number: u64) -> f64 {
+/// A value of the grid; exactly zero if it differs from zero only by rounding.
+pub fn rounded(axis: &Axis, number: u64) -> f64 {
     let value = axis.value(number);
-    let largest = axis.min.abs().max(axis.max.abs());
+    let largest = axis.min.abs().max(axis.max.abs()).max(1.0);
     if value.abs() <= ROUNDING * largest { 0.0 } else { value }
 }
 

@@ -110,7 +110,9 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
             let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
             let role = find("roles");
             let is = |known: Role| role.as_deref() == Some(known.name());
-            let group = group
+            let driven = source.input().map(|_| Group::Joints);
+            let group = driven
+                .or(group)
                 .or_else(|| is(Role::Actuated).then_some(Group::Actuated))
                 .or_else(|| is(Role::Passive).then_some(Group::Passive));
             (name, quantity, group.unwrap_or(Group::Joints))

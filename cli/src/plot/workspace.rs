@@ -5,7 +5,7 @@ use super::label::value_label;
 use super::layout::Layout;
 use super::options::PanelName;
 use super::sized::drawn;
-use super::slices::Slices;
+use super::slices::{Slices, rounded};
 use super::source::{Rate, Source, Stop};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
@@ -69,7 +69,8 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
 
     let mut heading = heading(source, &layout);
     let mut sections = vec![];
-    if let Some(slices) = slices {
+    if let Some(mut slices) = slices {
+        slices.drop_empty();
         heading.notes.extend(slices.notes());
         sections.push(slices.section(source));
     }
@@ -169,10 +170,12 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
 /// The text of a grid axis in the heading.
 fn range(source: &Source<'_>, quantity: Quantity, axis: &Axis) -> String {
     let (measure, factor) = source.measure(&axis.name, Some(quantity), Rate::Position);
-    let [min, max] = [axis.min, axis.max].map(|value| value_label(value / factor));
+    let [min, max] = [0, axis.count - 1].map(|end| value_label(rounded(axis, end) / factor));
     let symbol = &measure.unit.symbol;
-    match axis.count {
+    let text = match axis.count {
         1 => format!("{} = {min} {symbol}", axis.name),
         count => format!("{} {min} to {max} {symbol} ({count})", axis.name),
-    }
+    };
+    // A line does not break between a name and its range.
+    text.replace(' ', "\u{a0}")
 }

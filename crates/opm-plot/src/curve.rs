@@ -2,6 +2,8 @@
 
 /// The number of points of a curve before it is thinned out.
 const MOST: usize = 32_768;
+/// The most points of a curve that has just been thinned out, so that this is seldom done.
+const THINNED: usize = MOST / 4 * 3;
 /// The number of spans of time of a thinned curve: several for each pixel.
 const SPANS: f64 = 4096.0;
 
@@ -31,7 +33,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Adds a value at a time later than the last one.
+    /// Adds a value at a time, or over another value that may also go back.
     pub fn push(&mut self, time: f64, value: f64) {
         self.samples += 1;
         let value = if value.is_finite() {
@@ -77,10 +79,8 @@ impl Curve {
     }
 
     fn thin_out(&mut self) {
-        let (Some([start, _]), Some([end, _])) = (self.points.first(), self.points.last()) else {
-            return;
-        };
-        let start = *start;
+        let times = self.points.iter().map(|point| point[0]);
+        let (start, end) = (times.clone().fold(f64::MAX, f64::min), times.fold(f64::MIN, f64::max));
         let span = ((end - start) / SPANS).max(self.span.unwrap_or(0.0));
         if span <= 0.0 || !span.is_finite() {
             // All points are at one time: of a vertical line the ends are kept.
@@ -88,9 +88,17 @@ impl Curve {
             self.span = Some(0.0);
             return;
         }
-        let number = |point: &[f64; 2]| ((point[0] - start) / span) as u64;
-        self.points =
-            self.points.chunk_by(|a, b| number(a) == number(b)).flat_map(extremes).collect();
+        let mut span = span;
+        loop {
+            let number = |point: &[f64; 2]| ((point[0] - start) / span) as u64;
+            let spans = self.points.chunk_by(|a, b| number(a) == number(b));
+            self.points = spans.flat_map(extremes).collect();
+            if self.points.len() <= THINNED {
+                break;
+            }
+            // A curve that goes back and forth passes every span several times.
+            span *= 2.0;
+        }
         self.span = Some(span);
     }
 }
@@ -152,6 +160,25 @@ mod tests {
             assert!((a[0] - b[0]).abs() < 0.3 && (a[1] - b[1]).abs() < 0.3, "{pixel} {a:?} {b:?}");
         }
         assert!(curve.points().iter().any(|p| p[0] == 123_457.0), "the spike");
+    }
+
+    /// A curve over a value that goes back and forth: each way is drawn with its own extremes.
+    #[test]
+    fn a_curve_that_goes_back_and_forth_stays_bounded() {
+        let mut curve = Curve::default();
+        let ways = 12;
+        for i in 0..1_200_000 {
+            let (way, along) = (i / 100_000, f64::from(i % 100_000));
+            let place = if way % 2 == 0 { along } else { 99_999.0 - along };
+            curve.push(place, f64::from(way) + 1e-6 * place);
+        }
+        assert!(curve.points().len() < MOST && curve.is_thinned());
+        for way in 0..ways {
+            let on = |p: &&[f64; 2]| p[1].floor() == f64::from(way);
+            let places = curve.points().iter().filter(on).map(|p| p[0]);
+            let ends = places.fold([f64::MAX, f64::MIN], |[a, b], p| [a.min(p), b.max(p)]);
+            assert_eq!(ends, [0.0, 99_999.0], "way {way}");
+        }
     }
 
     #[test]

@@ -33,6 +33,9 @@ static BOLD: LazyLock<Option<FontFace<'static>>> =
 /// The height of capitals above the baseline, as a share of the font's size.
 pub const CAPITALS: f64 = 0.73;
 
+/// The space at which lines are not broken.
+const NO_BREAK: char = '\u{a0}';
+
 impl Face {
     /// The number of font units in the font's size, the same for both fonts.
     pub const UNITS: f64 = 2048.0;
@@ -91,16 +94,22 @@ impl Face {
         String::new()
     }
 
-    /// The text in lines no wider than `room`, which are broken between words.
+    /// The text in lines no wider than `room`, which are broken between words. A no-break space
+    /// breaks only where its line would be too wide by itself, and is drawn as a space.
     pub fn wrap(self, text: &str, size: f64, room: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
-        for word in text.split_whitespace() {
+        let words = text.split([' ', '\n', '\t']).filter(|word| !word.is_empty());
+        for word in words {
+            let whole = word.replace(NO_BREAK, " ");
             match lines.last_mut() {
-                Some(line) if self.width(&format!("{line} {word}"), size) <= room => {
+                Some(line) if self.width(&format!("{line} {whole}"), size) <= room => {
                     line.push(' ');
-                    line.push_str(word);
+                    line.push_str(&whole);
                 }
-                _ => lines.push(self.fit(word, size, room)),
+                _ if self.width(&whole, size) > room && word.contains(NO_BREAK) => {
+                    lines.extend(self.wrap(&whole, size, room));
+                }
+                _ => lines.push(self.fit(&whole, size, room)),
             }
         }
         lines

@@ -17,9 +17,9 @@ const GAP: f64 = 14.0;
 /// The texts of a figure: its title, lines below the title, and notes below the figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heading {
-    /// The title, on one line, which is shortened if it is too long.
+    /// The title, which is wrapped.
     pub title: String,
-    /// The lines below the title, which are wrapped.
+    /// The lines below the title, which are wrapped. Lines are not broken at no-break spaces.
     pub lines: Vec<String>,
     /// The notes below the figure, which are wrapped.
     pub notes: Vec<String>,
@@ -28,8 +28,10 @@ pub struct Heading {
 impl Heading {
     /// The room that the heading takes at the top of a figure of this width, in pixels.
     pub fn top(&self, width: f64) -> f64 {
+        let titles = self.titles(width).len().max(1) as f64;
         let lines = wrapped(&self.lines, LINE, width).len() as f64;
-        MARGIN + TITLE.size + lines * SPACING * LINE.size + GAP
+        let title = TITLE.size + (titles - 1.0) * SPACING * TITLE.size;
+        MARGIN + title + lines * SPACING * LINE.size + GAP
     }
 
     /// The room that the notes take at the bottom of a figure of this width, in pixels.
@@ -42,9 +44,12 @@ impl Heading {
 
     /// The texts as shapes, in a figure of this width. The notes start at the height `end`.
     pub fn draw(&self, width: f64, end: f64) -> Vec<Shape> {
-        let title = TITLE.face.fit(&self.title, TITLE.size, width - 2.0 * MARGIN);
         let mut y = MARGIN + TITLE.size - 2.0;
-        let mut shapes = vec![TITLE.text(title, [MARGIN, y], Anchor::Start)];
+        let mut shapes = Vec::new();
+        for (number, title) in self.titles(width).into_iter().enumerate() {
+            y += if number > 0 { SPACING * TITLE.size } else { 0.0 };
+            shapes.push(TITLE.text(title, [MARGIN, y], Anchor::Start));
+        }
         for line in wrapped(&self.lines, LINE, width) {
             y += SPACING * LINE.size;
             shapes.push(LINE.text(line, [MARGIN, y], Anchor::Start));
@@ -55,6 +60,10 @@ impl Heading {
             shapes.push(NOTE.text(line, [MARGIN, y], Anchor::Start));
         }
         shapes
+    }
+
+    fn titles(&self, width: f64) -> Vec<String> {
+        wrapped(std::slice::from_ref(&self.title), TITLE, width)
     }
 }
 

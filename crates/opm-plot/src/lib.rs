@@ -1,12 +1,12 @@
 //! Figures of curves over time, of points in a plane and of solids in space, as SVG, PNG and PDF.
 //!
 //! A figure is plain data: numbers in the units that they are shown in, and names. [`TimeFigure`] shows curves
-//! over time, [`TileFigure`] shows tiles with cells of a grid, point clouds and histograms, [`ViewFigure`] shows
+//! over time or over another value, [`TileFigure`] shows tiles with cells of a grid, point clouds and histograms, [`ViewFigure`] shows
 //! solids from four sides. Each is laid out as a [`Drawing`], a list of shapes, which is written as SVG, PNG or PDF; all
 //! look the same.
 //!
 //! ```
-//! use opm_plot::{Curve, Heading, Panel, Row, Scale, Steps, TimeFigure, Unit};
+//! use opm_plot::{Curve, Heading, Measure, Panel, Row, Scale, Steps, TimeFigure, Unit};
 //!
 //! let mut curve = Curve::default();
 //! for i in 0..=100 {
@@ -22,7 +22,8 @@
 //! };
 //! let figure = TimeFigure {
 //!     heading: Heading { title: "A motion".into(), ..Heading::default() },
-//!     time: [0.0, 10.0],
+//!     over: Measure::time(),
+//!     range: [0.0, 10.0],
 //!     rows: vec![Row { names: vec!["phi1".into()], panels: vec![Some(panel)] }],
 //!     invalid: vec![],
 //!     marks: vec![],

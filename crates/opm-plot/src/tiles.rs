@@ -103,6 +103,11 @@ pub struct Measure {
 }
 
 impl Measure {
+    /// Time in seconds.
+    pub fn time() -> Self {
+        Self { name: "time".into(), unit: Unit { symbol: "s".into(), ..Unit::none() } }
+    }
+
     /// The measure of an axis without values, if bars lie along the other axis.
     pub fn nothing() -> Self {
         Self { name: String::new(), unit: Unit { resolution: f64::INFINITY, ..Unit::none() } }

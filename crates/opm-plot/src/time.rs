@@ -1,26 +1,28 @@
-//! Figures of curves over time: panels below each other, related ones side by side.
+//! Figures of curves over time, or over another value: panels below each other, related ones side by side.
 
-use crate::axis::{self, Axis, Steps, Unit};
+use crate::axis::{self, Axis, Unit};
 use crate::color::{ALARM, SHADE, line};
 use crate::curve::Curve;
 use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
 use crate::font::{CAPITALS, Face};
 use crate::frame::{BELOW, Frame, NAME, fits, left_of, ticks_in};
 use crate::heading::{Heading, MARGIN};
-use crate::{MOST, TooSmall};
+use crate::{MOST, Measure, TooSmall};
 
-/// A figure of curves over time. The [crate] has an example.
+/// A figure of curves over time, or over another value. The [crate] has an example.
 #[derive(Clone, Debug)]
 pub struct TimeFigure {
     /// The texts above and below.
     pub heading: Heading,
-    /// The first and the last time, seconds.
-    pub time: [f64; 2],
+    /// What the curves are drawn over: its name and unit.
+    pub over: Measure,
+    /// The first and the last time, or the lowest and the highest of the other value.
+    pub range: [f64; 2],
     /// The rows of panels, from top to bottom.
     pub rows: Vec<Row>,
-    /// Spans of time in which the values are not valid, which are shaded.
+    /// Spans in which the values are not valid, which are shaded.
     pub invalid: Vec<[f64; 2]>,
-    /// Times that are marked with their numbers, from 1 on, in ascending order.
+    /// Places that are marked with their numbers, from 1 on, in ascending order.
     pub marks: Vec<f64>,
 }
 
@@ -203,7 +205,7 @@ impl TimeFigure {
     fn panel(&self, panel: &Panel, row: &Row, spot: &Spot) -> Shape {
         let Spot { place, left, ends, first } = *spot;
         let most = (place.width / 50.0) as usize;
-        let x = Axis::linear(widened(self.time), Steps::Decimal, most, fits(place.width));
+        let x = Axis::linear(widened(self.range), self.over.unit.steps, most, fits(place.width));
         let y = panel.axis(place.height);
         let frame = Frame { place, x: &x, y: &y };
         let mut shapes = Vec::new();
@@ -226,7 +228,7 @@ impl TimeFigure {
         shapes.extend(frame.border());
         shapes.push(frame.beside(Some(&y.title(&panel.name, &panel.unit)), left));
         if ends {
-            shapes.push(frame.below(Some(&x.title("time", &seconds()))));
+            shapes.push(frame.below(Some(&x.title(&self.over.name, &self.over.unit))));
         }
         let raised = if first { self.strip() } else { 0.0 };
         let above = Rect { y: place.y - raised, ..place };
@@ -261,11 +263,7 @@ const DECADE: f64 = 10.0;
 /// The room for one more digit than the numbers were measured with.
 const TICK_SLACK: f64 = 7.0;
 
-fn seconds() -> Unit {
-    Unit { symbol: "s".into(), ..Unit::none() }
-}
-
-/// The range of the time axis: a single time gets a second around it.
+/// The range of the horizontal axis: a single value gets one unit around it.
 fn widened([start, end]: [f64; 2]) -> [f64; 2] {
     if end > start { [start, end] } else { [start - 0.5, start + 0.5] }
 }

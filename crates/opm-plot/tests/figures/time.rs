@@ -2,7 +2,7 @@
 
 use crate::picture::decoded;
 use crate::seen::{ROUNDING, across, assert_legible, class, label, named, paths, pieces, text, up};
-use opm_plot::{Curve, Heading, Panel, Row, Scale, Size, Steps, TimeFigure, Unit, png};
+use opm_plot::{Curve, Heading, Measure, Panel, Row, Scale, Size, Steps, TimeFigure, Unit, png};
 use roxmltree::Document;
 
 const SAMPLES: u32 = 201;
@@ -42,7 +42,7 @@ fn figure(rows: Vec<Row>) -> TimeFigure {
         lines: vec!["of curves".into()],
         notes: vec!["made up".into()],
     };
-    TimeFigure { heading, time: [0.0, 10.0], rows, invalid: vec![], marks: vec![] }
+    TimeFigure { heading, over: Measure::time(), range: [0.0, 10.0], rows, invalid: vec![], marks: vec![] }
 }
 
 fn two_rows() -> TimeFigure {
