@@ -203,18 +203,40 @@ pub enum FileKind {
 #[command(override_help = crate::format::TEXT)]
 pub struct FormatArgs {}
 
-/// Print a completion script for a shell
+/// Print a completion script for a shell, or the manual page
 ///
-/// The output is the script itself; --format has no effect.
+/// The output is the script or the page itself; --format has no effect.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm completions bash > ~/.local/share/bash-completion/completions/opm
-  opm completions fish > ~/.config/fish/completions/opm.fish")]
+  opm completions fish > ~/.config/fish/completions/opm.fish
+  opm completions man --directory ~/.local/share/man/man1")]
 pub struct CompletionsArgs {
-    /// The shell
+    /// The shell, or man
     #[arg(value_name = "SHELL", value_enum)]
-    pub shell: clap_complete::Shell,
+    pub shell: Completion,
+    /// Write one manual page for opm and one for each command to this folder, which is created
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub directory: Option<PathBuf>,
+}
+
+/// What `opm completions` prints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Completion {
+    /// For Bash
+    Bash,
+    /// For Elvish
+    Elvish,
+    /// For Fish
+    Fish,
+    /// For PowerShell
+    #[value(name = "powershell")]
+    PowerShell,
+    /// For Zsh
+    Zsh,
+    /// The manual page
+    Man,
 }
 
 #[cfg(test)]

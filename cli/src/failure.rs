@@ -1,10 +1,13 @@
 //! Failures of commands, with their exit status.
 
+use opm_mcap::RecordError;
+use opm_study::recording::partial;
 use opm_study::text::located;
 use opm_study::{RequestError, RequestOption, ShardError, ShardProblem, StudyError};
 use std::error::Error;
 use std::fmt::{self, Display};
 use std::io::{self, ErrorKind, Write as _};
+use std::path::Path;
 
 /// Why a command ends early.
 #[derive(Debug)]
@@ -155,6 +158,14 @@ impl From<StudyError> for Failure {
             }
             StudyError::Shard(error) => error.into(),
             StudyError::Closed => Self::Closed,
+            // What was written before the disk was full, for instance.
+            StudyError::Record { ref place, error: RecordError::Io(_) }
+                if partial(Path::new(place)).is_file() =>
+            {
+                let kept = partial(Path::new(place));
+                let text = format!("{error}; what was written so far is in {}", kept.display());
+                Self::because(text, error)
+            }
             _ => Self::because(error.to_string(), error),
         }
     }

@@ -1,5 +1,6 @@
 //! `opm fk`: forward kinematics.
 
+mod not_found;
 mod poses;
 
 use crate::args::{FkArgs, Output};
@@ -10,7 +11,7 @@ use crate::output::named;
 use crate::pose::Pose;
 use crate::text::{self, Table};
 use crate::unitless;
-use opm_core::forward::{Assemblies, Assembly, NearError, Stop, Unmet};
+use opm_core::forward::{Assemblies, Assembly, NearError, Unmet};
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, Section};
 use opm_core::mechanism::file::FileUnits;
@@ -64,19 +65,16 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
                 manipulator.forward_near(&actuated, &start, mode).map_err(|e| match e {
                     NearError::Joints(error) => wrong(&error),
                     NearError::Start(error) => Failure::flag("--near", error),
-                    NearError::NotFound(not_found) => {
-                        Failure::work(format!("{}: {}", loaded.label, {
-                            match not_found.why {
-                                Stop::OutOfReach(u) if not_found.steps == 0 => format!(
-                                    "the start is out of reach in mode {}: {}: {}",
-                                    shown(&manipulator, mode),
-                                    manipulator.mechanism().legs[u.leg].name,
-                                    reason(&u, loaded.file.units)
-                                ),
-                                _ => not_found.to_string(),
-                            }
-                        }))
-                    }
+                    NearError::NotFound(not_found) => Failure::work(format!(
+                        "{}: {}",
+                        loaded.label,
+                        not_found::explain(
+                            &manipulator,
+                            (&actuated, mode),
+                            &not_found,
+                            loaded.file.units
+                        )
+                    )),
                     error => Failure::because(format!("{}: {error}", loaded.label), error),
                 })?;
             (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)

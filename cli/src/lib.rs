@@ -73,6 +73,6 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),
         Command::Format(_) => format::run(output),
-        Command::Completions(command) => completions::run(command),
+        Command::Completions(command) => completions::run(command, output),
     }
 }

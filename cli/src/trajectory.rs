@@ -19,6 +19,9 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use summary::Report;
 
+/// More samples than anybody wants by accident.
+const MANY: u64 = 10_000_000;
+
 /// Where the samples of a motion go.
 enum Target<'a> {
     Nowhere,
@@ -104,6 +107,10 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     };
     let progress = interruptible()?;
     let samples = trajectory.samples();
+    if samples > MANY {
+        let (rate, samples) = (request.rate, count(samples));
+        output.note(format_args!("{samples} samples at {rate:e} Hz; --rate asks for fewer"));
+    }
     let done = AtomicU64::new(0);
     let go_on = |number| {
         done.store(number, Ordering::Relaxed);

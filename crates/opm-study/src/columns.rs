@@ -207,6 +207,14 @@ pub struct PointColumns {
     pub(crate) scalars_chosen: bool,
 }
 
+/// Stores the value that the colour shows as a number, too, so that pictures of the recording have it.
+fn store_color(axes: &[NamedColumn], scalars: &mut Vec<NamedColumn>, color: Option<NamedColumn>) {
+    let new = |color: &NamedColumn| {
+        !axes.contains(color) && !scalars.contains(color) && !is_field(&color.name)
+    };
+    scalars.extend(color.filter(new));
+}
+
 /// The axis of a cloud that has fewer coordinates.
 fn no_axis() -> NamedColumn {
     NamedColumn::new(NO_AXIS, Column::Zero)
@@ -217,6 +225,7 @@ impl PointColumns {
     pub fn of_poses(choice: PointChoice, grid: &Grid) -> Self {
         let tallest = tallest(grid);
         let axis = |i: usize| NamedColumn::new(&grid.axes()[i].name, Column::Coordinate(i));
+        let asked = choice.color.clone();
         let color = choice.color.unwrap_or_else(|| axis(tallest));
         let several = |number: &usize| grid.axes()[*number].count > 1;
         let varying: Vec<usize> = (0..grid.axes().len()).filter(several).collect();
@@ -236,11 +245,9 @@ impl PointColumns {
             [0, 1, 2].map(|i| order.get(i).map_or_else(no_axis, |&number| axis(number)))
         });
         let scalars_chosen = choice.scalars.is_some();
-        let scalars = choice.scalars.unwrap_or_else(|| {
-            // The value that the colour shows is stored as a number, too.
-            let known = axes.contains(&color) || is_field(&color.name);
-            if known { vec![] } else { vec![color.clone()] }
-        });
+        let mut scalars = choice.scalars.unwrap_or_default();
+        let stored = if scalars_chosen { asked } else { Some(color.clone()) };
+        store_color(&axes, &mut scalars, stored);
         Self { axes, scalars, color, scalars_chosen }
     }
 
@@ -261,24 +268,24 @@ impl PointColumns {
         let axes = choice
             .axes
             .unwrap_or_else(|| [0, 1, 2].map(|i| shown.get(i).cloned().unwrap_or_else(no_axis)));
+        let asked = choice.color.clone();
         let color = choice.color.unwrap_or_else(|| match kind.is_of_places() {
             true => NamedColumn::new(SHARE, Column::Share),
             false => axis(varying.get(2).or(varying.last()).copied().unwrap_or(0)),
         });
         let scalars_chosen = choice.scalars.is_some();
-        let scalars = choice.scalars.unwrap_or_else(|| {
+        let mut scalars = choice.scalars.unwrap_or_else(|| {
             let mut scalars: Vec<NamedColumn> = match kind == WorkspaceKind::Imaginary {
                 // They are stored by name as well, for pictures of more than three joints.
                 true => imaginary().collect(),
                 // Every coordinate of a point is stored.
                 false => varying.iter().map(|&i| axis(i)).filter(|c| !axes.contains(c)).collect(),
             };
-            if !axes.contains(&color) && !scalars.contains(&color) {
-                scalars.push(color.clone());
-            }
             scalars.retain(|named| !is_field(&named.name));
             scalars
         });
+        let stored = if scalars_chosen { asked } else { Some(color.clone()) };
+        store_color(&axes, &mut scalars, stored);
         Self { axes, scalars, color, scalars_chosen }
     }
 
