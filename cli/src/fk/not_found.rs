@@ -36,9 +36,10 @@ pub fn explain(
         Stop::Stalled => "no step from there comes closer".to_owned(),
         Stop::Steps => format!("{} steps did not arrive", not_found.steps),
     };
-    let left = farthest(manipulator, actuated, mode, &not_found.pose).map(|(name, by, quantity)| {
-        format!(", where {name} is {} from its value", units.show(by, quantity))
-    });
+    let left =
+        farthest(manipulator, actuated, mode, &not_found.pose).map(|(name, by, quantity)| {
+            format!(", where {name} is {} from its value", units.show(by, quantity))
+        });
     format!(
         "no assembly found from this start in mode {signs}: {why}{}; start nearer to it (--near), or in \
          another mode (--mode)",

@@ -223,7 +223,8 @@ impl<'a> Motion<'a> {
         let Some(input) = &self.input else { return seconds };
         let topics = self.traces.iter().zip(&self.current).zip(TOPICS);
         let joints = topics.filter(|(_, topic)| topic.name == JOINTS_TOPIC);
-        let values = joints.filter_map(|((traces, values), _)| traces.as_ref().zip(values.as_ref()));
+        let values =
+            joints.filter_map(|((traces, values), _)| traces.as_ref().zip(values.as_ref()));
         let mut named = values.flat_map(|(traces, values)| traces.iter().zip(values));
         let found = named.find(|(trace, _)| trace.name == *input);
         found.map_or(f64::NAN, |(_, value)| value / self.factor)
@@ -248,7 +249,9 @@ impl<'a> Motion<'a> {
         let mut all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
         check_names(args, &all)?;
         // Over itself, an input is a straight line.
-        all.retain(|trace| input.as_ref() != Some(&trace.name) || args.values.contains(&trace.name));
+        all.retain(|trace| {
+            input.as_ref() != Some(&trace.name) || args.values.contains(&trace.name)
+        });
         let violations = violations(source);
         let mut notes = listed(&violations, count_of(source, &violations));
         // Violations between samples are marked too, if they are recorded.
@@ -256,7 +259,9 @@ impl<'a> Motion<'a> {
         if !invalid.is_empty() {
             let shaded = match input {
                 None => "Shaded: the mechanism cannot follow.",
-                Some(_) => "Shaded: a joint is beyond its limits, in one direction of the input at least.",
+                Some(_) => {
+                    "Shaded: a joint is beyond its limits, in one direction of the input at least."
+                }
             };
             notes.insert(0, shaded.to_owned());
         }

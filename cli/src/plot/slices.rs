@@ -100,18 +100,17 @@ impl<'a> Slices<'a> {
         });
         // If every place is reached at every orientation, there is nothing to colour.
         let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
-        let mut slices =
-            Self {
-                layout,
-                view: view.map(seen),
-                held,
-                varied,
-                tiles: vec![],
-                color,
-                home: None,
-                chosen: false,
-                empty: 0,
-            };
+        let mut slices = Self {
+            layout,
+            view: view.map(seen),
+            held,
+            varied,
+            tiles: vec![],
+            color,
+            home: None,
+            chosen: false,
+            empty: 0,
+        };
         let values =
             match (varied, selected.into_iter().find(|(number, _)| Some(*number) == varied)) {
                 (None, _) => vec![0],

@@ -166,12 +166,14 @@ impl<'a> Source<'a> {
     /// The joint that moves a recorded linkage, and its quantity.
     pub fn input(&self) -> Option<(String, Quantity)> {
         let run = self.metadata("run");
-        let name = run.get("input").filter(|_| run.get("command").is_some_and(|c| c == "linkage"))?;
+        let name =
+            run.get("input").filter(|_| run.get("command").is_some_and(|c| c == "linkage"))?;
         let legs = self.mechanism.iter().flat_map(|known| &known.file.mechanism.legs);
         let known = legs.flat_map(|leg| leg.coordinates()).find(|c| c.name == *name);
         let recorded = || {
             let joints = self.metadata("joints");
-            let field = joints.iter().find(|(_, joint)| *joint == name).map_or(name, |found| found.0);
+            let field =
+                joints.iter().find(|(_, joint)| *joint == name).map_or(name, |found| found.0);
             quantity(self.metadata("quantities").get(field).map(String::as_str))
         };
         known.map(|c| c.quantity).or_else(recorded).map(|quantity| (name.clone(), quantity))

@@ -65,7 +65,7 @@ fn texts<'a>(document: &'a Document<'a>) -> Vec<&'a str> {
     class(document.root(), "text").into_iter().map(label).collect()
 }
 
-/// Read by the numbers at the axes, the curves have the values of the CSV, in degrees.
+/// Read by the numbers at the axes, the curves have the values of the CSV, in degrees, over those of the input.
 #[test]
 fn the_curves_of_a_linkage_are_those_of_its_csv() {
     let folder = Folder::new();
@@ -78,7 +78,15 @@ fn the_curves_of_a_linkage_are_those_of_its_csv() {
     let csv = opm(&["linkage", BENNETT, "--sweep", "--count", "73"]);
     let rows: Vec<Vec<&str>> = csv.text().lines().map(|line| line.split(',').collect()).collect();
     let panels = class(document.root(), "panel");
+    let below: Vec<&str> = class(document.root(), "x-axis").into_iter().map(label).collect();
+    assert_eq!(below, ["a1 (deg)"]);
+    let input = rows[0].iter().position(|name| *name == "a1").unwrap();
     for (column, name) in rows[0].iter().enumerate().take(7) {
+        // Over itself it would be a straight line.
+        if column == input {
+            assert!(class(document.root(), "curve").into_iter().all(|curve| label(curve) != "a1"));
+            continue;
+        }
         let panel = panels[usize::from(*name != "tau.leg1")];
         let (up, across) = (up(panel), across(panels[1]));
         let curve = named(panel, "curve", name);
@@ -88,7 +96,8 @@ fn the_curves_of_a_linkage_are_those_of_its_csv() {
             let value: f64 = row[column].parse().unwrap();
             // A hundredth of a pixel is a tenth of a degree at most here.
             assert!((up(y) - value.to_degrees()).abs() < 0.1, "{name} {i}: {} {value}", up(y));
-            assert!((across(x) - 10.0 * i as f64 / 72.0).abs() < 1e-3, "{name} {i}: {}", across(x));
+            let over: f64 = row[input].parse().unwrap();
+            assert!((across(x) - over.to_degrees()).abs() < 0.1, "{name} {i}: {}", across(x));
         }
     }
 }
@@ -270,6 +279,24 @@ fn what_is_not_stored_can_be_recorded() {
     let (run, svg) = plot(&folder, &file, &["--quiet"]);
     assert_eq!(run.stderr, "");
     assert_legible(&svg);
+}
+
+/// The value of the colour is stored with other values, and colours the slices.
+#[test]
+fn a_recorded_colour_is_drawn_with_other_values() {
+    let folder = Folder::new();
+    let file = folder.arg("colour.mcap");
+    let grid = ["--grid", "x=-20mm:20mm:5", "--grid", "y=-20mm:20mm:5", "--grid", "xi=0:0.2:3"];
+    let values = ["--scalars", "theta11", "--color", "inverse_condition"];
+    opm(&[&["workspace", PLANO, "-o", &file, "-q"], &grid[..], &values].concat()).text();
+    let (_, svg) = plot(&folder, &file, &["--values", "inverse_condition"]);
+    let document = Document::parse(&svg).unwrap();
+    assert!(texts(&document).contains(&"Values in reachable poses: inverse_condition"));
+    let bars: Vec<&str> = class(document.root(), "bar").into_iter().map(label).collect();
+    assert!(bars.contains(&"inverse_condition"), "{bars:?}");
+    let (_, svg) = plot(&folder, &file, &["--values", "theta11"]);
+    let document = Document::parse(&svg).unwrap();
+    assert!(texts(&document).contains(&"Joint values in reachable poses: theta11"));
 }
 
 #[test]
@@ -621,4 +648,41 @@ fn points_of_an_unknown_mechanism_are_drawn_as_they_are() {
     let (_, svg) = plot(&folder, &file, &["--values", "a,c,s"]);
     let document = Document::parse(&svg).unwrap();
     assert_eq!(titles(&document), ["c over a", "poses over s"]);
+}
+
+/// Between slices that hold points, those that hold nothing are left out, unless --slice asks for them.
+#[test]
+fn slices_that_hold_nothing_are_left_out() {
+    let folder = Folder::new();
+    let file = folder.arg("gap.mcap");
+    let grid = [("grid.a", "0:4:5"), ("grid.b", "0:4:5"), ("grid.c", "0:6:7")];
+    let workspace = Workspace {
+        layout: CloudLayout {
+            axes: ["a", "b", "c"].map(String::from),
+            scalars: vec![],
+            color: "c".into(),
+            color_range: [0.0, 1.0],
+            frame_id: "f".into(),
+        },
+        mechanism_name: "nonsense.toml",
+        mechanism: b"nonsense",
+        run: grid.map(|(name, range)| (name.to_owned(), range.to_owned())).into(),
+        points: 15,
+        slices: 1,
+    };
+    let rows: Vec<f64> =
+        (0..15).flat_map(|i| [i % 5, i % 3, [1, 2, 5][i / 5]].map(|v| v as f64)).collect();
+    let mut recorder = WorkspaceRecorder::create(file.as_ref(), &workspace).unwrap();
+    recorder.overview(&rows).unwrap();
+    recorder.push(0, &rows).unwrap();
+    recorder.finish(&Metadata::new()).unwrap();
+    let drawn = |args: &[&str]| {
+        let (_, svg) = plot(&folder, &file, args);
+        let document = Document::parse(&svg).unwrap();
+        let titles = titles(&document).into_iter().map(str::to_owned).collect::<Vec<_>>();
+        (titles, svg.contains("Left out: 2 slices that hold nothing."))
+    };
+    let named = |values: &[i32]| values.iter().map(|c| format!("c = {c} ")).collect::<Vec<_>>();
+    assert_eq!(drawn(&[]), (named(&[1, 2, 5]), true));
+    assert_eq!(drawn(&["--slice", "c=2,c=3"]), (named(&[2, 3]), false));
 }

@@ -64,6 +64,21 @@ fn completions_know_the_subcommands() {
     }
 }
 
+/// There is a page for every command that the help lists.
+#[test]
+fn manual_pages_know_the_subcommands() {
+    let folder = Folder::new();
+    let page = opm(&["completions", "man"]);
+    assert!(page.text().contains(".TH opm 1"), "{}", page.stdout);
+    let pages = folder.arg("man1");
+    opm(&["completions", "man", "--directory", &pages]).text();
+    for command in ["decompose", "fk", "workspace", "completions"] {
+        let page = folder.read(&format!("man1/opm-{command}.1"));
+        assert!(page.contains(&format!(".TH opm-{command} 1")), "{page}");
+    }
+    opm(&["completions", "zsh", "--directory", &pages]).fails(2, &["--directory"]);
+}
+
 #[test]
 fn help_and_version_go_to_standard_output() {
     assert_eq!(opm(&["--version"]).text(), concat!("opm ", env!("CARGO_PKG_VERSION"), "\n"));

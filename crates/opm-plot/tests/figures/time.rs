@@ -42,7 +42,14 @@ fn figure(rows: Vec<Row>) -> TimeFigure {
         lines: vec!["of curves".into()],
         notes: vec!["made up".into()],
     };
-    TimeFigure { heading, over: Measure::time(), range: [0.0, 10.0], rows, invalid: vec![], marks: vec![] }
+    TimeFigure {
+        heading,
+        over: Measure::time(),
+        range: [0.0, 10.0],
+        rows,
+        invalid: vec![],
+        marks: vec![],
+    }
 }
 
 fn two_rows() -> TimeFigure {
