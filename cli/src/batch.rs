@@ -4,9 +4,11 @@ use crate::args::{Format, IkArgs, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose::find;
-use crate::stream::{self, Stop, Stream, Streams};
+use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
+use crate::unitless::Plausible;
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
+use opm_core::task::TaskCoordinate;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -42,7 +44,7 @@ pub fn run(
 ) -> Result<(), Failure> {
     let input = args.poses.as_deref().unwrap_or(Path::new("-"));
     let streams = Streams { input, output: args.output.as_deref() };
-    let solve = |stream: Stream<'_>| solve(stream, manipulator, modes);
+    let solve = |stream: Stream<'_>| solve(stream, (loaded, manipulator), modes);
     let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
     output.note(format_args!(
         "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
@@ -56,16 +58,30 @@ pub fn run(
     if output.format == Format::Json { output.print(&summary, "") } else { Ok(()) }
 }
 
-fn solve(mut stream: Stream<'_>, manipulator: &Manipulator, modes: Modes) -> Result<Summary, Stop> {
+fn solve(
+    mut stream: Stream<'_>,
+    (loaded, manipulator): (&Loaded, &Manipulator),
+    modes: Modes,
+) -> Result<Summary, Stop> {
     let start = Instant::now();
     let coordinates = manipulator.task_coordinates();
-    let columns = stream.columns(coordinates.iter().map(|c| c.name).collect(), |name| {
+    let value = |c: &TaskCoordinate| Wanted {
+        name: c.name,
+        quantity: c.quantity,
+        plausible: Plausible::new(c.quantity, c.home, (loaded, manipulator)),
+    };
+    // The other columns of a table that `opm trajectory` wrote.
+    let others = other_columns(manipulator);
+    let mut columns = stream.columns(coordinates.iter().map(value).collect(), |name| {
+        if others.iter().any(|other| other == name) {
+            return Ok(None);
+        }
         manipulator.refuse_following(name).map_err(|error| error.to_string())?;
         find(name, coordinates).map(Some).map_err(|error| error.to_string())
     })?;
     let mut table = Rows::new(manipulator, columns.timed(), &mut stream.writer)?;
     let mut pose = manipulator.home_pose();
-    stream.each(&columns, &mut pose, |stream, line, time, pose| {
+    stream.each(&mut columns, &mut pose, |stream, line, time, pose| {
         table.time = time;
         let label = stream.label;
         let wrong = |error| stream::at(label, line, error);

@@ -3,10 +3,11 @@
 use crate::args::{MeasureArgs, Output, SectionName};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::pose::GridAxis;
+use crate::pose::{GridAxis, OverAxis};
 use crate::progress::{interruptible, watch, watch_boxes};
 use crate::runs::{self, Cell};
 use crate::text::{self, Table, count, short};
+use crate::unitless;
 use crate::workspace::{modes, threads};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
@@ -41,6 +42,8 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     let modes = modes(&args.mode, &manipulator)?;
     let progress = interruptible()?;
     let pool = threads(args.threads)?;
+    let ends = args.over.iter().flat_map(OverAxis::ends);
+    unitless::note_ranges(output, "--over", (&loaded, &manipulator), ends);
     let domain = domain(args, output, &manipulator, modes, &pool, &progress)?;
     let goal = Goal { tolerance: args.tolerance, budget: args.budget };
     let before = progress.done();

@@ -307,6 +307,20 @@ impl Checks {
     }
 }
 
+impl GridAxis {
+    /// The name of the coordinate with each end of its range.
+    pub fn ends(&self) -> [(&str, Number); 2] {
+        [self.min, self.max].map(|end| (&*self.name, end))
+    }
+}
+
+impl OverAxis {
+    /// The name of the coordinate with each end of its range.
+    pub fn ends(&self) -> [(&str, Number); 2] {
+        [self.min, self.max.unwrap_or(self.min)].map(|end| (&*self.name, end))
+    }
+}
+
 impl FromStr for GridAxis {
     type Err = Misread;
 

@@ -7,7 +7,11 @@ use crate::load::{DASH, Loaded, STANDARD_INPUT};
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::plural;
+use crate::unitless::Plausible;
 use csv::{ErrorKind, WriterBuilder};
+use opm_core::Quantity;
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::{FileUnits, Heading};
 use opm_mcap::{PartialFile, Sink};
 use opm_workspace::Progress;
 use std::fmt::Display;
@@ -52,6 +56,7 @@ pub struct Stream<'a> {
     pub label: &'a str,
     pub lines: Lines<Box<dyn Read + Send>>,
     pub writer: csv::Writer<&'a mut dyn Write>,
+    output: &'a Output,
     /// The number of rows that were read.
     pub rows: &'a AtomicU64,
     progress: &'a Progress,
@@ -62,7 +67,7 @@ impl Stream<'_> {
     /// have.
     pub fn each(
         &mut self,
-        columns: &Columns<'_>,
+        columns: &mut Columns<'_>,
         values: &mut [f64],
         mut take: impl FnMut(&mut Self, u64, Option<f64>, &[f64]) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
@@ -75,6 +80,9 @@ impl Stream<'_> {
             }
             let number = line.number;
             let time = columns.read(line, values, |problem| at(label, number, problem))?;
+            columns.note(values, |problem| {
+                self.output.note(format_args!("{label}:{number}: {problem}"));
+            });
             take(self, number, time, values)?;
             self.rows.fetch_add(1, Ordering::Relaxed);
         }
@@ -85,7 +93,7 @@ impl Stream<'_> {
     /// not read.
     pub fn columns<'n>(
         &mut self,
-        names: Vec<&'n str>,
+        values: Vec<Wanted<'n>>,
         find: impl Fn(&str) -> Result<Option<usize>, String>,
     ) -> Result<Columns<'n>, Failure> {
         let label = self.label;
@@ -94,26 +102,34 @@ impl Stream<'_> {
         let given: Vec<_> =
             header.iter().flat_map(|h| h.fields()).map(String::from_utf8_lossy).collect();
         if given.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let problem = format!("no header, expected one of names: {}", names.join(","));
-            return Err(at(label, number, problem));
+            let names = values.iter().map(|value| value.name).collect::<Vec<_>>().join(",");
+            return Err(at(label, number, format!("no header, expected one of names: {names}")));
         }
         let mut columns = Vec::new();
-        for name in &given {
+        for text in &given {
             let wrong =
-                |error: &dyn Display| at(label, number, format!("column {name:?}: {error}"));
-            let column = match &**name {
-                "t" => Column::Time,
-                name => match find(name).map_err(|error| wrong(&error))? {
+                |error: &dyn Display| at(label, number, format!("column {text:?}: {error}"));
+            let heading = Heading::parse(text);
+            let column = match (heading.name, heading.unit) {
+                ("t", None | Some("s")) => Column::Time,
+                ("t", Some(_)) => return Err(wrong(&"expected t or t [s]")),
+                (name, _) => match find(name).map_err(|error| wrong(&error))? {
                     Some(number) => Column::Value(number),
                     None => Column::Other,
                 },
             };
-            if column != Column::Other && columns.contains(&column) {
+            let units = match column {
+                Column::Value(number) => heading.units(values[number].quantity),
+                Column::Time | Column::Other => Ok(None),
+            };
+            let units = units.map_err(|error| wrong(&error))?;
+            if column != Column::Other && columns.iter().any(|(known, _)| *known == column) {
                 return Err(wrong(&"given twice"));
             }
-            columns.push(column);
+            columns.push((column, units));
         }
-        Ok(Columns { number, columns, names })
+        let noted = vec![false; values.len()];
+        Ok(Columns { number, columns, values, noted })
     }
 }
 
@@ -144,7 +160,7 @@ pub fn run<T>(
     };
     let progress = interruptible()?;
     let rows = AtomicU64::new(0);
-    let source = Source { label: &label, reader, rows: &rows, progress: &progress };
+    let source = Source { label: &label, reader, output, rows: &rows, progress: &progress };
     let Some(path) = target else {
         // There is no progress bar, since the rows may go to the terminal.
         return match solve(source.to(&mut io::stdout().lock())) {
@@ -182,16 +198,17 @@ pub fn run<T>(
 struct Source<'a> {
     label: &'a str,
     reader: Box<dyn Read + Send>,
+    output: &'a Output,
     rows: &'a AtomicU64,
     progress: &'a Progress,
 }
 
 impl<'a> Source<'a> {
     fn to(self, sink: &'a mut dyn Write) -> Stream<'a> {
-        let Self { label, reader, rows, progress } = self;
+        let Self { label, reader, output, rows, progress } = self;
         let writer =
             WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(sink);
-        Stream { label, lines: Lines::new(reader), writer, rows, progress }
+        Stream { label, lines: Lines::new(reader), writer, output, rows, progress }
     }
 }
 
@@ -206,25 +223,50 @@ enum Column {
     Other,
 }
 
+/// A value that a column may have.
+pub struct Wanted<'a> {
+    /// The heading of its column, without a unit.
+    pub name: &'a str,
+    pub quantity: Quantity,
+    /// What says whether a value looks misread.
+    pub plausible: Plausible,
+}
+
 /// The columns of the input.
 pub struct Columns<'a> {
     /// The line of the header.
     pub number: u64,
-    columns: Vec<Column>,
-    /// The names of all values.
-    names: Vec<&'a str>,
+    /// What is in every column, and in which units if its heading names one.
+    columns: Vec<(Column, Option<FileUnits>)>,
+    values: Vec<Wanted<'a>>,
+    /// The values that have been noted to look misread: each is noted once.
+    noted: Vec<bool>,
 }
 
 impl Columns<'_> {
     /// Whether there are times.
     pub fn timed(&self) -> bool {
-        self.columns.contains(&Column::Time)
+        self.columns.iter().any(|(column, _)| *column == Column::Time)
     }
 
     /// The names of the values that have no column.
     pub fn missing(&self) -> Vec<&str> {
-        let has = |number: usize| self.columns.contains(&Column::Value(number));
-        self.names.iter().enumerate().filter(|&(i, _)| !has(i)).map(|(_, name)| *name).collect()
+        let has =
+            |number: usize| self.columns.iter().any(|(column, _)| *column == Column::Value(number));
+        self.values.iter().enumerate().filter(|&(i, _)| !has(i)).map(|(_, v)| v.name).collect()
+    }
+
+    /// Notes values of columns without a unit that look as if they were meant in another one.
+    fn note(&mut self, values: &[f64], say: impl Fn(String)) {
+        for &(column, units) in &self.columns {
+            let (Column::Value(number), None) = (column, units) else { continue };
+            let Wanted { name, plausible, .. } = &self.values[number];
+            if self.noted[number] || plausible.holds(values[number]) {
+                continue;
+            }
+            self.noted[number] = true;
+            say(plausible.column(name, values[number]));
+        }
     }
 
     /// Reads a row into the values that have columns, and returns its time if it has one.
@@ -236,19 +278,19 @@ impl Columns<'_> {
     ) -> Result<Option<f64>, Failure> {
         let name = |column: Column| match column {
             Column::Time => "t",
-            Column::Value(number) => self.names[number],
+            Column::Value(number) => self.values[number].name,
             Column::Other => "...",
         };
         let given = line.fields().count();
         if given != self.columns.len() {
-            let names: Vec<_> = self.columns.iter().map(|&column| name(column)).collect();
+            let names: Vec<_> = self.columns.iter().map(|&(column, _)| name(column)).collect();
             let given = plural(given as u64, "column");
             let (expected, names) = (self.columns.len(), names.join(","));
             return Err(at(format!("{given}, expected {expected}: {names}")));
         }
         let mut time = None;
-        let read = line.fields().zip(&self.columns).filter(|(_, column)| **column != Column::Other);
-        for (field, &column) in read {
+        let read = line.fields().zip(&self.columns).filter(|(_, c)| c.0 != Column::Other);
+        for (field, &(column, units)) in read {
             let wrong = |problem: &str| {
                 let (name, field) = (name(column), String::from_utf8_lossy(field));
                 at(format!("column {name}: {field:?} {problem}"))
@@ -260,12 +302,28 @@ impl Columns<'_> {
             }
             match column {
                 Column::Time => time = Some(number),
-                Column::Value(value) => values[value] = number,
+                Column::Value(value) => {
+                    let units = units.unwrap_or(FileUnits::SI);
+                    values[value] = units.si(number, self.values[value].quantity);
+                }
                 Column::Other => {}
             }
         }
         Ok(time)
     }
+}
+
+/// The names of columns that tables of this program have beside the values that a command reads: joints with their
+/// rates, and what is known of a pose.
+pub fn other_columns(manipulator: &Manipulator) -> Vec<String> {
+    let joints = manipulator.coordinates().iter().map(|c| &*c.name);
+    let imaginary = manipulator.imaginary().iter().map(|joint| &*joint.name);
+    let tasks = manipulator.task_coordinates().iter().chain(manipulator.dependent_coordinates());
+    let names: Vec<&str> = joints.chain(imaginary).collect();
+    let rates = names.iter().copied().chain(tasks.map(|c| c.name));
+    let rates = rates.flat_map(|name| [format!("d.{name}"), format!("dd.{name}")]);
+    let known = ["reachable", "within_limits", "mode", "valid"].map(str::to_owned);
+    names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).collect()
 }
 
 /// The failure for a problem in a line of the input.

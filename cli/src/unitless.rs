@@ -10,15 +10,89 @@ use std::f64::consts::TAU;
 
 /// A length so many times as large as the mechanism was probably meant in another unit.
 const FAR: f64 = 10.0;
+/// The same for the ends of ranges, which may be wide on purpose.
+const WIDE: f64 = 100.0;
 /// Numbers from here on are refused by name.
 const ABSURD: f64 = 1e15;
 
-/// A coordinate that a flag gives a value.
-struct Given<'a> {
-    name: &'a str,
+/// What a value that is not misread looks like: near home in the size of the mechanism, and within a turn.
+#[derive(Clone, Copy)]
+pub struct Plausible {
     quantity: Quantity,
     home: f64,
-    number: Number,
+    size: f64,
+    /// How many times that large a length may be.
+    far: f64,
+    units: FileUnits,
+}
+
+impl Plausible {
+    /// For values of a quantity whose home is this, in SI.
+    pub fn new(
+        quantity: Quantity,
+        home: f64,
+        (loaded, manipulator): (&Loaded, &Manipulator),
+    ) -> Self {
+        Self {
+            quantity,
+            home,
+            size: manipulator.characteristic_length(),
+            far: FAR,
+            units: loaded.file.units,
+        }
+    }
+
+    /// Whether a value in SI looks right. What is refused anyway is not judged.
+    pub fn holds(&self, value: f64) -> bool {
+        let right = match self.quantity {
+            Quantity::Length => (value - self.home).abs() <= self.far * self.size,
+            Quantity::Angle => value.abs() <= TAU,
+        };
+        right || value.abs() >= ABSURD
+    }
+
+    /// How a number in SI was read, and how large that is.
+    fn reading(&self, value: f64) -> String {
+        let read = self.quantity.unit();
+        let large = match self.quantity {
+            Quantity::Length => {
+                let times = (value - self.home).abs() / self.size;
+                format!("{times:.0} times the size of the mechanism")
+            }
+            Quantity::Angle => format!("{:.0} degrees", value.to_degrees()),
+        };
+        format!("was read as {value} {read}, {large}")
+    }
+
+    /// The unit that was probably meant: that of the file, if it is not the one that was assumed.
+    fn meant(&self) -> &'static str {
+        match (self.units.symbol(self.quantity), self.quantity) {
+            ("m", _) => "mm",
+            ("rad", _) => "deg",
+            (own, _) => own,
+        }
+    }
+
+    /// The note on a value of a column without a unit.
+    pub fn column(&self, name: &str, value: f64) -> String {
+        let unit = self.meant();
+        let reading = self.reading(value);
+        format!(
+            "{name} has no unit and {reading}; if it is in {unit}, head the column {name} [{unit}]"
+        )
+    }
+
+    /// The note on a number of a flag; `None` if it has a unit or looks right. `shown` is the number with its name as
+    /// the flag has it.
+    fn suspicion(&self, number: Number, shown: impl Fn(&str) -> String) -> Option<String> {
+        let value = number.without_unit()?;
+        if self.holds(value) {
+            return None;
+        }
+        let (unit, reading) = (self.meant(), self.reading(value));
+        let [given, better] = [shown(&value.to_string()), shown(&format!("{value}{unit}"))];
+        Some(format!("{given} has no unit and {reading}; if it is in {unit}, write {better}"))
+    }
 }
 
 /// Notes which task coordinates of a pose look misread.
@@ -30,7 +104,7 @@ pub fn note_pose(
     manipulator: &Manipulator,
 ) {
     let coordinates = manipulator.task_coordinates();
-    note(output, flag, loaded, manipulator, pose, |name| {
+    note(output, flag, (loaded, manipulator), pose.assignments(), Form::Assignment, |name| {
         let c = coordinates.iter().find(|c| c.name == name)?;
         Some((c.quantity, c.home))
     });
@@ -44,52 +118,63 @@ pub fn note_joints(
     loaded: &Loaded,
     manipulator: &Manipulator,
 ) {
-    note(output, flag, loaded, manipulator, joints, |name| {
+    note(output, flag, (loaded, manipulator), joints.assignments(), Form::Assignment, |name| {
         let c = manipulator.coordinates().iter().find(|c| c.name == name)?;
         Some((c.quantity, c.home))
     });
 }
 
-fn note(
+/// Notes which ends of ranges look misread; `find` gives a coordinate's quantity and home.
+pub fn note_ranges<'a>(
     output: &Output,
     flag: &str,
-    loaded: &Loaded,
-    manipulator: &Manipulator,
-    values: &Pose,
-    find: impl Fn(&str) -> Option<(Quantity, f64)>,
+    (loaded, manipulator): (&Loaded, &Manipulator),
+    ends: impl IntoIterator<Item = (&'a str, Number)>,
 ) {
-    let size = manipulator.characteristic_length();
-    for (name, number) in values.assignments() {
-        let given = find(name).map(|(quantity, home)| Given { name, quantity, home, number });
-        if let Some(text) = given.and_then(|given| suspicion(&given, size, loaded.file.units)) {
-            output.note(format_args!("{flag}: {text}"));
-        }
-    }
+    let coordinates =
+        manipulator.task_coordinates().iter().chain(manipulator.dependent_coordinates());
+    let known: Vec<_> = coordinates.map(|c| (c.name, c.quantity, c.home)).collect();
+    note(output, flag, (loaded, manipulator), ends, Form::Range, |name| {
+        known.iter().find(|c| c.0 == name).map(|c| (c.1, c.2))
+    });
 }
 
-/// What is odd about a number without a unit, and what to write.
-fn suspicion(given: &Given<'_>, size: f64, units: FileUnits) -> Option<String> {
-    let &Given { name, quantity, home, number } = given;
-    let value = number.without_unit().filter(|value| value.abs() < ABSURD)?;
-    let (other, large) = match quantity {
-        Quantity::Length => {
-            let times = (value - home).abs() / size;
-            let large = format!("{times:.0} times the size of the mechanism");
-            ("mm", (times > FAR).then_some(large)?)
+/// How a flag gives numbers.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// `x=10`
+    Assignment,
+    /// `x=-10:10:5`
+    Range,
+}
+
+fn note<'a>(
+    output: &Output,
+    flag: &str,
+    of: (&Loaded, &Manipulator),
+    values: impl IntoIterator<Item = (&'a str, Number)>,
+    form: Form,
+    find: impl Fn(&str) -> Option<(Quantity, f64)>,
+) {
+    let mut noted: Vec<&str> = vec![];
+    for (name, number) in values {
+        let Some((quantity, home)) = find(name).filter(|_| !noted.contains(&name)) else {
+            continue;
+        };
+        let far = if form == Form::Range { WIDE } else { FAR };
+        let plausible = Plausible { far, ..Plausible::new(quantity, home, of) };
+        let shown = |value: &str| match form {
+            Form::Assignment => format!("{name}={value}"),
+            Form::Range => value.to_owned(),
+        };
+        if let Some(text) = plausible.suspicion(number, shown) {
+            match form {
+                Form::Assignment => output.note(format_args!("{flag}: {text}")),
+                Form::Range => output.note(format_args!("{flag}: {name}: {text}")),
+            }
+            noted.push(name);
         }
-        Quantity::Angle => {
-            let large = format!("{:.0} degrees", value.to_degrees());
-            ("deg", (value.abs() > TAU).then_some(large)?)
-        }
-    };
-    // The unit of the file, if it is not the one that was assumed.
-    let own = units.symbol(quantity);
-    let unit = if own == quantity.unit() { other } else { own };
-    let read = quantity.unit();
-    Some(format!(
-        "{name}={value} has no unit and was read as {value} {read}, {large}; if it is in {unit}, write \
-         {name}={value}{unit}"
-    ))
+    }
 }
 
 #[cfg(test)]
@@ -100,7 +185,8 @@ mod tests {
     fn said(text: &str, quantity: Quantity) -> Option<String> {
         let units = FileUnits { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
         let number = text.parse().expect("a number");
-        suspicion(&Given { name: "q", quantity, home: 0.0, number }, 0.3, units)
+        let plausible = Plausible { quantity, home: 0.0, size: 0.3, far: FAR, units };
+        plausible.suspicion(number, |value| format!("q={value}"))
     }
 
     #[test]

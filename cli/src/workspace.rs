@@ -16,9 +16,10 @@ pub use work::{Work, threads};
 use crate::args::{CloudArgs, Output, WorkspaceArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::pose::Number;
+use crate::pose::{GridAxis, Number};
 use crate::progress::interruptible;
 use crate::text::{count, plural};
+use crate::unitless;
 use opm_core::manipulator::Manipulator;
 use opm_study::recording::{
     self, Findings, ShardCount, ShardFindings, ShardRecording, StoredShard, WorkspaceRecording,
@@ -59,6 +60,8 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         let problem = format!("is of poses, and --kind {} has none", args.kind.name());
         return Err(Failure::flag("--explain", problem));
     }
+    let ends = args.grid.iter().flat_map(GridAxis::ends);
+    unitless::note_ranges(output, "--grid", (&loaded, &manipulator), ends);
     let progress = interruptible()?;
     let work = Work { output, pool: &threads(args.threads)?, progress: &progress };
     let workspace = work.fit(request, loaded.file.units)?;

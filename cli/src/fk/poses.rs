@@ -3,8 +3,9 @@
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::stream::{self, Stop, Stream, Streams};
+use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
+use crate::unitless::Plausible;
 use opm_core::forward::{Assembly, NearError};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_study::Tracker;
@@ -27,6 +28,7 @@ struct Summary {
 
 /// What is asked for.
 struct Request<'a> {
+    loaded: &'a Loaded,
     manipulator: &'a Manipulator,
     /// The pose to start from, and that the assemblies are sorted by.
     seed: Vec<f64>,
@@ -54,7 +56,7 @@ pub fn run(
         );
         return Err(Failure::flag("--all", problem));
     }
-    let request = Request { manipulator, seed, only, all: args.all };
+    let request = Request { loaded, manipulator, seed, only, all: args.all };
     let streams = Streams { input, output: args.output.as_deref() };
     let solve = |stream: Stream<'_>| request.solve(stream);
     let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
@@ -78,20 +80,25 @@ impl Request<'_> {
     fn solve(&self, mut stream: Stream<'_>) -> Result<Summary, Stop> {
         let start = Instant::now();
         let m = self.manipulator;
-        let joints: Vec<&str> = m.actuated().iter().map(|&i| &*m.coordinates()[i].name).collect();
+        let actuated: Vec<_> = m.actuated().iter().map(|&i| &m.coordinates()[i]).collect();
+        let joints: Vec<&str> = actuated.iter().map(|c| &*c.name).collect();
         let listed = joints.join(", ");
         // The other columns of a table that `opm ik` or `opm trajectory` wrote.
-        let tasks = m.task_coordinates().iter().chain(m.dependent_coordinates()).map(|c| c.name);
-        let others: Vec<&str> = tasks
-            .chain(m.coordinates().iter().map(|c| &*c.name))
-            .chain(m.imaginary().iter().map(|joint| &*joint.name))
-            .chain(["reachable", "within_limits", "mode"])
-            .collect();
-        let columns = stream.columns(joints.clone(), |name| {
+        let others = other_columns(m);
+        let values = actuated.iter().map(|c| Wanted {
+            name: &c.name,
+            quantity: c.quantity,
+            plausible: Plausible::new(c.quantity, c.home, (self.loaded, m)),
+        });
+        let tasks = m.task_coordinates().iter().chain(m.dependent_coordinates());
+        let tasks: Vec<&str> = tasks.map(|c| c.name).collect();
+        let mut columns = stream.columns(values.collect(), |name| {
             let found = joints.iter().position(|joint| *joint == name);
             match found {
                 Some(number) => Ok(Some(number)),
-                None if others.contains(&name) => Ok(None),
+                None if tasks.contains(&name) || others.iter().any(|other| other == name) => {
+                    Ok(None)
+                }
                 None => Err(format!("no joint {name:?}; the actuated joints are {listed}")),
             }
         })?;
@@ -108,7 +115,7 @@ impl Request<'_> {
         let mut tracker = Tracker::new(m, &self.seed, self.only.unwrap_or(m.home_mode()));
         let (mut reachable, mut within_limits, mut assemblies) = (0, 0, 0);
         let mut values = vec![0.0; joints.len()];
-        stream.each(&columns, &mut values, |stream, line, time, joints| {
+        stream.each(&mut columns, &mut values, |stream, line, time, joints| {
             let label = stream.label;
             let wrong = |error: &dyn std::error::Error| stream::at(label, line, error);
             let mut list: Vec<Assembly>;

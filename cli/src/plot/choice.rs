@@ -2,8 +2,10 @@
 
 use super::grid::nearest;
 use super::layout::{Coordinate, Layout};
+use super::source::{Rate, Source};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
+use crate::text::short;
 use opm_core::Quantity;
 
 /// Largest number of slices that --slice may request.
@@ -39,7 +41,7 @@ pub fn home(coordinate: &Coordinate) -> u64 {
 /// The selection of `--slice`: coordinates with the indices of their grid values.
 pub fn selected(
     layout: &Layout,
-    args: &PlotArgs,
+    (source, args): (&Source<'_>, &PlotArgs),
     view: [usize; 2],
 ) -> Result<Vec<(usize, Vec<u64>)>, Failure> {
     let wrong = |problem: String| Err(Failure::flag("--slice", problem));
@@ -66,8 +68,12 @@ pub fn selected(
         let value = value.map_err(|error| Failure::flag("--slice", error))?;
         let step = (axis.max - axis.min) / axis.count.saturating_sub(1).max(1) as f64;
         if value < axis.min - 0.5 * step || value > axis.max + 0.5 * step {
-            let (min, max) = (axis.min, axis.max);
-            return wrong(format!("{name} = {value}: the grid goes from {min} to {max}"));
+            let (measure, factor) = source.measure(name, c.quantity, Rate::Position);
+            let [value, min, max] = [value, axis.min, axis.max].map(|v| short(v / factor));
+            let unit = measure.unit.symbol;
+            return wrong(format!(
+                "{name} = {value} {unit}: the grid goes from {min} to {max} {unit}"
+            ));
         }
         let value = nearest(axis, value);
         match selected.iter_mut().find(|(known, _)| *known == number) {

@@ -73,7 +73,7 @@ impl<'a> Slices<'a> {
                 source.label
             )));
         }
-        let selected = selected(layout, args, view)?;
+        let selected = selected(layout, (source, args), view)?;
         let free: Vec<usize> = (0..layout.coordinates.len())
             .filter(|number| !view.contains(number) && several(&layout.coordinates[*number]))
             .collect();

@@ -362,6 +362,11 @@ fn numbers_without_a_unit_that_look_misread_are_noted() {
         &["ik", PLANO, "--pose", "x=10,xi=15"][..],
         &["velocity", PLANO, "--pose", "x=10,xi=15"],
         &["fk", PLANO, "--joints", "S1=170,S2=165mm,S3=160mm,phi14=-150,phi24=130deg"],
+        &["workspace", PLANO, "--grid", "x=-100:100:3", "--grid", "xi=-30:30:3"],
+        &[
+            "measure", PLANO, "--over", "x=0:10", "--over", "y=0", "--over", "zeta=90", "--over",
+            "xi=0", "--over", "psi=0",
+        ],
     ] {
         assert_eq!(odd(args), 2, "{args:?}");
         assert_eq!(odd(&[args, &["--quiet"]].concat()), 0, "{args:?}");
@@ -371,6 +376,49 @@ fn numbers_without_a_unit_that_look_misread_are_noted() {
     let expected = "opm: note: --pose: xi=15 has no unit and was read as 15 rad, 859 degrees; if it is in \
                     deg, write xi=15deg\n";
     assert_eq!(run.stderr, expected);
+}
+
+/// The headings of columns may name units; without them, numbers that look misread are noted once.
+#[test]
+fn headings_of_columns_name_units() {
+    let folder = Folder::new();
+    let solved = |text: &str| {
+        let file = folder.write("poses.csv", text);
+        let run = opm(&["ik", PLANO, "--poses", &file]);
+        (run.text().to_owned(), run.stderr.clone())
+    };
+    let (si, quiet) = solved("x,xi,t\n0.01,0.5235987755982988,0\n");
+    assert_eq!(quiet, "");
+    let (own, quiet) = solved("x [mm],xi [deg],t [s]\n10,30,0\n");
+    assert_eq!((own, quiet.as_str()), (si, ""));
+    let (_, noted) = solved("x,xi\n10,30\n20,40\n");
+    let lines: Vec<&str> = noted.lines().collect();
+    assert_eq!(lines.len(), 2, "{noted}");
+    assert!(lines[0].contains("poses.csv:2: x has no unit and was read as 10 m"), "{noted}");
+    assert!(lines[1].ends_with("head the column xi [deg]"), "{noted}");
+    for (heading, words) in [
+        ("x [deg]", "x is a length, expected m, cm, mm, in, not \"deg\""),
+        ("xi [grad]", "xi is an angle, expected rad, deg, not \"grad\""),
+        ("t [ms]", "expected t or t [s]"),
+    ] {
+        let file = folder.write("wrong.csv", &format!("{heading}\n1\n"));
+        opm(&["ik", PLANO, "--poses", &file]).fails_with_one_line(1, &["wrong.csv:1: ", words]);
+    }
+    // So may those of a motion.
+    let followed = |text: &str| {
+        let file = folder.write("motion.csv", text);
+        opm(&["trajectory", PLANO, "--motion", &file, "--rate", "10", "-o", "-"]).text().to_owned()
+    };
+    let si = followed("t,x,xi\n0,0,0\n1,0.01,0.5235987755982988\n");
+    assert_eq!(followed("t [s],x [mm],xi [deg]\n0,0,0\n1,10,30\n"), si);
+    // What a motion writes in the units of the file is read back.
+    let table = folder.arg("joints.csv");
+    let motion = ["trajectory", PLANO, "--motion", "plano-spherical-sinusoids", "--rate", "10"];
+    opm(&[&motion[..], &["--units", "file", "--rates", "-o", &table]].concat()).text();
+    let poses = opm(&["ik", PLANO, "--poses", &table]);
+    assert_eq!((poses.text().lines().count(), poses.stderr.as_str()), (102, ""));
+    let back = opm(&["fk", PLANO, "--poses", &table]);
+    assert_eq!((back.text().lines().count(), back.stderr.as_str()), (102, ""));
 }
 
 #[test]

@@ -51,6 +51,7 @@
 
 mod change;
 pub(crate) mod checks;
+mod heading;
 #[doc(hidden)]
 pub mod hint;
 #[cfg(feature = "files")]
@@ -69,6 +70,7 @@ mod writer;
 
 pub use change::text;
 pub(crate) use checks::LARGEST;
+pub use heading::Heading;
 pub(super) use hint::nearest;
 pub use problem::{FileErrors, Location, Locations, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};

@@ -1,8 +1,9 @@
 //! Tables of poses as CSV, with cubic splines between the poses.
 //!
 //! The first line is a header: `t` and names of task coordinates, in any order. A coordinate that
-//! is not named stays at home. Every other line is a pose in seconds, metres and radians. There are
-//! at least two lines, and times increase from line to line, at equal or different steps.
+//! is not named stays at home. Every other line is a pose in seconds, metres and radians, or in the
+//! units that the header names (`x [mm]`). There are at least two lines, and times increase from line
+//! to line, at equal or different steps.
 //!
 //! A cubic spline ([`Spline`](super::Spline)) runs between the lines: position, velocity and acceleration are
 //! continuous. [`Ends`] says how it starts and ends.
@@ -14,8 +15,8 @@
 use super::points::{through, wraps};
 use super::{Ends, PlatformMotion};
 use crate::manipulator::Manipulator;
-use crate::mechanism::file::{FileErrors, LARGEST, Problem};
-use crate::numeric::angle::near;
+use crate::mechanism::file::{FileErrors, FileUnits, Heading, LARGEST, Problem};
+use crate::numeric::{Quantity, angle::near};
 
 /// The largest number of problems that are listed one by one. A file with more of them is probably
 /// not a table of poses.
@@ -128,8 +129,13 @@ fn read_table(
     motion.map_err(|error| problems.report(last, 1, error.to_string())).ok()
 }
 
-/// The meaning of a column: `None` for the time, or the index of a task coordinate.
-type Column = Option<usize>;
+/// The meaning of a column: the index of a task coordinate, or `None` for the time; and the units of its values.
+#[derive(Clone, Copy)]
+struct Column {
+    coordinate: Option<usize>,
+    quantity: Quantity,
+    units: FileUnits,
+}
 
 fn read_header(
     number: usize,
@@ -141,24 +147,34 @@ fn read_header(
     let coordinates = manipulator.task_coordinates();
     let mut columns: Vec<Column> = Vec::new();
     for (at, cell) in cells(header) {
-        let column = match coordinates.iter().position(|c| c.name == cell) {
-            _ if cell == "t" => None,
-            Some(coordinate) => Some(coordinate),
-            None => {
-                let problem = match manipulator.refuse_following(cell) {
-                    Ok(()) => format!("no coordinate {cell:?}, {}", expected()),
-                    Err(follows) => follows.to_string(),
-                };
-                problems.report(number, at, problem);
-                continue;
-            }
-        };
-        if columns.contains(&column) {
-            problems.report(number, at, format!("two columns are called {cell}, {}", expected()));
+        let heading = Heading::parse(cell);
+        let found = coordinates.iter().position(|c| c.name == heading.name);
+        if found.is_none() && !matches!((heading.name, heading.unit), ("t", None | Some("s"))) {
+            let problem = match (heading.name, manipulator.refuse_following(heading.name)) {
+                ("t", _) => format!("{cell:?}, expected t or t [s]"),
+                (name, Ok(())) => format!("no coordinate {name:?}, {}", expected()),
+                (_, Err(follows)) => follows.to_string(),
+            };
+            problems.report(number, at, problem);
+            continue;
         }
-        columns.push(column);
+        let quantity =
+            found.map_or(Quantity::Length, |coordinate| coordinates[coordinate].quantity);
+        let units = match found {
+            Some(_) => heading.units(quantity).map(Option::unwrap_or_default),
+            None => Ok(FileUnits::SI),
+        };
+        let units = units.unwrap_or_else(|problem| {
+            problems.report(number, at, problem);
+            FileUnits::SI
+        });
+        if columns.iter().any(|column| column.coordinate == found) {
+            let problem = format!("two columns are called {}, {}", heading.name, expected());
+            problems.report(number, at, problem);
+        }
+        columns.push(Column { coordinate: found, quantity, units });
     }
-    if !columns.contains(&None) && problems.list.is_empty() {
+    if columns.iter().all(|column| column.coordinate.is_some()) && problems.list.is_empty() {
         problems.report(number, 1, format!("no column t, {}", expected()));
     }
     problems.list.is_empty().then_some(columns)
@@ -187,8 +203,8 @@ fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problem
             problems.report(number, at, format!("{cell:?}, {expected}"));
             continue;
         }
-        match column {
-            Some(coordinate) => values[*coordinate].push(value),
+        match column.coordinate {
+            Some(coordinate) => values[coordinate].push(column.units.si(value, column.quantity)),
             None => {
                 if let Some(&before) = times.last()
                     && value <= before
