@@ -48,7 +48,8 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     advice::after(&workspace, &analysis, output);
     if let Some(recording) = recording {
         let mechanism = loaded.attachment();
-        let findings = Findings { mechanism, workspace: &workspace, poses, analysis: &analysis };
+        let (workspace, analysis) = (&workspace, &analysis);
+        let findings = Findings { mechanism, workspace, poses, analysis, inscribed: None };
         work.record(recording, &findings)?;
     }
     let effort = Effort::Merged { shards: args.parts.len() as u64 };

@@ -3,6 +3,7 @@
 mod choice;
 mod cloud;
 mod grid;
+mod inscribed;
 mod label;
 mod layout;
 mod mechanism;

@@ -77,7 +77,9 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let rejections = if args.explain { Some(work.explain(&workspace)?) } else { None };
     if let Some(recording) = recording {
         let (mechanism, poses) = (loaded.attachment(), &workspace.poses());
-        let findings = Findings { mechanism, workspace: &workspace, poses, analysis: &analysis };
+        let inscribed = inscribed.as_ref().and_then(inscribed::Found::shape);
+        let (workspace, analysis) = (&workspace, &analysis);
+        let findings = Findings { mechanism, workspace, poses, analysis, inscribed };
         work.record(recording, &findings)?;
     }
     let units = loaded.file.units;

@@ -2,6 +2,7 @@
 
 use super::choice::{columns, fast, home, selected, several, varied};
 use super::grid::{is_home, nearest};
+use super::inscribed::Shape;
 use super::label::value_label;
 use super::layout::{Coordinate, Layout, Place};
 use super::source::{Rate, Source, Stop};
@@ -39,6 +40,8 @@ pub struct Slices<'a> {
     chosen: bool,
     /// The number of tiles that are left out, because nothing is in them.
     empty: usize,
+    /// The largest shape inside, if the recording has it.
+    shape: Option<Shape>,
 }
 
 struct Colored {
@@ -110,6 +113,7 @@ impl<'a> Slices<'a> {
             home: None,
             chosen: false,
             empty: 0,
+            shape: Shape::of(source),
         };
         let values =
             match (varied, selected.into_iter().find(|(number, _)| Some(*number) == varied)) {
@@ -332,6 +336,9 @@ impl<'a> Slices<'a> {
                     if let Some(lines) = self.boundary(&cells) {
                         cells.surround(lines);
                     }
+                    if let Some(line) = self.inside(value) {
+                        cells.inscribe(line);
+                    }
                     let paint = match paint {
                         Paint::Plain(_) => Paint::Plain(Map::Viridis.color(share)),
                         values => values,
@@ -387,6 +394,21 @@ impl<'a> Slices<'a> {
         Some(rings.into_iter().map(|ring| ring.points).collect())
     }
 
+    /// The line of the largest shape inside, in the tile of this value.
+    fn inside(&self, value: u64) -> Option<Vec<[f64; 2]>> {
+        let [a, b] = &self.view;
+        let coordinates = &self.layout.coordinates;
+        let varied = self.varied.map(|number| (number, value));
+        let held = self.held.iter().copied().chain(varied);
+        let held = held.filter_map(|(number, value)| {
+            let c = &coordinates[number];
+            Some((&*c.name, c.axis.as_ref()?.value(value)))
+        });
+        let [x, y] = [a, b].map(|seen| &*coordinates[seen.number].name);
+        let line = self.shape.as_ref().filter(|_| !self.is_bar())?.across([x, y], held)?;
+        Some(line.into_iter().map(|[x, y]| [x / a.factor, y / b.factor]).collect())
+    }
+
     /// The position of home, if it is in the tile of this value.
     fn mark(&self, value: u64) -> Option<[f64; 2]> {
         let value_of = |number: usize| {
@@ -431,6 +453,11 @@ impl<'a> Slices<'a> {
             let line =
                 "The line is the boundary, half-way between values of the grid, and on its edge.";
             notes.push(line.to_owned());
+        }
+        if let Some(shape) = &self.shape
+            && self.tiles.iter().any(|(value, _)| self.inside(*value).is_some())
+        {
+            notes.push(format!("The thick line is the largest {}.", shape.text));
         }
         let coarse = |tile: &(u64, Content)| match &tile.1 {
             Content::Cells(cells, _) => cells.is_coarse(),

@@ -163,6 +163,13 @@ impl<'a> Source<'a> {
         imaginary.chain(joints).find(|(known, _)| *known == name).map(|(_, quantity)| quantity)
     }
 
+    /// The quantity of a task coordinate, if the mechanism is known.
+    pub fn quantity_of(&self, name: &str) -> Option<Quantity> {
+        let mut coordinates =
+            self.manipulator().into_iter().flat_map(Manipulator::task_coordinates);
+        coordinates.find(|c| c.name == name).map(|c| c.quantity)
+    }
+
     /// The joint that moves a recorded linkage, and its quantity.
     pub fn input(&self) -> Option<(String, Quantity)> {
         let run = self.metadata("run");

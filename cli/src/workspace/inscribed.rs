@@ -38,6 +38,11 @@ pub fn find(
 }
 
 impl Found {
+    /// The shape that was found.
+    pub fn shape(&self) -> Option<&Inscribed> {
+        self.inscribed.as_ref()
+    }
+
     fn powers(&self) -> [(Quantity, usize); 2] {
         [Quantity::Length, Quantity::Angle].map(|quantity| {
             (quantity, self.quantities.iter().filter(|&&other| other == quantity).count())

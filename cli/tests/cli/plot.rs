@@ -281,6 +281,32 @@ fn what_is_not_stored_can_be_recorded() {
     assert_legible(&svg);
 }
 
+/// The largest disc inside is in the recording, and its picture has it with its numbers.
+#[test]
+fn the_largest_disc_inside_is_drawn() {
+    let folder = Folder::new();
+    let file = folder.arg("disc.mcap");
+    let grid = ["--grid", "x=-200mm:200mm:81", "--grid", "y=-150mm:200mm:71"];
+    let asked = ["--inscribed", "disc", "--centre", "x=0,y=0", "--format", "json"];
+    let run = opm(&[&["workspace", PLANO, "-o", &file, "-q"], &grid[..], &asked].concat());
+    let radius = 1000.0 * number(&run.json()["inscribed"]["radius"]);
+    let (_, svg) = plot(&folder, &file, &["--panels", "slices"]);
+    let document = Document::parse(&svg).unwrap();
+    let panel = class(document.root(), "panel")[0];
+    let (across, up) = (across(panel), up(panel));
+    let lines = paths(class(panel, "points")[0]);
+    let circle = pieces(lines[lines.len() - 1]).concat();
+    assert!(circle.len() >= 180);
+    for [x, y] in circle {
+        assert!((across(x).hypot(up(y)) - radius).abs() < 0.1, "{} {}", across(x), up(y));
+    }
+    let said = texts(&document).into_iter().find_map(|text| {
+        let (_, numbers) = text.split_once("largest disc inside: radius ")?;
+        numbers.split_once(" mm, centre x = 0 mm, y = 0 mm.")?.0.parse::<f64>().ok()
+    });
+    assert!((said.unwrap() - radius).abs() < 0.06, "{said:?} {radius}");
+}
+
 /// The value of the colour is stored with other values, and colours the slices.
 #[test]
 fn a_recorded_colour_is_drawn_with_other_values() {

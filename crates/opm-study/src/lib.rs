@@ -43,7 +43,8 @@
 //! let recording = WorkspaceRecording::of_workspace(&path, &workspace, points)?;
 //! let mechanism = Attachment { name: "plano-spherical-5dof.toml", text: example.text };
 //! let poses = &workspace.poses();
-//! let findings = Findings { mechanism, workspace: &workspace, poses, analysis: &analysis };
+//! let (workspace, analysis) = (&workspace, &analysis);
+//! let findings = Findings { mechanism, workspace, poses, analysis, inscribed: None };
 //! recording.write(&findings, &progress)?;
 //! assert!(path.is_file());
 //! # Ok(())

@@ -14,6 +14,7 @@ mod shards;
 mod table;
 mod workspace;
 
+pub use describe::inscribed_of;
 pub use linkage::record_linkage;
 pub use motion::{MotionRecorder, violation_fields};
 pub use shard::{ShardCount, ShardFindings, ShardRecording, StoredShard};

@@ -55,7 +55,8 @@ impl Sweep {
             let recording = WorkspaceRecording::of_workspace(&path, workspace, points)?;
             let (poses, count) = (&workspace.poses(), self.count.clone());
             let analysis = &Analysis::of_points(workspace, count, poses, &progress)?;
-            recording.write(&Findings { mechanism, workspace, poses, analysis }, &progress)
+            let findings = Findings { mechanism, workspace, poses, analysis, inscribed: None };
+            recording.write(&findings, &progress)
         };
         interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(study)?;
         Ok(())

@@ -1,7 +1,7 @@
 //! Cells of a plane grid that have something in them.
 
 use crate::MOST_SHAPES;
-use crate::color::{Color, INK, Map, WHITE};
+use crate::color::{ALARM, Color, INK, Map, WHITE};
 use crate::drawing::{Image, Path, Pen, Rect, Shape, Step};
 use crate::frame::Frame;
 
@@ -55,6 +55,8 @@ pub struct Cells {
     sums: Option<Vec<f64>>,
     /// Closed lines over the cells.
     lines: Vec<Vec<[f64; 2]>>,
+    /// Closed lines over the cells that stand out.
+    inside: Vec<Vec<[f64; 2]>>,
 }
 
 /// The colours of cells.
@@ -72,7 +74,7 @@ impl Cells {
         let together = [x, y].map(|s| s.count.div_ceil(MOST_CELLS).max(1));
         let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
         let counts = vec![0; cells[0] * cells[1]];
-        Self { spacing: [x, y], together, cells, counts, sums: None, lines: vec![] }
+        Self { spacing: [x, y], together, cells, counts, sums: None, lines: vec![], inside: vec![] }
     }
 
     /// Cells of which none was hit, and which will be coloured by the values of the hits.
@@ -106,6 +108,11 @@ impl Cells {
     /// Sets closed lines to be drawn over the cells: the boundary of what was hit, in the units of the axes.
     pub fn surround(&mut self, lines: Vec<Vec<[f64; 2]>>) {
         self.lines = lines;
+    }
+
+    /// Adds a closed line that stands out over the cells, in the units of the axes: a shape inside of what was hit.
+    pub fn inscribe(&mut self, line: Vec<[f64; 2]>) {
+        self.inside.push(line);
     }
 
     /// The edges of the cells that were hit: left and right, lower and upper; `None` if no cell was hit.
@@ -142,15 +149,18 @@ impl Cells {
             },
             Paint::Values(..) => vec![self.image(frame, hit, paint)],
         };
-        let mut path = Path::default();
-        for line in &self.lines {
-            path.0.extend(Path::through(line.iter().map(|&[x, y]| frame.at(x, y))).0);
-            path.0.push(Step::Close);
-        }
-        if !self.lines.is_empty() {
-            // Two lines, which are seen on every background.
-            shapes.push(Shape::Line(path.clone(), Pen::new(WHITE, 2.6)));
-            shapes.push(Shape::Line(path, Pen::new(INK, 1.1)));
+        // Two lines each, which are seen on every background.
+        for (lines, color, width) in [(&self.lines, INK, 1.1), (&self.inside, ALARM, 2.2)] {
+            if lines.is_empty() {
+                continue;
+            }
+            let mut path = Path::default();
+            for line in lines {
+                path.0.extend(Path::through(line.iter().map(|&[x, y]| frame.at(x, y))).0);
+                path.0.push(Step::Close);
+            }
+            shapes.push(Shape::Line(path.clone(), Pen::new(WHITE, width + 1.5)));
+            shapes.push(Shape::Line(path, Pen::new(color, width)));
         }
         shapes
     }

@@ -6,7 +6,9 @@ use crate::workspace::Workspace;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::Metadata;
-use opm_workspace::{Axis, ConditionLimit, ConditioningIndex, Count, Grid, Modes};
+use opm_workspace::{
+    Axis, ConditionLimit, ConditioningIndex, Count, Grid, Inscribed, InscribedShape, Modes,
+};
 use std::sync::Arc;
 
 /// The key of the characteristic length of a conditioning index, and the prefix of the keys of its parts.
@@ -14,6 +16,9 @@ const CONDITIONING: &str = "conditioning";
 
 /// The parts of a conditioning index; `sum` counts units of 2⁻⁶⁰.
 const CONDITIONING_PARTS: [&str; 4] = ["poses", "min", "max", "sum"];
+
+/// The key of the largest shape inside the set, and the prefix of the keys of its coordinates.
+const INSCRIBED: &str = "inscribed";
 
 /// The properties of a workspace that are known before it is swept.
 pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
@@ -87,7 +92,7 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
 }
 
 /// The results for a workspace.
-pub fn result(workspace: &Workspace, count: &Count) -> Metadata {
+pub fn result(workspace: &Workspace, count: &Count, inscribed: Option<&Inscribed>) -> Metadata {
     let mut result = record([
         ("reachable", count.reachable.to_string()),
         ("fraction", (count.reachable as f64 / count.poses as f64).to_string()),
@@ -97,7 +102,26 @@ pub fn result(workspace: &Workspace, count: &Count) -> Metadata {
         result.insert("measure_units".to_owned(), measure.unit);
     }
     result.extend(ranges(workspace, count));
+    if let Some(found) = inscribed {
+        result.insert(INSCRIBED.to_owned(), found.shape.name().to_owned());
+        let sizes = found.centre.iter().zip(&found.radii);
+        result.extend(found.names.iter().zip(sizes).map(|(name, (centre, radius))| {
+            (format!("{INSCRIBED}.{name}"), format!("{centre}:{radius}"))
+        }));
+    }
     result
+}
+
+/// The largest shape inside that a recording has: its name, and for each coordinate its name, centre and radius in
+/// radians and metres.
+pub fn inscribed_of(result: &Metadata) -> Option<(InscribedShape, Vec<(String, [f64; 2])>)> {
+    let shape = InscribedShape::from_name(result.get(INSCRIBED)?)?;
+    let sizes = result.iter().filter_map(|(key, text)| {
+        let name = key.strip_prefix(INSCRIBED)?.strip_prefix('.')?;
+        let (centre, radius) = text.split_once(':')?;
+        Some((name.to_owned(), [centre.parse().ok()?, radius.parse().ok()?]))
+    });
+    Some((shape, sizes.collect()))
 }
 
 /// The ranges of the imaginary joints, with all digits.

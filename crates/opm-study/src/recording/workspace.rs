@@ -15,7 +15,7 @@ use opm_mcap::{
     CloudLayout, MAX_SLICES, PartialFile, RecordError, TableFormat, TableRecorder,
     WorkspaceRecorder, table_columns,
 };
-use opm_workspace::{Grid, Hits, Poses, Progress};
+use opm_workspace::{Grid, Hits, Inscribed, Poses, Progress};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -48,6 +48,8 @@ pub struct Findings<'a> {
     pub poses: &'a PoseSource<'a>,
     /// The results.
     pub analysis: &'a Analysis,
+    /// The largest shape in the set of points, if it was asked for ([`Workspace::inscribed`]).
+    pub inscribed: Option<&'a Inscribed>,
 }
 
 /// The file format of points.
@@ -174,7 +176,7 @@ fn record_set(
     path: &Path,
     progress: &Progress,
 ) -> Result<(), StudyError> {
-    let Findings { mechanism, workspace, analysis, .. } = *findings;
+    let Findings { mechanism, workspace, analysis, inscribed, .. } = *findings;
     let failed = |error: RecordError| StudyError::record(path.display(), error);
     let mut run = describe(workspace, mechanism);
     run.insert("poses".to_owned(), analysis.count.poses.to_string());
@@ -208,7 +210,7 @@ fn record_set(
         going(number)?;
         recorder.push(slice, row).map_err(failed)
     })?;
-    recorder.finish(&result(workspace, &analysis.count)).map_err(failed)
+    recorder.finish(&result(workspace, &analysis.count, inscribed)).map_err(failed)
 }
 
 /// A recording of poses that is being written.
@@ -278,7 +280,7 @@ impl PoseRecording<'_> {
     fn mcap(&self, file: PartialFile) -> Result<(), StudyError> {
         let failed = |error| self.failed(error);
         let Self { cloud, findings, mechanism, progress, .. } = *self;
-        let Findings { workspace, poses, analysis, .. } = *findings;
+        let Findings { workspace, poses, analysis, inscribed, .. } = *findings;
         let (grid, count) = (&workspace.grid, &analysis.count);
         let columns = cloud.columns();
         let together = slices_together(grid);
@@ -322,7 +324,7 @@ impl PoseRecording<'_> {
             self.overview(&mut recorder, &packing, &columns)?;
             each_point(&mut |portion| push(&mut recorder, portion))?;
         }
-        recorder.finish(&result(workspace, count)).map_err(failed)
+        recorder.finish(&result(workspace, count, inscribed)).map_err(failed)
     }
 
     /// The overview of a recording in which it does not have every point.
