@@ -70,13 +70,19 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         return sweep_shard(&workspace, &loaded, Part { shard, path, force: args.force }, &work);
     }
 
-    let (found, effort) = work.count(&workspace, Shard::WHOLE)?;
-    let analysis = work.analyse(&workspace, found, &workspace.poses())?;
+    let (found, effort, poses) = if recording.is_some() || workspace.needs_points() {
+        work.count_and_keep(&workspace)?
+    } else {
+        let (found, effort) = work.count(&workspace, Shard::WHOLE)?;
+        (found, effort, workspace.poses())
+    };
+    let poses = &poses;
+    let analysis = work.analyse(&workspace, found, poses)?;
     advice::after(&workspace, &analysis, output);
     let inscribed = inscribed::find(args, &workspace, &analysis)?;
     let rejections = if args.explain { Some(work.explain(&workspace)?) } else { None };
     if let Some(recording) = recording {
-        let (mechanism, poses) = (loaded.attachment(), &workspace.poses());
+        let mechanism = loaded.attachment();
         let inscribed = inscribed.as_ref().and_then(inscribed::Found::shape);
         let (workspace, analysis) = (&workspace, &analysis);
         let findings = Findings { mechanism, workspace, poses, analysis, inscribed };

@@ -11,7 +11,7 @@ use opm_study::recording::{
     Findings, ShardCount, ShardFindings, ShardRecording, WorkspaceRecording,
 };
 use opm_study::{Analysis, CheckedRequest, PoseSource, StudyError, Workspace};
-use opm_workspace::{Cancelled, Progress, Rejections, Shard};
+use opm_workspace::{Cancelled, Count, Progress, Rejections, Shard, Sweep};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Instant;
 
@@ -43,11 +43,31 @@ impl Work<'_> {
         shard: Shard,
     ) -> Result<(ShardCount, Effort), Failure> {
         let sweep = workspace.sweep().shard(shard);
+        self.counted(workspace, &sweep, || Ok((sweep.count(self.progress)?, ())))
+            .map(|(found, effort, ())| (found, effort))
+    }
+
+    /// As [`count`](Self::count), for all poses, with a source of them.
+    pub fn count_and_keep<'w>(
+        &self,
+        workspace: &'w Workspace,
+    ) -> Result<(ShardCount, Effort, PoseSource<'w>), Failure> {
+        let count = || workspace.count_and_keep(self.progress);
+        self.counted(workspace, &workspace.sweep(), count)
+    }
+
+    /// Counts the poses of a sweep of a workspace, and what belongs to that.
+    fn counted<T: Send>(
+        &self,
+        workspace: &Workspace,
+        sweep: &Sweep<'_>,
+        job: impl FnOnce() -> Result<(Count, T), Cancelled> + Send,
+    ) -> Result<(ShardCount, Effort, T), Failure> {
         let start = Instant::now();
         let poses = sweep.poses();
         let before = self.progress.done();
-        let found = self.watch("counting", poses, || sweep.count(self.progress));
-        let found = found.map_err(|Cancelled| {
+        let found = self.watch("counting", poses, job);
+        let (count, more) = found.map_err(|Cancelled| {
             let (done, poses) = (count(self.progress.done() - before), count(poses));
             Failure::interrupted(format!("interrupted; {done} of {poses} poses were decided"))
         })?;
@@ -55,11 +75,11 @@ impl Work<'_> {
         let conditioning = match workspace.conditioning_length() {
             None => None,
             Some(_) => {
-                let job = || workspace.index(&sweep, self.progress);
+                let job = || workspace.index(sweep, self.progress);
                 self.watch("conditioning", poses, job)?
             }
         };
-        Ok((ShardCount { count: found, conditioning }, Effort::Counted { poses, seconds }))
+        Ok((ShardCount { count, conditioning }, Effort::Counted { poses, seconds }, more))
     }
 
     /// Computes the other requested results of a workspace whose poses are counted.

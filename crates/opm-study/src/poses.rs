@@ -9,16 +9,25 @@ pub use shards::ShardPoses;
 pub(crate) use shards::runs_of;
 
 use crate::error::StudyError;
-use opm_workspace::{Grid, Hits, Poses, Progress, Sweep};
+use opm_workspace::{Grid, Hits, Poses, Progress, Run, Sweep, replay};
 
 /// A source of the reachable poses of a grid, in order. It can be read several times.
 #[non_exhaustive]
 pub enum PoseSource<'a> {
     /// A sweep of the grid.
     Sweep(Sweep<'a>),
+    /// The numbers of the poses, which a sweep of the grid found.
+    Kept(&'a Grid, Vec<Run>),
     /// The files of all shards.
     #[cfg(feature = "recording")]
     Shards(ShardPoses<'a>),
+}
+
+impl PoseSource<'_> {
+    /// Whether the numbers of the poses are in memory, so that reading them again takes little time.
+    pub fn are_kept(&self) -> bool {
+        matches!(self, Self::Kept(..))
+    }
 }
 
 impl Poses for PoseSource<'_> {
@@ -27,6 +36,7 @@ impl Poses for PoseSource<'_> {
     fn grid(&self) -> &Grid {
         match self {
             Self::Sweep(sweep) => sweep.grid(),
+            Self::Kept(grid, _) => grid,
             #[cfg(feature = "recording")]
             Self::Shards(shards) => shards.grid(),
         }
@@ -41,6 +51,9 @@ impl Poses for PoseSource<'_> {
     ) -> Result<(), StudyError> {
         match self {
             Self::Sweep(sweep) => sweep.points(progress, make, empty, visit),
+            Self::Kept(grid, runs) => {
+                replay(grid, runs.iter().copied().map(Ok), progress, make, empty, visit)
+            }
             #[cfg(feature = "recording")]
             Self::Shards(shards) => shards.points(progress, make, empty, visit),
         }

@@ -7,10 +7,13 @@ use crate::poses::PoseSource;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes, Progress, Rejections, Sections,
-    SetAxis, SetError, Sweep, Visits,
+    Cancelled, ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes, Progress, Rejections,
+    Sections, SetAxis, SetError, Sweep, Visits,
 };
 use std::sync::Arc;
+
+/// Most runs of poses that are kept, which take 64 MiB.
+const MOST_RUNS: usize = 1 << 22;
 
 /// The definition of a workspace: manipulator, kind, grid, working modes, and the requested results. A
 /// [`WorkspaceRequest`](crate::WorkspaceRequest) makes one.
@@ -114,6 +117,24 @@ impl Workspace {
     /// The poses, from a sweep.
     pub fn poses(&self) -> PoseSource<'_> {
         PoseSource::Sweep(self.sweep())
+    }
+
+    /// Counts the poses of the grid, and gives their source for what is to be done with them: their numbers where those
+    /// fit into some memory, else the sweep once more.
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub fn count_and_keep(
+        &self,
+        progress: &Progress,
+    ) -> Result<(Count, PoseSource<'_>), Cancelled> {
+        let sweep = self.sweep();
+        let (count, kept) = sweep.count_and_keep(MOST_RUNS, progress)?;
+        let poses = match kept {
+            Some(runs) => PoseSource::Kept(&self.grid, runs),
+            None => PoseSource::Sweep(sweep),
+        };
+        Ok((count, poses))
     }
 
     /// Whether the points have to be held in memory, or the poses visited again. This is so for a shape, and

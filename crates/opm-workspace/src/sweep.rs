@@ -29,6 +29,7 @@ use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use rayon::prelude::*;
 use sheet::SheetKind;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 use worker::{Visitor, Worker};
 
 /// Poses of a row that are decided together, of which a block has room for several.
@@ -262,6 +263,49 @@ impl<'a> Sweep<'a> {
                 },
             )
             .try_reduce(nothing, |a, b| Ok(a.merge(&b)))
+    }
+
+    /// As [`count`](Self::count), and gives the numbers of the reachable poses, in order, for [`replay`](crate::replay). It
+    /// gives `None` for them if they are more than `most` runs, which bounds the memory.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if [`Progress::cancel`] was called.
+    pub fn count_and_keep(
+        &self,
+        most: usize,
+        progress: &Progress,
+    ) -> Result<(Count, Option<Vec<Run>>), Cancelled> {
+        let mut all = Count::nothing(self.manipulator);
+        let mut kept = Vec::new();
+        let too_many = AtomicBool::new(false);
+        in_order(
+            self.blocks().map(Ok),
+            || Worker::new(self),
+            |worker, block| {
+                let (mut count, mut runs) = (Count::nothing(self.manipulator), Vec::new());
+                let mut keep = |hits: &Hits<'_>| {
+                    hits.numbers(self.grid).for_each(|run| runs::append(&mut runs, run));
+                };
+                let wanted = !too_many.load(Ordering::Relaxed);
+                let keep: Visitor<'_> = if wanted { Some(&mut keep) } else { None };
+                self.block(block, worker, &mut count, keep);
+                progress.advance(count.poses)?;
+                Ok((count, runs))
+            },
+            |(count, runs)| {
+                all = std::mem::replace(&mut all, Count::nothing(self.manipulator)).merge(&count);
+                if !too_many.load(Ordering::Relaxed) {
+                    runs.into_iter().for_each(|run| runs::append(&mut kept, run));
+                }
+                if kept.len() > most {
+                    too_many.store(true, Ordering::Relaxed);
+                    kept = Vec::new();
+                }
+                Ok::<(), Cancelled>(())
+            },
+        )?;
+        let kept = (!too_many.into_inner()).then_some(kept);
+        Ok((all, kept))
     }
 
     /// Gives every reachable pose, in the order of their numbers. For every block of the grid, `empty`

@@ -92,6 +92,11 @@ impl<'a> Cloud<'a> {
         self.shown.columns()
     }
 
+    /// Whether all values of a point are task coordinates.
+    pub fn is_plain(&self) -> bool {
+        is_plain(&self.columns())
+    }
+
     /// The values at the ends of the colour scale. A task coordinate has those of the grid; a joint has its
     /// limits or the range that occurs; condition numbers have the range that occurs.
     pub fn color_range(
@@ -127,6 +132,10 @@ impl<'a> Cloud<'a> {
         )?;
         Ok(range.unwrap_or_default())
     }
+}
+
+fn is_plain(columns: &[Column]) -> bool {
+    columns.iter().all(|column| matches!(column, Column::Coordinate(_)))
 }
 
 /// The layout of points with these values, for a recorder.
@@ -222,7 +231,7 @@ impl<'a> Points<'a> {
                 Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution())))
             }
         };
-        let plain = columns.iter().all(|column| matches!(column, Column::Coordinate(_)));
+        let plain = is_plain(columns);
         let (pose, row, portions) = (Vec::new(), Vec::new(), Vec::new());
         Self { cloud, columns, packing, plain, joints, pose, row, portions, wrong: None }
     }

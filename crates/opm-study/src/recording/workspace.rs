@@ -310,8 +310,20 @@ impl PoseRecording<'_> {
             packing.reuse(portion);
             Ok(())
         };
-        if recorder.overview_every() == 1 {
-            // The overview has every point. There are few enough to keep them for the slices.
+        if recorder.overview_every() > 1 {
+            self.overview(&mut recorder, &packing, &columns)?;
+            each_point(&mut |portion| push(&mut recorder, portion))?;
+        } else if poses.are_kept() && cloud.is_plain() {
+            // The overview has every point. It takes less time to make them again than to get
+            // memory for all of them from the system.
+            each_point(&mut |portion| {
+                recorder.overview_packed(&portion.packed).map_err(failed)?;
+                packing.reuse(portion);
+                Ok(())
+            })?;
+            each_point(&mut |portion| push(&mut recorder, portion))?;
+        } else {
+            // There are few enough to keep them for the slices.
             let mut kept = Vec::new();
             each_point(&mut |portion| {
                 recorder.overview_packed(&portion.packed).map_err(failed)?;
@@ -320,9 +332,6 @@ impl PoseRecording<'_> {
             })?;
             progress.advance(grid.poses()).map_err(|error| self.interrupted(error.into()))?;
             kept.into_iter().try_for_each(|portion| push(&mut recorder, portion))?;
-        } else {
-            self.overview(&mut recorder, &packing, &columns)?;
-            each_point(&mut |portion| push(&mut recorder, portion))?;
         }
         recorder.finish(&result(workspace, count, inscribed)).map_err(failed)
     }
