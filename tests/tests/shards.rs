@@ -4,7 +4,7 @@ use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
-    Axis, Cancelled, Count, Grid, Hits, Modes, Progress, Run, Shard, Sweep, replay,
+    Axis, Cancelled, ConditionLimit, Count, Grid, Hits, Modes, Progress, Run, Shard, Sweep, replay,
 };
 
 /// The runs of a sweep with their rows, in the order in which they are reported.
@@ -108,9 +108,27 @@ fn a_replay_gives_what_the_sweep_gave() {
                 }
             }
             let mut again = Vec::new();
-            let runs = joined.into_iter().map(Ok);
+            let runs = joined.iter().copied().map(Ok);
             replay(&grid, runs, &progress, make, Vec::new, |made| take(&mut again, made)).unwrap();
             assert!(again == all, "{pair:?}");
+
+            // The sweep keeps these runs itself, unless they are too many, and counts as ever.
+            let (count, kept) = sweep.count_and_keep(joined.len(), &progress).unwrap();
+            assert_eq!(count, sweep.count(&progress).unwrap(), "{pair:?}");
+            assert!(kept.as_ref() == Some(&joined), "{pair:?}");
+            if let Some(fewer) = joined.len().checked_sub(1) {
+                assert_eq!(sweep.count_and_keep(fewer, &progress).unwrap(), (count, None));
+            }
+
+            // With a limit on the condition number, too.
+            let length = manipulator.characteristic_length();
+            if length > 0.0 && length.is_finite() {
+                let limited = sweep.with_limit(ConditionLimit { most: 8.0, length }).unwrap();
+                let (count, kept) = limited.count_and_keep(usize::MAX, &progress).unwrap();
+                assert_eq!(count, limited.count(&progress).unwrap(), "{pair:?}");
+                let kept = kept.unwrap().iter().map(|run| run.to - run.from).sum::<u64>();
+                assert_eq!(kept, count.reachable, "{pair:?}");
+            }
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::poses::PoseSource;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{
-    Cancelled, ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes, Progress, Rejections,
-    Sections, SetAxis, SetError, Sweep, Visits,
+    Cancelled, ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes, Progress,
+    Rejections, Sections, SetAxis, SetError, Sweep, Visits,
 };
 use std::sync::Arc;
 

@@ -30,7 +30,7 @@ use rayon::prelude::*;
 use sheet::SheetKind;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-use worker::{Visitor, Worker};
+use worker::{Ranges, Visitor, Worker};
 
 /// Poses of a row that are decided together, of which a block has room for several.
 const SEGMENT: u64 = 1024;
@@ -254,7 +254,7 @@ impl<'a> Sweep<'a> {
         self.blocks()
             .into_par_iter()
             .map_init(
-                || Worker::new(self),
+                || Worker::new(self, Ranges::Wanted),
                 |worker, block| {
                     let mut count = nothing();
                     self.block(block, worker, &mut count, None);
@@ -280,7 +280,7 @@ impl<'a> Sweep<'a> {
         let too_many = AtomicBool::new(false);
         in_order(
             self.blocks().map(Ok),
-            || Worker::new(self),
+            || Worker::new(self, Ranges::Wanted),
             |worker, block| {
                 let (mut count, mut runs) = (Count::nothing(self.manipulator), Vec::new());
                 let mut keep = |hits: &Hits<'_>| {
@@ -347,7 +347,7 @@ impl<'a> Sweep<'a> {
     ) -> Result<(), E> {
         in_order(
             self.blocks().map(Ok),
-            || Worker::new(self),
+            || Worker::new(self, Ranges::Unused),
             |worker, block| {
                 let mut made = empty();
                 let mut count = Count::nothing(self.manipulator);

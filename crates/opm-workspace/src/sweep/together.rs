@@ -1,7 +1,7 @@
 //! Slices of few poses: poses of many slices are decided together.
 
 use super::runs::{self, Run};
-use super::worker::Visitor;
+use super::worker::{Ranges, Visitor};
 use super::{Count, Hits, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::Sections;
@@ -14,6 +14,7 @@ const FEW: u64 = 8;
 
 /// A thread's working memory for poses of several slices.
 pub struct Together<'a> {
+    ranges: Ranges,
     batch: Batch,
     /// Decides by the limit on the condition number, if there is one.
     limited: Option<Conditioned<'a>>,
@@ -37,10 +38,11 @@ impl Sweep<'_> {
 }
 
 impl<'a> Together<'a> {
-    pub fn new(sweep: &Sweep<'a>) -> Self {
+    pub fn new(sweep: &Sweep<'a>, ranges: Ranges) -> Self {
         let axes = sweep.grid.axes().len();
         let limited = |limit| Conditioned::new(sweep.manipulator, limit);
         Self {
+            ranges,
             batch: sweep.manipulator.batch(),
             limited: sweep.limit.map(limited),
             digits: vec![0; axes],
@@ -82,7 +84,7 @@ impl<'a> Together<'a> {
                     let mut conditions = [0.0; Manipulator::DECIDED];
                     let conditions = &mut conditions[..reached.len()];
                     let used: Option<&mut dyn FnMut(usize, [f64; 2])> =
-                        if hit.is_none() { Some(&mut used) } else { None };
+                        if self.ranges == Ranges::Wanted { Some(&mut used) } else { None };
                     conditioned.decide(&self.poses, sweep.modes, conditions, used);
                     let admitted = conditions.iter().map(|condition| !condition.is_nan());
                     reached.iter_mut().zip(admitted).for_each(|(to, admitted)| *to = admitted);

@@ -17,9 +17,17 @@ use std::ops::Range;
 /// Who takes the reachable poses, if anybody does.
 pub type Visitor<'v> = Option<&'v mut dyn FnMut(&Hits<'_>)>;
 
+/// Whether the ranges of the imaginary joints are taken over every pose that a worker finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ranges {
+    Wanted,
+    Unused,
+}
+
 /// A thread of a sweep with its working memory.
 pub struct Worker<'a> {
     sweep: &'a Sweep<'a>,
+    ranges: Ranges,
     pub sheet: Sheet<'a>,
     clipping: Clipping,
     row: Row,
@@ -172,11 +180,12 @@ fn in_doubt(clipped: &[ClippedRows], kind: SheetKind, i: usize) -> bool {
 }
 
 impl<'a> Worker<'a> {
-    pub fn new(sweep: &'a Sweep<'a>) -> Self {
+    pub fn new(sweep: &'a Sweep<'a>, ranges: Ranges) -> Self {
         let manipulator = sweep.manipulator;
         let pose = || vec![0.0; sweep.grid.axes().len()];
         Self {
             sweep,
+            ranges,
             sheet: Sheet::new(sweep),
             clipping: Clipping::new(),
             row: Row::default(),
@@ -196,8 +205,9 @@ impl<'a> Worker<'a> {
 
     /// Decides all poses of some rows, where slices have few of them.
     pub fn together(&mut self, rows: Range<u64>, found: &mut Count, hit: &mut Visitor<'_>) {
-        let sweep = self.sweep;
-        self.together.get_or_insert_with(|| Together::new(sweep)).decide(sweep, rows, found, hit);
+        let (sweep, ranges) = (self.sweep, self.ranges);
+        let together = self.together.get_or_insert_with(|| Together::new(sweep, ranges));
+        together.decide(sweep, rows, found, hit);
     }
 
     /// Takes the one pose of a slice of the upper section alone, which closes.
@@ -256,7 +266,7 @@ impl<'a> Worker<'a> {
             if count_alone {
                 reachable += asked.count();
             } else {
-                self.limit_rows(&asked, hit.is_none(), found);
+                self.limit_rows(&asked, found);
                 for place in 0..asked.numbers().len() {
                     reachable += self.take_row(&asked, place, window, hit);
                 }
@@ -371,12 +381,12 @@ impl<'a> Worker<'a> {
         self.go_to_row(number);
         self.row.take(std::iter::once(window));
         let count = if let Some(limit) = &mut self.limit {
-            limit.begin(hit.is_none());
+            limit.begin(self.ranges == Ranges::Wanted);
             limit.add(self.sweep, std::iter::once(window), &self.sheet.others, found);
             limit.decide(self.sweep, found);
             self.row.retain(|_| limit.next())
         } else {
-            let (manipulator, ranges) = (self.sweep.manipulator, hit.is_none());
+            let (manipulator, ranges) = (self.sweep.manipulator, self.ranges == Ranges::Wanted);
             let modes = self.sweep.modes;
             let OnePose { pose, all, solution } = &mut self.one;
             pose[1..].copy_from_slice(&self.sheet.others);
@@ -407,11 +417,11 @@ impl<'a> Worker<'a> {
         count
     }
 
-    /// Holds the reachable poses of the rows that were asked for against the limit, if there is one, and takes (`ranges`)
-    /// the imaginary joints of the modes in which they are admitted.
-    fn limit_rows(&mut self, asked: &AskedRows, ranges: bool, found: &mut Count) {
+    /// Holds the reachable poses of the rows that were asked for against the limit, if there is one, and takes the imaginary
+    /// joints of the modes in which they are admitted, if their ranges are wanted.
+    fn limit_rows(&mut self, asked: &AskedRows, found: &mut Count) {
         let Some(mut limit) = self.limit.take() else { return };
-        limit.begin(ranges);
+        limit.begin(self.ranges == Ranges::Wanted);
         for (place, &number) in asked.numbers().iter().enumerate() {
             self.go_to_row(number);
             limit.add(self.sweep, asked.runs(place), &self.sheet.others, found);
