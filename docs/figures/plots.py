@@ -8,6 +8,7 @@ from recordings import opm
 
 
 def draw():
+    mechanism("plano-spherical-5dof", "xi=20deg", "plano-spherical-mechanism.png")
     motion("plano-spherical-5dof", "plano-spherical-sinusoids", "plano-spherical-motion.png")
     workspace(
         "plano-spherical-5dof", "gallery-plano-spherical-imaginary.png",
@@ -18,6 +19,11 @@ def draw():
         "plano-spherical-5dof", "plano-spherical-places.png", "--kind=reachable", panels="slices",
         x="-230mm:230mm:231", y="-150mm:150mm:151",
         zeta="-40deg:40deg:17", xi="-40deg:40deg:17", psi="-40deg:40deg:17",
+    )  # fmt: skip
+    workspace(
+        "plano-spherical-5dof", "gallery-plano-spherical-disc.png",
+        "--kind=dexterous", "--inscribed=disc", "--centre=x=0,y=0", panels="slices",
+        x="-200mm:200mm:401", y="-150mm:200mm:351", xi="-20deg:20deg:9", psi="-20deg:20deg:9",
     )  # fmt: skip
     workspace(
         "translational-helical-3dof", "translational-helical-workspace.png", panels="slices",
@@ -34,6 +40,11 @@ def draw():
         "cartesian-wrist-6dof", "gallery-cartesian-wrist.png", panels="slices", x="0", y="0", z="400mm",
         zeta="-180deg:180deg:361", xi="0:80deg:161", psi="-150deg:150deg:6",
     )  # fmt: skip
+
+
+def mechanism(name, pose, picture):
+    IMAGES.mkdir(exist_ok=True)
+    opm("plot", name, f"--pose={pose}", "-o", IMAGES / picture, "--quiet")
 
 
 def motion(mechanism, name, picture):

@@ -1,11 +1,11 @@
 //! The picture of a mechanism, from four sides.
 
+use super::label::value_label;
 use super::sized::drawn;
 use crate::args::{MechanismArgs, Output, PlotArgs};
 use crate::failure::Failure;
 use crate::ik::reason;
 use crate::load::{self, Loaded};
-use crate::text;
 use crate::unitless;
 use nalgebra::{Isometry3, Point3};
 use opm_core::decomposition::Decomposition;
@@ -125,7 +125,7 @@ fn pose_line(loaded: &Loaded, manipulator: &Manipulator, solution: &Solution) ->
     let units = loaded.file.units;
     let coordinates = manipulator.task_coordinates().iter().zip(solution.pose());
     let pose = coordinates.map(|(c, &value)| {
-        let value = text::number(value, c.quantity, units);
+        let value = value_label(value / units.factor(c.quantity));
         format!("{} = {value} {}", c.name, units.symbol(c.quantity))
     });
     let pose = pose.collect::<Vec<_>>().join(", ");
