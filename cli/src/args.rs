@@ -119,7 +119,7 @@ pub struct MechanismArgs {
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 pub struct ChangeArgs {
     /// Change a number of the file: a parameter of a leg (leg1.h=140mm) or of all legs (h=140mm), or limits
-    /// (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=... and S1.home=...
+    /// (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=..., S1.max_rate=... and S1.home=...
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<Change>,
     /// Angles of orientations: `euler-angles` (zeta xi psi) or `tilt-torsion` (azimuth tilt torsion)

@@ -119,7 +119,7 @@ struct Source {
 #[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
 #[derive(Clone)]
 pub struct Violation {
-    /// ``"reach"``, ``"limit"`` or ``"singularity"``.
+    /// ``"reach"``, ``"limit"``, ``"rate"``, ``"acceleration"`` or ``"singularity"``.
     kind: String,
     /// Time at which it starts, seconds.
     start: f64,
@@ -129,11 +129,11 @@ pub struct Violation {
     worst: f64,
     /// How large the violation is at that time, in :attr:`unit`.
     amount: f64,
-    /// Unit of the amount: ``"m"``, ``"rad"``, or ``"1"`` for the remaining measure of a singularity.
+    /// Unit of the amount: ``"m"``, ``"rad"``; ``"m/s"``, ``"rad/s"``, ``"m/s^2"``, ``"rad/s^2"`` beyond a limit of motion; or ``"1"`` for the remaining measure of a singularity.
     unit: String,
     /// The leg that the violation is about.
     leg: Option<String>,
-    /// The joint that is past its limit.
+    /// The joint that is past its limit, or too fast.
     joint: Option<String>,
     /// ``"lower"`` or ``"upper"``: what is out of reach or singular.
     section: Option<String>,

@@ -266,6 +266,8 @@ def with_all_limits(document):
         legs = document[table]
         for leg in legs if isinstance(legs, list) else [legs]:
             leg["limits"] = {joint: [-1000, 1000] for joint in joints.split()}
+            leg["max_rate"] = dict.fromkeys(joints.split(), 500)
+            leg["max_acceleration"] = dict.fromkeys(joints.split(), 2000)
     return document
 
 

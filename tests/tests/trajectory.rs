@@ -3,6 +3,7 @@
 use fastrand::Rng;
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Section};
+use opm_core::mechanism::joint::MotionLimit;
 use opm_core::motion::{self, Harmonics, Path, PlatformMotion, Sinusoid};
 use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
 use opm_tests::random::{Meet, Options, PAIRS, mechanism, meet};
@@ -400,4 +401,54 @@ fn samples_go_from_start_to_end() {
 
 fn shipped(name: &str) -> Manipulator {
     Manipulator::example(name).unwrap()
+}
+
+/// Two sliders that are coordinates of the pose, so that their rates and accelerations are known: they swing as
+/// `A sin(w t)`, and a limit of `share` of their largest rate or acceleration is passed where the cosine or the sine is
+/// larger than that.
+#[test]
+fn rates_and_accelerations_beyond_their_limits_are_found_between_samples() {
+    let (amplitude, rate, share) = (0.1, TAU * 0.5, 0.999_9);
+    for (limit, at_most, first) in [
+        (MotionLimit::Rate, amplitude * rate, 1.0),
+        (MotionLimit::Acceleration, amplitude * rate * rate, 0.5),
+    ] {
+        let text = opm_core::mechanism::examples::find("cartesian-wrist-6dof").unwrap().text;
+        let slow = format!("limits = [-100, 100], {} = {}", limit.key(), 1000.0 * share * at_most);
+        let text = text.replace("limits = [-100, 100]", &slow);
+        let manipulator = Manipulator::read(&text).unwrap();
+        let z = manipulator.task_coordinates().iter().position(|c| c.name == "z").unwrap();
+        let mut path: Vec<Harmonics> =
+            manipulator.task_coordinates().iter().map(|c| Harmonics::constant(c.home)).collect();
+        path[z].sinusoids.push(Sinusoid { amplitude, frequency: 0.5, phase: 0.0 });
+        // It starts and ends a quarter of a second away from the middle of every excess.
+        let motion = PlatformMotion {
+            name: "swing".into(),
+            start: 0.25,
+            duration: 3.0,
+            rate: None,
+            mode: None,
+            path: Path::Harmonics(path),
+        };
+        let found = violations(&manipulator, &motion, 13.0);
+        let half = share.acos() / rate;
+        assert_eq!(found.len(), 3, "{found:?}");
+        for (number, violation) in found.iter().enumerate() {
+            let Gauge::Motion { coordinate, limit: what } = violation.gauge else { panic!() };
+            assert_eq!((&*manipulator.coordinates()[coordinate].name, what), ("z3", limit));
+            assert_eq!(violation.quantity, Some(Quantity::Length));
+            let middle = first + number as f64;
+            assert!((violation.start - (middle - half)).abs() < 1e-6, "{violation:?} {middle}");
+            assert!((violation.end - (middle + half)).abs() < 1e-6, "{violation:?} {middle}");
+            assert!((violation.worst - middle).abs() < 1e-6, "{violation:?} {middle}");
+            let beyond = (1.0 - share) * at_most;
+            assert!((violation.amount - beyond).abs() < 3e-9 * at_most, "{violation:?} {beyond}");
+        }
+        // They are no limits of the workspace.
+        let mut trajectory =
+            Trajectory::new(&manipulator, &motion, manipulator.home_mode(), 10.0).unwrap();
+        while trajectory.advance().unwrap() {
+            assert!(trajectory.sample().valid());
+        }
+    }
 }

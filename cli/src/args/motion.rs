@@ -68,7 +68,7 @@ pub struct LinkageArgs {
 /// working mode stays the same, and angles are continuous.
 ///
 /// Where the mechanism cannot follow, the answer says when, which leg or joint, and by how much: out of
-/// reach, past the limit of a joint (passive joints too), through a singularity. Violations between two
+/// reach, past the limit of a joint (passive joints too), above its max_rate or max_acceleration, through a singularity. Violations between two
 /// samples are found too, unless one comes and goes more than once there. The rest of the motion is
 /// recorded; with --strict the exit status is then 1.
 ///

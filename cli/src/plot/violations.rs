@@ -31,6 +31,9 @@ impl Violation {
                 word("joint").unwrap_or("a joint"),
                 word("bound").unwrap_or("last")
             ),
+            Some(kind @ ("rate" | "acceleration")) => {
+                format!("{} above its max_{kind}", word("joint").unwrap_or("a joint"))
+            }
             Some("reach") => format!("out of reach in its {section}section"),
             Some("singularity") => {
                 let kind = word("singularity").map_or(String::new(), |kind| format!("{kind} "));
@@ -39,9 +42,14 @@ impl Violation {
             other => other.unwrap_or("violation").to_owned(),
         };
         let leg = word("leg").map_or(String::new(), |leg| format!("{leg}: "));
-        let measured = quantity(word("unit")).zip(number("amount"));
+        let (unit, rate) = match word("unit").and_then(|unit| unit.split_once("/s")) {
+            None => (word("unit"), Rate::Position),
+            Some((unit, "")) => (Some(unit), Rate::Velocity),
+            Some((unit, _)) => (Some(unit), Rate::Acceleration),
+        };
+        let measured = quantity(unit).zip(number("amount"));
         let by = measured.map_or(String::new(), |(quantity, amount)| {
-            let (measure, factor) = source.measure("", Some(quantity), Rate::Position);
+            let (measure, factor) = source.measure("", Some(quantity), rate);
             format!(" by {} {}", value_label(amount / factor), measure.unit.symbol)
         });
         Some(Self { start, end, text: format!("{leg}{what}{by}") })

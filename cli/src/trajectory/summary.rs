@@ -140,13 +140,14 @@ impl Report<'_> {
     /// One line for people, in the units of the mechanism file.
     fn line(&self, violation: &Violation) -> String {
         let Violation { start, end, worst, amount, quantity, .. } = *violation;
-        let (what, units) =
-            (ViolationReport::new(violation, self.request.manipulator).what(), self.units);
+        let report = ViolationReport::new(violation, self.request.manipulator);
+        let (what, units) = (report.what(), self.units);
         match quantity {
             Some(quantity) => format!(
-                "t = {start:.6} .. {end:.6} s: {what} by {} {} at {worst:.6} s",
+                "t = {start:.6} .. {end:.6} s: {what} by {} {}{} at {worst:.6} s",
                 text::number(amount, quantity, units),
-                units.symbol(quantity)
+                units.symbol(quantity),
+                report.per_time()
             ),
             None => format!("t = {start:.6} s: {what}"),
         }

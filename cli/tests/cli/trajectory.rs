@@ -461,3 +461,48 @@ fn dependent_coordinates_are_recorded() {
     opm(&["plot", &out, "-o", &picture, "-q"]).text();
     assert!(folder.read("five-bar.svg").contains("theta"));
 }
+
+/// A slider of the helical manipulator that moves as x does, `S3 = ... - x`: x = 50 mm sin(2 pi 0.5 t) has a speed
+/// of 50 pi mm/s at most.
+#[test]
+fn a_joint_above_its_rate_is_told_in_the_units_of_the_file() {
+    let folder = Folder::new();
+    let text = opm(&["examples", HELICAL]).text().to_owned();
+    let (before, last) = text.rsplit_once("limits = { S = [-400, 400] }").unwrap();
+    let slow = "limits = { S = [-400, 400] }\nmax_rate = { S = 150 }";
+    let file = folder.write("slow.toml", format!("{before}{slow}{last}"));
+    let x = "x = { amplitude = 50, frequency = 0.5 }";
+    let motion = format!("{HEAD}duration = 1.5\nrate = 20\n[coordinates]\n{x}\n");
+    let motion = folder.write("fast.toml", motion);
+    let excess = 0.05 * PI - 0.15;
+    let found = json(&file, &motion, &["--quiet"]);
+    assert_eq!((&found["violation_count"], &found["valid"]), (&json!(2), &json!(31)));
+    let violation = &found["violations"][1];
+    assert_eq!(
+        keys(violation),
+        ["kind", "start", "end", "worst", "amount", "unit", "leg", "joint"]
+    );
+    assert_eq!((&violation["kind"], &violation["unit"]), (&json!("rate"), &json!("m/s")));
+    assert_eq!((&violation["leg"], &violation["joint"]), (&json!("leg3"), &json!("S3")));
+    assert!((number(&violation["amount"]) - excess).abs() < 1e-9, "{violation}");
+    assert!((number(&violation["worst"]) - 1.0).abs() < 1e-6, "{violation}");
+    let half = (0.15 / (0.05 * PI)).acos() / PI;
+    assert!((number(&violation["start"]) - (1.0 - half)).abs() < 1e-9, "{violation}");
+    assert!((number(&violation["end"]) - (1.0 + half)).abs() < 1e-9, "{violation}");
+
+    let out = folder.arg("fast.mcap");
+    let run = trajectory(&file, &motion, &["-o", &out]);
+    let line = format!("leg3: S3 above its max_rate by {:.3} mm/s at 1.000000 s", 1000.0 * excess);
+    assert!(run.text().contains(&line), "{line}: {}", run.stdout);
+    let recorded = opm(&["inspect", &out, "--format", "json"]).json();
+    assert_eq!(recorded["metadata"]["violation.2"]["kind"], "rate");
+    assert_eq!(recorded["metadata"]["violation.2"]["unit"], "m/s");
+    let log = read(std::path::Path::new(&out)).unwrap();
+    let logged = log.messages("/violations").len();
+    assert_eq!(logged, 4, "two begin and end");
+    let strict = trajectory(&file, &motion, &["--strict", "--quiet"]);
+    assert_eq!(strict.code, Some(1));
+    assert!(strict.stderr.contains("S3 above its max_rate"), "{}", strict.stderr);
+    let changed = trajectory(&file, &motion, &["--set", "max_rate.S=200mm", "--strict", "--quiet"]);
+    assert_eq!(changed.code, Some(0), "{}", changed.stderr);
+}

@@ -3,13 +3,13 @@
 //! Along a motion no joint jumps by a full revolution: every angle is the one nearest to its last value
 //! ([`Manipulator::inverse_near`]), and the working mode stays the same. A part of the motion that the
 //! mechanism cannot follow is a [`Violation`]: a leg is out of reach, a joint (actuated or passive) is
-//! beyond a limit, or the motion passes through a singularity. [`ViolationReport`] describes it in words.
+//! beyond a limit or faster than it may be, or the motion passes through a singularity. [`ViolationReport`] describes it in words.
 //!
 //! # What is found between the samples
 //!
 //! A [`Gauge`] is a continuous function of time. There is one for each of these:
 //!
-//! * the distance of a joint from a limit;
+//! * the distance of a joint from a limit, and that of its rate and of its acceleration;
 //! * the distance of a leg from its boundary of reach: its serial singularity measure or, out of reach,
 //!   minus the deficit;
 //! * the signed parallel singularity measure of a section.
@@ -78,6 +78,7 @@ pub use violations::Change;
 
 use crate::chain::limits::Limits;
 use crate::manipulator::{Manipulator, Mode, PoseError, Section, Solution, Unreachable};
+use crate::mechanism::joint::MotionLimit;
 use crate::motion::{Instant, PlatformMotion};
 use crate::numeric::Quantity;
 use crate::velocity::{self, Jacobians, Measures, Singularities, VelocityError};
@@ -88,6 +89,10 @@ pub const RESOLUTION: f64 = 1e-10;
 /// Slopes of gauges are differences over this share of the step. Only the sign of a slope matters, and the
 /// rounding of a gauge, some 1e-16, is far below.
 const SLOPE_STEP: f64 = 1e-3;
+
+/// A rate or an acceleration is at its limit within this share of it: far above rounding, far below what a motor
+/// feels.
+const MOTION_TOLERANCE: f64 = 1e-9;
 
 /// The largest number of samples. The numbers of more samples could not be represented exactly.
 const MOST_SAMPLES: f64 = 9e15;
@@ -229,6 +234,8 @@ struct Solver<'a> {
     mode: Mode,
     rate: f64,
     gauges: Vec<Gauge>,
+    /// Whether there are gauges of rates or accelerations.
+    watches_rates: bool,
     /// For each joint coordinate, the number of its leg.
     legs: Vec<usize>,
     /// The characteristic length for the condition number, metres.
@@ -283,12 +290,14 @@ impl<'a> Trajectory<'a> {
         let samples = whole as u64 + 1 + u64::from(steps - whole > 1e-6);
         let measured = manipulator.singularities();
         let legs = manipulator.mechanism().legs.iter().enumerate();
+        let gauges = gauge::gauges(manipulator);
         let solver = Solver {
             manipulator,
             motion,
             mode,
             rate,
-            gauges: gauge::gauges(manipulator),
+            watches_rates: gauges.iter().any(|gauge| matches!(gauge, Gauge::Motion { .. })),
+            gauges,
             legs: legs.flat_map(|(number, leg)| leg.coordinates().map(move |_| number)).collect(),
             length: manipulator.characteristic_length(),
             jacobians: manipulator.jacobians(),
@@ -398,15 +407,30 @@ impl Solver<'_> {
             manipulator.measure_singularities(&self.jacobians, &mut self.measured);
             (out.upper, out.lower) = (self.measured.upper, self.measured.lower);
         }
-        for (&gauge, level) in self.gauges.iter().zip(&mut out.levels) {
-            *level = self.level(gauge, &out.solution);
+        if self.watches_rates {
+            self.joint_motion(out)?;
+        }
+        for (number, &gauge) in self.gauges.iter().enumerate() {
+            out.levels[number] = self.level(gauge, out);
         }
         Ok(())
     }
 
     /// Computes the rates of the joints and the condition number, at the solution that was found last.
     fn rates(&mut self, out: &mut Sample) -> Result<(), TrajectoryError> {
-        (out.regular, out.condition) = (false, f64::INFINITY);
+        if !self.watches_rates {
+            self.joint_motion(out)?;
+        }
+        out.condition = f64::INFINITY;
+        if out.reached {
+            out.condition = self.manipulator.conditioning(&self.jacobians, self.length).condition;
+        }
+        Ok(())
+    }
+
+    /// Computes the rates and accelerations of the joints, at the solution that was found last.
+    fn joint_motion(&self, out: &mut Sample) -> Result<(), TrajectoryError> {
+        out.regular = false;
         if out.reached {
             let Instant { velocity, acceleration, .. } = &out.instant;
             let (solution, motion) = (&out.solution, &mut out.motion);
@@ -416,14 +440,14 @@ impl Solver<'_> {
                 Err(VelocityError::Overflow { .. }) => false,
                 Err(source) => return Err(TrajectoryError::Velocity { time: out.time, source }),
             };
-            out.condition = self.manipulator.conditioning(&self.jacobians, self.length).condition;
         }
         Ok(())
     }
 
-    /// The level of a gauge for a solution. If the solution is in reach, its singularity measures must be the
-    /// last ones that were computed.
-    fn level(&self, gauge: Gauge, solution: &Solution) -> Option<f64> {
+    /// The level of a gauge at a sample. If the sample is in reach, its singularity measures must be the last
+    /// ones that were computed.
+    fn level(&self, gauge: Gauge, sample: &Sample) -> Option<f64> {
+        let solution = &sample.solution;
         let deficit = |leg: usize| solution.unreachable.iter().find(|u| u.leg == leg);
         let reached = solution.unreachable.is_empty();
         match gauge {
@@ -444,6 +468,16 @@ impl Solver<'_> {
                     Bound::Lowest => value - low,
                     Bound::Highest => high - value,
                 })
+            }
+            Gauge::Motion { coordinate, limit } => {
+                let motion = &sample.motion;
+                let derivatives = match limit {
+                    MotionLimit::Rate => &motion.joint_rates,
+                    MotionLimit::Acceleration => &motion.joint_accelerations,
+                };
+                let largest = limit.of(&self.manipulator.coordinates()[coordinate].motion_limits)?;
+                let allowed = largest * (1.0 + MOTION_TOLERANCE);
+                (sample.reached && sample.regular).then(|| allowed - derivatives[coordinate].abs())
             }
             Gauge::Parallel { part } => {
                 let Singularities { upper, lower, whole, .. } = &self.measured;

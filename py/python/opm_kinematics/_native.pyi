@@ -387,8 +387,8 @@ class Manipulator:
         """The geometric parameters of its family by name; empty for a list of joints.
 
         ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
-        of its joints. Values are in metres and radians. A point is ``(x, y)``; limits are ``(lowest, highest)``,
-        or None if there are none.
+        of its joints, ``leg1.max_rate.S`` and ``leg1.max_acceleration.S`` those of its motion. Values are in metres, radians
+        and seconds. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None if there are none.
         """
     def with_parameters(
         self, changes: Mapping[str, _Parameter] | None = None, /, **named: _Parameter
@@ -399,8 +399,9 @@ class Manipulator:
         ----------
         changes : mapping, optional
             New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
-            full name (``leg1.h``) sets it in one leg and takes precedence. In a list of joints, ``S1.limits`` and ``S1.home``
-            are those of one joint coordinate, and ``limits`` those of all joints that have any.
+            full name (``leg1.h``) sets it in one leg and takes precedence. In a list of joints, ``S1.limits``,
+            ``S1.max_rate``, ``S1.max_acceleration`` and ``S1.home`` are those of one joint coordinate, and ``limits`` those of
+            all joints that have any.
         **named
             New values for names without dots.
 
@@ -1578,7 +1579,7 @@ class Violation:
 
     @property
     def kind(self) -> str:
-        """``"reach"``, ``"limit"`` or ``"singularity"``."""
+        """``"reach"``, ``"limit"``, ``"rate"``, ``"acceleration"`` or ``"singularity"``."""
     @property
     def start(self) -> float:
         """Time at which it starts, seconds."""
@@ -1593,13 +1594,13 @@ class Violation:
         """How large the violation is at that time, in :attr:`unit`."""
     @property
     def unit(self) -> str:
-        """Unit of the amount: ``"m"``, ``"rad"``, or ``"1"`` for the remaining measure of a singularity."""
+        """Unit of the amount: ``"m"``, ``"rad"``; ``"m/s"``, ``"rad/s"``, ``"m/s^2"``, ``"rad/s^2"`` beyond a limit of motion; or ``"1"`` for the remaining measure of a singularity."""
     @property
     def leg(self) -> str | None:
         """The leg that the violation is about."""
     @property
     def joint(self) -> str | None:
-        """The joint that is past its limit."""
+        """The joint that is past its limit, or too fast."""
     @property
     def section(self) -> str | None:
         """``"lower"`` or ``"upper"``: what is out of reach or singular."""

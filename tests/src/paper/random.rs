@@ -4,6 +4,7 @@ use super::{PlanoSpherical, Signs, SliderLeg, TranslationalLeg};
 use fastrand::Rng;
 use opm_core::chain::Branch;
 use opm_core::mechanism::family::{plano_spherical, translational_helical};
+use opm_core::mechanism::joint::JointLimits;
 use std::f64::consts::TAU;
 
 impl PlanoSpherical {
@@ -59,8 +60,8 @@ impl PlanoSpherical {
                 b1: self.b[0],
                 b2: self.b[1],
                 elbow: branch(signs.arm),
-                phi1: None,
-                phi2: None,
+                phi1: JointLimits::default(),
+                phi2: JointLimits::default(),
             },
         }
     }

@@ -17,7 +17,7 @@ pub use planar_planar::PlanarPlanar;
 pub use plano_spherical::PlanoSpherical;
 pub use translational_helical::TranslationalHelical;
 
-pub(in crate::mechanism) use parameter::{Group, Parameter, ParameterRef, TableKey};
+pub(in crate::mechanism) use parameter::{Group, JointTable, Parameter, ParameterRef, TableKey};
 
 use super::Mechanism;
 #[cfg(feature = "files")]

@@ -20,8 +20,9 @@
 //! | `universal` | `axis`, `axis2`, `point` | as revolute; coordinates about `axis`, `axis2` |
 //! | `spherical` | `point` | as revolute; coordinates x, y, z of the rotation vector |
 //!
-//! `home` (default zero) is a number and `limits` a pair `[lowest, highest]`. A joint with several
-//! coordinates has an array with one entry per coordinate.
+//! Every joint may have `max_rate` and `max_acceleration`, in the file's units per second and per second
+//! squared. `home` (default zero) and these two are numbers, and `limits` is a pair `[lowest, highest]`. A
+//! joint with several coordinates has an array with one entry per coordinate.
 //!
 //! `[task]` says how the pose is measured, where the [geometry](crate::task) leaves a choice:
 //!

@@ -29,6 +29,81 @@ pub enum JointKind {
     Spherical,
 }
 
+/// The limits of how fast one joint coordinate moves. Trajectories are compared with them; reach, workspaces and
+/// inverse kinematics do not depend on them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct MotionLimits {
+    /// Largest absolute rate, radians or metres per second; positive.
+    pub max_rate: Option<f64>,
+    /// Largest absolute acceleration, radians or metres per second squared; positive.
+    pub max_acceleration: Option<f64>,
+}
+
+/// One of the [`MotionLimits`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MotionLimit {
+    /// The limit of the rate.
+    Rate,
+    /// The limit of the acceleration.
+    Acceleration,
+}
+
+impl MotionLimit {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Rate, Self::Acceleration];
+
+    /// The key in mechanism files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Rate => "max_rate",
+            Self::Acceleration => "max_acceleration",
+        }
+    }
+
+    /// The power of time in its unit, to be written after the unit of a length or an angle.
+    pub fn per_time(self) -> &'static str {
+        match self {
+            Self::Rate => "/s",
+            Self::Acceleration => "/s^2",
+        }
+    }
+
+    /// Its unit in SI.
+    pub fn unit(self, quantity: Quantity) -> &'static str {
+        match (self, quantity) {
+            (Self::Rate, Quantity::Angle) => "rad/s",
+            (Self::Rate, Quantity::Length) => "m/s",
+            (Self::Acceleration, Quantity::Angle) => "rad/s^2",
+            (Self::Acceleration, Quantity::Length) => "m/s^2",
+        }
+    }
+
+    /// Its value.
+    pub fn of(self, limits: &MotionLimits) -> Option<f64> {
+        match self {
+            Self::Rate => limits.max_rate,
+            Self::Acceleration => limits.max_acceleration,
+        }
+    }
+
+    pub(crate) fn of_mut(self, limits: &mut MotionLimits) -> &mut Option<f64> {
+        match self {
+            Self::Rate => &mut limits.max_rate,
+            Self::Acceleration => &mut limits.max_acceleration,
+        }
+    }
+}
+
+/// Everything that limits one joint coordinate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointLimits {
+    /// Lowest and highest value, radians or metres.
+    pub range: Option<[f64; 2]>,
+    /// How fast the joint moves.
+    pub motion: MotionLimits,
+}
+
 /// One scalar coordinate of a joint: its name, its home value and its limits.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -43,6 +118,8 @@ pub struct JointCoordinate {
     /// Lowest and highest allowed value, both included, in radians or metres; `None` without
     /// limits.
     pub limits: Option<[f64; 2]>,
+    /// The limits of its rate and of its acceleration.
+    pub motion_limits: MotionLimits,
 }
 
 impl JointCoordinate {
@@ -136,6 +213,7 @@ impl Joint {
                 quantity,
                 home: 0.0,
                 limits: None,
+                motion_limits: MotionLimits::default(),
             })
             .collect();
         Self { name, kind, axis, point, actuated: false, coordinates }
@@ -160,6 +238,13 @@ impl Joint {
     pub fn within(mut self, limits: Option<[f64; 2]>) -> Self {
         self.coordinates[0].limits = limits;
         self
+    }
+
+    /// Sets the limits of the joint's first coordinate and of its motion.
+    #[must_use]
+    pub fn limited(mut self, limits: JointLimits) -> Self {
+        self.coordinates[0].motion_limits = limits.motion;
+        self.within(limits.range)
     }
 
     /// The number of freedoms: 1, 2 or 3.

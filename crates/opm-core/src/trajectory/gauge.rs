@@ -1,6 +1,7 @@
 //! The gauges that are computed along a motion, and the violations that are found.
 
 use crate::manipulator::{Manipulator, Section};
+use crate::mechanism::joint::MotionLimit;
 use crate::numeric::Quantity;
 
 /// One end of a joint's range.
@@ -29,6 +30,14 @@ pub enum Gauge {
         /// The limit: the lower or the upper one.
         bound: Bound,
     },
+    /// What the limit of a joint coordinate's rate or acceleration leaves above the absolute value, per second
+    /// or per second squared.
+    Motion {
+        /// The number of the joint coordinate.
+        coordinate: usize,
+        /// The limit: of the rate or of the acceleration.
+        limit: MotionLimit,
+    },
     /// A parallel singularity measure. It may have either sign, but it must not be zero.
     Parallel {
         /// The part of the mechanism that is measured.
@@ -48,7 +57,7 @@ pub enum Part {
 /// A part of a motion that the mechanism cannot follow, or a singularity that the motion passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
-    /// What is violated: the reach of a leg, the limit of a joint or the regularity of a section. A violation
+    /// What is violated: the reach of a leg, a limit of a joint or of its motion, or the regularity of a section. A violation
     /// of a leg's reach without a quantity, whose `end` equals `start`, is a serial singularity that the leg
     /// touches.
     pub gauge: Gauge,
@@ -60,9 +69,9 @@ pub struct Violation {
     /// The time when the violation is worst, seconds.
     pub worst: f64,
     /// The amount of the violation at its worst, in the unit of `quantity`: how far out of reach or beyond the
-    /// limit. For a singularity it is the absolute value of the measure. It is never negative.
+    /// limit; beyond a limit of motion, in this unit per second or per second squared. For a singularity it is the absolute value of the measure. It is never negative.
     pub amount: f64,
-    /// Whether the amount is an angle or a length; `None` for a singularity measure, which has no unit.
+    /// Whether the amount is an angle or a length, or the derivative of one; `None` for a singularity measure, which has no unit.
     pub quantity: Option<Quantity>,
     /// The section that is out of reach or singular; `None` for a joint limit.
     pub section: Option<Section>,
@@ -75,14 +84,20 @@ impl Violation {
     }
 }
 
-/// The gauges of a manipulator: the reach of every leg, all joint limits, and parallel singularities.
+/// The gauges of a manipulator: the reach of every leg, all limits of joints and of their motion, and parallel
+/// singularities.
 pub(super) fn gauges(manipulator: &Manipulator) -> Vec<Gauge> {
     let reach = (0..manipulator.mechanism().legs.len()).map(|leg| Gauge::Reach { leg });
     let limits = manipulator.limits().iter().enumerate().filter(|(_, limits)| limits.any());
     let limits = limits.flat_map(|(coordinate, _)| {
         [Bound::Lowest, Bound::Highest].map(|bound| Gauge::Limit { coordinate, bound })
     });
+    let motion = manipulator.coordinates().iter().enumerate().flat_map(|(coordinate, c)| {
+        let given =
+            MotionLimit::ALL.into_iter().filter(|limit| limit.of(&c.motion_limits).is_some());
+        given.map(move |limit| Gauge::Motion { coordinate, limit })
+    });
     let parts = [Part::Section(Section::Upper), Part::Section(Section::Lower), Part::Whole];
     let parallel = parts.into_iter().map(|part| Gauge::Parallel { part });
-    reach.chain(limits).chain(parallel).collect()
+    reach.chain(limits).chain(motion).chain(parallel).collect()
 }

@@ -2,18 +2,18 @@
 
 use super::gauge::{Bound, Gauge, Part, Violation};
 use crate::manipulator::{Manipulator, Section};
-use crate::numeric::Quantity;
+use crate::mechanism::joint::MotionLimit;
 
 /// The report of a violation: the names of what is violated, and its description in words.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViolationReport<'a> {
     /// The violation, in numbers.
     pub violation: &'a Violation,
-    /// The kind of violation: `reach`, `limit` or `singularity`.
+    /// The kind of violation: `reach`, `limit`, `rate`, `acceleration` or `singularity`.
     pub kind: &'static str,
-    /// The name of the leg that is out of reach or singular, or whose joint is beyond a limit.
+    /// The name of the leg that is out of reach or singular, or whose joint is beyond a limit or too fast.
     pub leg: Option<&'a str>,
-    /// The name of the joint coordinate that is beyond a limit.
+    /// The name of the joint coordinate that is beyond a limit, or too fast.
     pub joint: Option<&'a str>,
     /// The section that is out of reach or singular.
     pub section: Option<Section>,
@@ -51,14 +51,35 @@ impl<'a> ViolationReport<'a> {
                 let joint = &*manipulator.coordinates()[coordinate].name;
                 ("limit", leg_of(coordinate).map(|leg| &*leg.name), Some(joint), Some(bound))
             }
+            Gauge::Motion { coordinate, limit } => {
+                let kind = match limit {
+                    MotionLimit::Rate => "rate",
+                    MotionLimit::Acceleration => "acceleration",
+                };
+                let joint = &*manipulator.coordinates()[coordinate].name;
+                (kind, leg_of(coordinate).map(|leg| &*leg.name), Some(joint), None)
+            }
             Gauge::Parallel { .. } => ("singularity", None, None, None),
         };
         Self { violation, kind, leg, joint, section: violation.section, bound }
     }
 
-    /// The unit of the violation's amount: `rad`, `m`, or `1` for a singularity measure.
+    /// The unit of the violation's amount: `rad`, `m`, `rad/s`, `m/s`, `rad/s^2`, `m/s^2`, or `1` for a
+    /// singularity measure.
     pub fn unit(&self) -> &'static str {
-        self.violation.quantity.map_or("1", Quantity::unit)
+        match (self.violation.quantity, self.violation.gauge) {
+            (None, _) => "1",
+            (Some(quantity), Gauge::Motion { limit, .. }) => limit.unit(quantity),
+            (Some(quantity), _) => quantity.unit(),
+        }
+    }
+
+    /// The power of time in the unit, to be written after the unit of a length or an angle.
+    pub fn per_time(&self) -> &'static str {
+        match self.violation.gauge {
+            Gauge::Motion { limit, .. } => limit.per_time(),
+            _ => "",
+        }
     }
 
     /// The kind of singularity, `serial` or `parallel`; `None` for other violations.
@@ -79,6 +100,9 @@ impl<'a> ViolationReport<'a> {
             Gauge::Limit { .. } => {
                 let joint = self.joint.unwrap_or_default();
                 format!("{leg}: {joint} past its {} value", self.bound.map_or("", Bound::name))
+            }
+            Gauge::Motion { limit, .. } => {
+                format!("{leg}: {} above its {}", self.joint.unwrap_or_default(), limit.key())
             }
             Gauge::Parallel { part: Part::Whole } => "parallel singularity".to_owned(),
             Gauge::Parallel { .. } => format!("parallel singularity of the {section}section"),

@@ -27,7 +27,7 @@ impl Trajectory<'_> {
     /// Whether a gauge says that the motion cannot be followed.
     pub(super) fn violated(&self, number: usize, sample: &Sample) -> bool {
         match self.solver.gauges[number] {
-            Gauge::Reach { .. } | Gauge::Limit { .. } => {
+            Gauge::Reach { .. } | Gauge::Limit { .. } | Gauge::Motion { .. } => {
                 sample.levels[number].is_some_and(|level| level < 0.0)
             }
             Gauge::Parallel { .. } => false,
@@ -37,7 +37,7 @@ impl Trajectory<'_> {
     /// Whether a gauge is a singularity measure that is zero up to rounding.
     pub(super) fn is_zero(&self, number: usize, sample: &Sample) -> bool {
         match self.solver.gauges[number] {
-            Gauge::Limit { .. } => false,
+            Gauge::Limit { .. } | Gauge::Motion { .. } => false,
             Gauge::Reach { .. } | Gauge::Parallel { .. } => {
                 sample.levels[number].is_some_and(|level| level.abs() < SINGULAR)
             }
@@ -117,7 +117,7 @@ impl Trajectory<'_> {
                     }
                 }
             }
-            Gauge::Limit { coordinate, .. } => {
+            Gauge::Limit { coordinate, .. } | Gauge::Motion { coordinate, .. } => {
                 (level, Some(self.solver.manipulator.coordinates()[coordinate].quantity), None)
             }
             Gauge::Parallel { part: Part::Section(section) } => (level, None, Some(section)),

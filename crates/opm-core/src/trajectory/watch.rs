@@ -170,7 +170,13 @@ impl Trajectory<'_> {
     fn stretch(&mut self, from: &Sample, to: &Sample) -> Result<(), TrajectoryError> {
         for number in 0..self.solver.gauges.len() {
             let stretch = Stretch { number, from, to };
-            let Some(levels) = stretch.levels() else { continue };
+            let Some(levels) = stretch.levels() else {
+                // At a singularity a joint has no rate.
+                if let Gauge::Motion { .. } = self.solver.gauges[number] {
+                    self.switch(number, from, to);
+                }
+                continue;
+            };
             match self.solver.gauges[number] {
                 Gauge::Reach { .. } => {
                     if levels.iter().all(|&level| level < 0.0) && stretch.dips(1.0) {
@@ -178,14 +184,14 @@ impl Trajectory<'_> {
                         self.update_worst(number, &worst);
                     }
                 }
-                Gauge::Limit { .. } => self.watch_limit(&stretch, levels)?,
+                Gauge::Limit { .. } | Gauge::Motion { .. } => self.watch_limit(&stretch, levels)?,
                 Gauge::Parallel { .. } => self.watch_parallel(&stretch, levels)?,
             }
         }
         Ok(())
     }
 
-    /// Finds where a joint crosses a limit.
+    /// Finds where a joint, or its rate or acceleration, crosses a limit.
     fn watch_limit(
         &mut self,
         stretch: &Stretch<'_>,

@@ -3,13 +3,16 @@
 
 use super::Family;
 use crate::mechanism::file::{FileUnits, checks, nearest, quoted};
+use crate::mechanism::joint::{JointLimits, MotionLimit, MotionLimits};
 use crate::numeric::Quantity;
 use std::fmt::Write;
 
 /// One parameter of home or of a leg.
 pub(in crate::mechanism) struct Parameter<'a> {
-    /// The key in files. For limits, it is the key inside the leg's `limits`.
+    /// The key in files.
     pub key: &'static str,
+    /// The table of the leg that has the key, if it is about a joint of the leg.
+    pub table: Option<JointTable>,
     /// What the message says was expected if a file lacks the parameter.
     pub expected: &'static str,
     /// The stored value.
@@ -24,6 +27,27 @@ pub(in crate::mechanism) enum ParameterRef<'a> {
     /// A point in the plane; both coordinates are lengths.
     Point(&'a mut [f64; 2]),
     Limits(Quantity, &'a mut Option<[f64; 2]>),
+    MotionLimit(MotionLimit, Quantity, &'a mut Option<f64>),
+}
+
+/// A table of a leg with a value for each of its joints.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::mechanism) enum JointTable {
+    Limits,
+    Motion(MotionLimit),
+}
+
+impl JointTable {
+    pub const ALL: [Self; 3] =
+        [Self::Limits, Self::Motion(MotionLimit::Rate), Self::Motion(MotionLimit::Acceleration)];
+
+    /// The key of the table in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Limits => "limits",
+            Self::Motion(limit) => limit.key(),
+        }
+    }
 }
 
 /// The parameters of home, or of one leg.
@@ -48,7 +72,7 @@ pub(in crate::mechanism) enum TableKey {
 pub enum ParameterValue {
     /// No limits.
     None,
-    /// A length, an angle, or a pitch in metres per radian.
+    /// A length, an angle, a pitch in metres per radian, or the largest rate or acceleration of a joint.
     Number(f64),
     /// A point in the plane, or the lowest and highest value of limits.
     Pair([f64; 2]),
@@ -72,17 +96,20 @@ impl<'a> Group<'a> {
 impl Parameter<'_> {
     /// The parameter's name within its group: `h`, `limits.S`.
     fn name(&self) -> String {
-        match self.target {
-            ParameterRef::Limits(..) => format!("limits.{}", self.key),
-            _ => self.key.to_owned(),
+        match self.table {
+            Some(table) => format!("{}.{}", table.key(), self.key),
+            None => self.key.to_owned(),
         }
     }
 
     /// Whether the parameter has this name within its group.
     fn is_called(&self, name: &str) -> bool {
-        match self.target {
-            ParameterRef::Limits(..) => name.strip_prefix("limits.") == Some(self.key),
-            _ => name == self.key,
+        match self.table {
+            Some(table) => {
+                let key = name.strip_prefix(table.key()).and_then(|key| key.strip_prefix('.'));
+                key == Some(self.key)
+            }
+            None => name == self.key,
         }
     }
 
@@ -91,7 +118,8 @@ impl Parameter<'_> {
         match self.target {
             ParameterRef::Number(quantity, _)
             | ParameterRef::Optional(quantity, _)
-            | ParameterRef::Limits(quantity, _) => quantity,
+            | ParameterRef::Limits(quantity, _)
+            | ParameterRef::MotionLimit(_, quantity, _) => quantity,
             ParameterRef::Point(_) => Quantity::Length,
         }
     }
@@ -104,6 +132,9 @@ impl Parameter<'_> {
             ParameterRef::Point(point) => Some(ParameterValue::Pair(**point)),
             ParameterRef::Limits(_, limits) => {
                 Some(limits.map_or(ParameterValue::None, ParameterValue::Pair))
+            }
+            ParameterRef::MotionLimit(.., limit) => {
+                Some(limit.map_or(ParameterValue::None, ParameterValue::Number))
             }
         }
     }
@@ -127,6 +158,11 @@ impl Parameter<'_> {
                 let limits = [size(low, *quantity)?, size(high, *quantity)?];
                 **target = Some(checks::ordered(limits, *quantity, FileUnits::SI)?);
             }
+            (ParameterRef::MotionLimit(.., target), ParameterValue::None) => **target = None,
+            (ParameterRef::MotionLimit(limit, quantity, target), Number(value)) => {
+                let value = checks::finite(value)?;
+                **target = Some(checks::motion_limit(value, *limit, *quantity, FileUnits::SI)?);
+            }
             (target, value) => {
                 let found = match value {
                     ParameterValue::None => "nothing",
@@ -137,6 +173,7 @@ impl Parameter<'_> {
                     ParameterRef::Number(..) | ParameterRef::Optional(..) => "a number",
                     ParameterRef::Point(_) => "a point [x, y]",
                     ParameterRef::Limits(..) => "limits [lowest, highest] or none",
+                    ParameterRef::MotionLimit(..) => "a number or none",
                 };
                 return Err(format!("is {found}, expected {expected}"));
             }
@@ -253,16 +290,15 @@ impl Family {
                     ParameterValue::Number(value) => format!("{:?}", value / factor),
                     ParameterValue::Pair([a, b]) => format!("[{:?}, {:?}]", a / factor, b / factor),
                 };
-                Some((matches!(p.target, ParameterRef::Limits(..)), format!("{} = {value}", p.key)))
+                Some(format!("{} = {value}", p.key))
             };
-            let (limits, others): (Vec<_>, Vec<_>) =
-                group.parameters.iter().filter_map(entry).partition(|(limit, _)| *limit);
-            let line = |entries: Vec<(bool, String)>, between: &str| {
-                entries.into_iter().map(|(_, entry)| entry).collect::<Vec<_>>().join(between)
+            let entries = |table: Option<JointTable>, between: &str| {
+                let own = group.parameters.iter().filter(|p| p.table == table);
+                own.filter_map(entry).collect::<Vec<_>>().join(between)
             };
             let header = match group.table {
                 TableKey::Home => {
-                    let _ = writeln!(text, "home = {{ {} }}", line(others, ", "));
+                    let _ = writeln!(text, "home = {{ {} }}", entries(None, ", "));
                     continue;
                 }
                 TableKey::Leg(key) => format!("[{key}]"),
@@ -272,10 +308,13 @@ impl Family {
                 body,
                 "\n{header}\nname = {}\n{}",
                 quoted(&group.name),
-                line(others, "\n")
+                entries(None, "\n")
             );
-            if !limits.is_empty() {
-                let _ = writeln!(body, "limits = {{ {} }}", line(limits, ", "));
+            for table in JointTable::ALL {
+                let joints = entries(Some(table), ", ");
+                if !joints.is_empty() {
+                    let _ = writeln!(body, "{} = {{ {joints} }}", table.key());
+                }
             }
         }
         if !mode.is_empty() {
@@ -324,10 +363,22 @@ fn meant(name: &str, groups: &[Group<'_>]) -> String {
 
 /// Lists the known names, with legs that have the same parameters in one group.
 fn known(groups: &[Group<'_>]) -> String {
-    let mut kinds: Vec<(Vec<&str>, Vec<String>)> = vec![];
+    let mut kinds: Vec<(Vec<&str>, String)> = vec![];
     for group in groups {
-        let has = |p: &&Parameter<'_>| p.value().is_some();
-        let names: Vec<_> = group.parameters.iter().filter(has).map(Parameter::name).collect();
+        let of = |table: Option<JointTable>| {
+            let has = |p: &&Parameter<'_>| p.table == table && p.value().is_some();
+            group.parameters.iter().filter(has).map(|p| p.key).collect::<Vec<_>>()
+        };
+        let mut names = of(None).join(", ");
+        let joints = of(Some(JointTable::Limits));
+        if let Some(first) = joints.first() {
+            let [limits, rate, acceleration] = JointTable::ALL.map(JointTable::key);
+            let joints = joints.join(", ");
+            let _ = write!(
+                names,
+                ", and {limits}, {rate} and {acceleration} ({limits}.{first}, ...) of {joints}"
+            );
+        }
         match kinds.iter_mut().find(|(_, known)| *known == names) {
             Some((legs, _)) => legs.push(&group.name),
             None => kinds.push((vec![group.name.as_str()], names)),
@@ -335,7 +386,7 @@ fn known(groups: &[Group<'_>]) -> String {
     }
     let kinds = kinds.into_iter().map(|(legs, names)| {
         let has = if legs.len() == 1 { "has" } else { "have" };
-        format!("{} {has} {}", legs.join(", "), names.join(", "))
+        format!("{} {has} {}", legs.join(", "), names)
     });
     kinds.collect::<Vec<_>>().join("; ")
 }
@@ -343,28 +394,42 @@ fn known(groups: &[Group<'_>]) -> String {
 /// Constructors that read as a table of a family's parameters.
 impl<'a> Parameter<'a> {
     pub fn angle(key: &'static str, value: &'a mut f64, expected: &'static str) -> Self {
-        Self { key, expected, target: ParameterRef::Number(Quantity::Angle, value) }
+        Self { key, table: None, expected, target: ParameterRef::Number(Quantity::Angle, value) }
     }
 
     pub fn length(key: &'static str, value: &'a mut f64, expected: &'static str) -> Self {
-        Self { key, expected, target: ParameterRef::Number(Quantity::Length, value) }
+        Self { key, table: None, expected, target: ParameterRef::Number(Quantity::Length, value) }
     }
 
     /// A length per radian, of a leg that may have none.
     pub fn pitch(key: &'static str, value: &'a mut Option<f64>, expected: &'static str) -> Self {
-        Self { key, expected, target: ParameterRef::Optional(Quantity::Length, value) }
+        Self { key, table: None, expected, target: ParameterRef::Optional(Quantity::Length, value) }
     }
 
     pub fn point(key: &'static str, value: &'a mut [f64; 2], expected: &'static str) -> Self {
-        Self { key, expected, target: ParameterRef::Point(value) }
+        Self { key, table: None, expected, target: ParameterRef::Point(value) }
     }
 
-    pub fn length_limits(key: &'static str, limits: &'a mut Option<[f64; 2]>) -> Self {
-        Self { key, expected: "limits", target: ParameterRef::Limits(Quantity::Length, limits) }
-    }
-
-    pub fn angle_limits(key: &'static str, limits: &'a mut Option<[f64; 2]>) -> Self {
-        Self { key, expected: "limits", target: ParameterRef::Limits(Quantity::Angle, limits) }
+    /// The parameters `own` of a leg, and the limits of its joints, each by its key.
+    pub fn with_limits<const N: usize>(
+        own: Vec<Self>,
+        joints: [(&'static str, Quantity, &'a mut JointLimits); N],
+    ) -> Vec<Self> {
+        let mut tables = JointTable::ALL.map(|_| Vec::new());
+        for (key, quantity, JointLimits { range, motion }) in joints {
+            let MotionLimits { max_rate, max_acceleration } = motion;
+            let targets = [
+                ParameterRef::Limits(quantity, range),
+                ParameterRef::MotionLimit(MotionLimit::Rate, quantity, max_rate),
+                ParameterRef::MotionLimit(MotionLimit::Acceleration, quantity, max_acceleration),
+            ];
+            for ((table, parameters), target) in
+                JointTable::ALL.into_iter().zip(&mut tables).zip(targets)
+            {
+                parameters.push(Self { key, table: Some(table), expected: table.key(), target });
+            }
+        }
+        own.into_iter().chain(tables.into_iter().flatten()).collect()
     }
 }
 

@@ -39,7 +39,7 @@ use super::slider::{SliderChain, onto, pivot};
 use crate::chain::Branch;
 use crate::chain::planar::{PlanarChain, PlanarJoint};
 use crate::group::PlanarDisplacement;
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::mechanism::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
 use crate::numeric::angle::unit;
@@ -62,19 +62,19 @@ pub struct Home {
     pub phi: f64,
 }
 
-/// Limits of a slider leg's joints: lowest and highest value, metres and radians.
+/// Limits of a slider leg's joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliderLimits {
-    /// Limits of the slider S, metres.
-    pub s: Option<[f64; 2]>,
-    /// Limits of φ1, radians.
-    pub phi1: Option<[f64; 2]>,
-    /// Limits of φ2, radians.
-    pub phi2: Option<[f64; 2]>,
-    /// Limits of the rod's angle ρ, radians.
-    pub rod: Option<[f64; 2]>,
-    /// Limits of the rod's joint at the platform, radians.
-    pub hinge: Option<[f64; 2]>,
+    /// Limits of the slider S.
+    pub s: JointLimits,
+    /// Limits of φ1.
+    pub phi1: JointLimits,
+    /// Limits of φ2.
+    pub phi2: JointLimits,
+    /// Limits of the rod's angle ρ.
+    pub rod: JointLimits,
+    /// Limits of the rod's joint at the platform.
+    pub hinge: JointLimits,
 }
 
 /// The parameters of a PRR(RR) leg, metres and radians.
@@ -105,19 +105,19 @@ pub struct SliderLeg {
     pub limits: SliderLimits,
 }
 
-/// Limits of the arm's joints: lowest and highest value, radians.
+/// Limits of the arm's joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmLimits {
     /// Limits of φ14.
-    pub phi1: Option<[f64; 2]>,
+    pub phi1: JointLimits,
     /// Limits of φ24.
-    pub phi2: Option<[f64; 2]>,
+    pub phi2: JointLimits,
     /// Limits of the support's joint at the arm.
-    pub fold1: Option<[f64; 2]>,
+    pub fold1: JointLimits,
     /// Limits of the support's middle joint.
-    pub fold2: Option<[f64; 2]>,
+    pub fold2: JointLimits,
     /// Limits of the support's joint at the platform.
-    pub hinge: Option<[f64; 2]>,
+    pub hinge: JointLimits,
 }
 
 /// The parameters of the RR(RRR) leg, metres and radians.
@@ -327,9 +327,9 @@ fn revolute(
     name: String,
     axis: Unit<Vector3<f64>>,
     point: Point3<f64>,
-    limits: Option<[f64; 2]>,
+    limits: JointLimits,
 ) -> Joint {
-    Joint::new(name, JointKind::Revolute, axis, point).within(limits)
+    Joint::new(name, JointKind::Revolute, axis, point).limited(limits)
 }
 
 fn at(z: Complex<f64>, height: f64) -> Point3<f64> {

@@ -29,7 +29,7 @@ use crate::chain::Branch;
 use crate::chain::planar::PlanarChain;
 use crate::chain::spherical::SphericalChain;
 use crate::group::JointDisplacement;
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::mechanism::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
 use nalgebra::{Complex, Point3, Rotation3, Vector3};
@@ -53,19 +53,19 @@ pub struct Home {
     pub psi: f64,
 }
 
-/// Limits of a slider leg's joints: lowest and highest value, metres and radians.
+/// Limits of a slider leg's joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SliderLimits {
-    /// Limits of the slider S, metres.
-    pub s: Option<[f64; 2]>,
-    /// Limits of φ1, radians.
-    pub phi1: Option<[f64; 2]>,
-    /// Limits of φ2, radians.
-    pub phi2: Option<[f64; 2]>,
-    /// Limits of θ2, radians.
-    pub theta2: Option<[f64; 2]>,
-    /// Limits of θ3, radians.
-    pub theta3: Option<[f64; 2]>,
+    /// Limits of the slider S.
+    pub s: JointLimits,
+    /// Limits of φ1.
+    pub phi1: JointLimits,
+    /// Limits of φ2.
+    pub phi2: JointLimits,
+    /// Limits of θ2.
+    pub theta2: JointLimits,
+    /// Limits of θ3.
+    pub theta3: JointLimits,
 }
 
 /// The parameters of a PRR(RR) leg, metres and radians.
@@ -112,9 +112,9 @@ pub struct ArmLeg {
     /// Branch of the arm; `+`: `sin φ24 > 0`.
     pub elbow: Branch,
     /// Limits of φ14.
-    pub phi1: Option<[f64; 2]>,
+    pub phi1: JointLimits,
     /// Limits of φ24.
-    pub phi2: Option<[f64; 2]>,
+    pub phi2: JointLimits,
 }
 
 /// The geometric parameters of the manipulator.
@@ -216,7 +216,7 @@ impl SliderLeg {
         let name = |symbol: &str| format!("{symbol}{number}");
         let limits = &self.limits;
         let revolute = |symbol, axis, limits| {
-            Joint::new(name(symbol), JointKind::Revolute, axis, in_plane(p)).within(limits)
+            Joint::new(name(symbol), JointKind::Revolute, axis, in_plane(p)).limited(limits)
         };
         let above = [
             (revolute("theta2", theta1_zero * v, limits.theta2), theta2),
@@ -262,7 +262,7 @@ impl ArmLeg {
         let revolute = |name: &str, at, limits| {
             Joint::new(name, JointKind::Revolute, Vector3::z_axis(), in_plane(at))
                 .actuated()
-                .within(limits)
+                .limited(limits)
         };
         let mut joints = carried([
             (revolute("phi14", d, self.phi1), phi1),

@@ -12,7 +12,7 @@ use super::assembly::{Problems, out_of_reach};
 use crate::chain::Branch;
 use crate::chain::planar::{PlanarChain, PlanarJoint};
 use crate::group::{JointDisplacement, PlanarDisplacement};
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -49,7 +49,7 @@ impl SliderChain {
     }
 
     /// The three joints of leg `number`, in the layout, with their limits.
-    pub fn joints(&self, number: usize, limits: [Option<[f64; 2]>; 3]) -> [Joint; 3] {
+    pub fn joints(&self, number: usize, limits: [JointLimits; 3]) -> [Joint; 3] {
         let at = |z: Complex<f64>| Point3::new(z.re, z.im, 0.0);
         let axis = Unit::new_unchecked(at(self.along).coords);
         let revolute = |name, point| {
@@ -58,9 +58,9 @@ impl SliderChain {
         };
         let slider = Joint::new(format!("S{number}"), JointKind::Prismatic, axis, at(self.a));
         [
-            slider.actuated().within(limits[0]),
-            revolute("phi1", self.a).within(limits[1]),
-            revolute("phi2", self.c).within(limits[2]),
+            slider.actuated().limited(limits[0]),
+            revolute("phi1", self.a).limited(limits[1]),
+            revolute("phi2", self.c).limited(limits[2]),
         ]
     }
 }

@@ -27,7 +27,7 @@ use super::assembly::{AssemblyError, AssemblyReason, Problems, all_legs, carried
 use crate::chain::cylindrical::{CoaxialJoint, CylindricalChain};
 use crate::chain::translational::TranslationalChain;
 use crate::group::{CylindricalDisplacement, JointDisplacement};
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::mechanism::leg::{ImaginaryLabel, Leg};
 use crate::mechanism::{Mechanism, TaskHints};
 use crate::numeric::angle::unit;
@@ -52,15 +52,15 @@ pub struct Home {
     pub phi: f64,
 }
 
-/// Limits of a leg's joints: lowest and highest value, metres and radians.
+/// Limits of a leg's joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LegLimits {
-    /// Limits of the slider S, metres.
-    pub s: Option<[f64; 2]>,
-    /// Limits of the passive slider r, metres.
-    pub r: Option<[f64; 2]>,
-    /// Limits of φ, radians.
-    pub phi: Option<[f64; 2]>,
+    /// Limits of the slider S.
+    pub s: JointLimits,
+    /// Limits of the passive slider r.
+    pub r: JointLimits,
+    /// Limits of φ.
+    pub phi: JointLimits,
 }
 
 /// The parameters of a PPR leg, or of the PPH leg if it has a pitch; metres and radians.
@@ -152,7 +152,7 @@ impl TranslationalLeg {
         .inverse(&CylindricalDisplacement { angle: home.phi, advance: 0.0 });
         // A revolute joint has home's φ too, including full revolutions, unless its limits choose
         // others.
-        let phi = match (self.pitch, self.limits.phi) {
+        let phi = match (self.pitch, self.limits.phi.range) {
             (None, None) => JointDisplacement::Value(home.phi),
             _ => phi,
         };
@@ -162,7 +162,7 @@ impl TranslationalLeg {
         let [s, r] = TranslationalChain::new(slides)?.inverse(c);
 
         let joint = |symbol: &str, kind, axis, limits| {
-            Joint::new(format!("{symbol}{number}"), kind, axis, Point3::origin()).within(limits)
+            Joint::new(format!("{symbol}{number}"), kind, axis, Point3::origin()).limited(limits)
         };
         let prismatic =
             |symbol, along, limits| joint(symbol, JointKind::Prismatic, in_plane(along), limits);

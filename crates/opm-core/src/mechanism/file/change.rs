@@ -3,7 +3,7 @@
 
 use super::{Digits, FileUnits, MechanismFile, checks, nearest, write, writer};
 use crate::mechanism::family::{Family, ParameterErrors, ParameterValue};
-use crate::mechanism::joint::JointCoordinate;
+use crate::mechanism::joint::{JointCoordinate, MotionLimit};
 use crate::mechanism::{Mechanism, TaskHints};
 use crate::numeric::Quantity;
 
@@ -24,8 +24,8 @@ impl MechanismFile {
     /// The same file with some numbers changed, SI.
     ///
     /// The names are those of [`Family::parameters`] (see [`Family::with`]). In a list of joints, `S1.limits` are the
-    /// limits of a joint coordinate, and `S1.home` is its value at home; `limits` alone are those of all joints that have
-    /// any.
+    /// limits of a joint coordinate, `S1.max_rate` and `S1.max_acceleration` those of its motion, and `S1.home` is its
+    /// value at home; `limits` alone are those of all joints that have any, and so are the limits of motion.
     ///
     /// # Errors
     /// A name or a value is wrong, or a leg does not reach home.
@@ -88,6 +88,18 @@ pub fn text(mechanism: &Mechanism, family: Option<&Family>, units: FileUnits) ->
 enum Part {
     Home,
     Limits,
+    Motion(MotionLimit),
+}
+
+impl Part {
+    /// Whether it is a limit that the coordinate has.
+    fn is_limit_of(self, coordinate: &JointCoordinate) -> bool {
+        match self {
+            Self::Home => false,
+            Self::Limits => coordinate.limits.is_some(),
+            Self::Motion(limit) => limit.of(&coordinate.motion_limits).is_some(),
+        }
+    }
 }
 
 /// The joint coordinate of a name, or all of them, and what of it the name changes.
@@ -96,11 +108,12 @@ fn split(name: &str) -> Option<(Option<&str>, Part)> {
         Some((joint, part)) => (Some(joint), part),
         None => (None, name),
     };
-    match (joint, part) {
-        (Some(_), "home") => Some((joint, Part::Home)),
-        (_, "limits") => Some((joint, Part::Limits)),
-        _ => None,
-    }
+    let part = match part {
+        "home" if joint.is_some() => Part::Home,
+        "limits" => Part::Limits,
+        part => Part::Motion(MotionLimit::ALL.into_iter().find(|limit| limit.key() == part)?),
+    };
+    Some((joint, part))
 }
 
 /// Changes a joint of a list, or says what is wrong.
@@ -108,12 +121,13 @@ fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Resul
     let names: Vec<String> = mechanism.coordinates().map(|c| c.name.clone()).collect();
     let list = || names.join(", ");
     let Some((joint, part)) = split(name) else {
-        let parts =
-            names.iter().flat_map(|name| [format!("{name}.limits"), format!("{name}.home")]);
+        let parts = ["limits", "home", "max_rate", "max_acceleration"];
+        let parts = names.iter().flat_map(|name| parts.map(|part| format!("{name}.{part}")));
         let hint = nearest(name, &parts.collect::<Vec<_>>());
         let hint = hint.map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
         return Err(format!(
-            "is not a number of a list of joints; {hint}expected JOINT.limits or JOINT.home, JOINT one of {}",
+            "is not a number of a list of joints; {hint}expected JOINT.limits, JOINT.home, JOINT.max_rate or \
+             JOINT.max_acceleration, JOINT one of {}",
             list()
         ));
     };
@@ -121,10 +135,10 @@ fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Resul
     let all = all.flat_map(|joint| &mut joint.coordinates);
     let chosen: Vec<&mut JointCoordinate> = match joint {
         Some(joint) => all.filter(|c| c.name == joint).collect(),
-        None => all.filter(|c| c.limits.is_some()).collect(),
+        None => all.filter(|c| part.is_limit_of(c)).collect(),
     };
     if chosen.is_empty() {
-        let Some(joint) = joint else { return Err("changes nothing: no joint has limits".into()) };
+        let Some(joint) = joint else { return Err("changes nothing: no joint has any".into()) };
         let hint = nearest(joint, &names);
         let hint = hint.map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
         return Err(format!("names no joint {joint}; {hint}expected one of {}", list()));
@@ -141,7 +155,16 @@ fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Resul
                 let limits = [size(low, quantity)?, size(high, quantity)?];
                 coordinate.limits = Some(checks::ordered(limits, quantity, FileUnits::SI)?);
             }
+            (Part::Motion(limit), ParameterValue::None) => {
+                *limit.of_mut(&mut coordinate.motion_limits) = None;
+            }
+            (Part::Motion(limit), ParameterValue::Number(value)) => {
+                let value = checks::finite(value)?;
+                let value = checks::motion_limit(value, limit, quantity, FileUnits::SI)?;
+                *limit.of_mut(&mut coordinate.motion_limits) = Some(value);
+            }
             (Part::Home, _) => return Err("expected a number".into()),
+            (Part::Motion(_), _) => return Err("expected a number, or none".into()),
             (Part::Limits, _) => return Err("expected limits LOWEST:HIGHEST, or none".into()),
         }
     }

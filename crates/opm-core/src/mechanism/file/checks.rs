@@ -2,6 +2,7 @@
 //! name of the value; it is in the units of the caller.
 
 use super::units::FileUnits;
+use crate::mechanism::joint::MotionLimit;
 use crate::numeric::Quantity;
 
 /// Largest accepted length or angle in metres or radians: larger than any machine. Squares and
@@ -33,4 +34,18 @@ pub(crate) fn ordered(
     }
     let [low, high] = [low, high].map(|limit| units.show(limit, quantity).to_string());
     Err(format!("are reversed: {low} is above {high}, expected [lowest, highest]"))
+}
+
+/// Checks that the largest rate or acceleration of a joint, SI, is above zero and not larger than [`LARGEST`].
+pub(crate) fn motion_limit(
+    value: f64,
+    limit: MotionLimit,
+    quantity: Quantity,
+    units: FileUnits,
+) -> Result<f64, String> {
+    if value > 0.0 {
+        return size(value, quantity, units);
+    }
+    let found = units.show(value, quantity);
+    Err(format!("is {found}{}, expected a value above 0", limit.per_time()))
 }

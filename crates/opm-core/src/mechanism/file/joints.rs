@@ -3,7 +3,7 @@
 use super::leg_name;
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
 use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{FrameHints, Mechanism, OrientationCoordinates, TaskHints, TaskKey};
 use crate::numeric::Quantity;
@@ -63,6 +63,7 @@ impl Type {
     /// The keys that a joint of this type may have.
     pub(super) fn keys(self) -> Vec<&'static str> {
         let mut keys = vec!["name", "type", "point", "actuated", "home", "limits"];
+        keys.extend(MotionLimit::ALL.map(MotionLimit::key));
         keys.extend(self.directions().iter().chain(self.lengths()));
         keys
     }
@@ -280,13 +281,21 @@ fn joint_kind(table: &Table<'_>, kind: Type, axis: Option<Unit<Vector3<f64>>>) -
     }
 }
 
-/// Reads `home` and `limits`: one value and one pair per coordinate.
+/// Reads `home`, `limits` and the limits of motion: one value or pair per coordinate.
 fn read_coordinates(table: &Table<'_>, joint: &mut Joint) {
     let quantities: Vec<Quantity> = joint.coordinates.iter().map(|c| c.quantity).collect();
     let home = match table.get("home") {
-        Some(value) => value.per_coordinate(&quantities),
+        Some(value) => value.per_coordinate(&quantities, Value::quantity),
         None => Some(vec![0.0; quantities.len()]),
     };
+    for limit in MotionLimit::ALL {
+        let value = table.get(limit.key());
+        let read = |item: &Value<'_>, quantity| item.motion_limit(limit, quantity);
+        let given = value.and_then(|value| value.per_coordinate(&quantities, read));
+        for (coordinate, given) in joint.coordinates.iter_mut().zip(given.into_iter().flatten()) {
+            *limit.of_mut(&mut coordinate.motion_limits) = Some(given);
+        }
+    }
     let limits = table.get("limits");
     let pairs = limits.and_then(|value| value.limits_per_coordinate(&quantities));
     for (i, coordinate) in joint.coordinates.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! Reading the parameters of families.
 
 use super::Table;
-use crate::mechanism::family::{Parameter, ParameterRef};
+use crate::mechanism::family::{JointTable, Parameter, ParameterRef};
 
 /// Reads a family's `home`. A coordinate is zero if it is not given and NaN if it cannot be read.
 pub(in crate::mechanism) fn read_home(root: &Table<'_>, parameters: Vec<Parameter<'_>>) {
@@ -38,10 +38,15 @@ pub(in crate::mechanism) fn table_of<'a>(
 /// Reads the parameters of a leg. A required parameter that is missing is reported and becomes NaN,
 /// so that the others are checked too. Without a table, all of them are NaN.
 pub(in crate::mechanism) fn read_leg(leg: Option<&Table<'_>>, parameters: Vec<Parameter<'_>>) {
-    let limits = leg
-        .and_then(|leg| leg.get("limits"))
-        .and_then(|value| value.table(&limit_keys(&parameters)));
-    for Parameter { key, expected, target } in parameters {
+    let tables = JointTable::ALL.map(|table| {
+        let value = leg.and_then(|leg| leg.get(table.key()));
+        (table, value.and_then(|value| value.table(&joint_keys(&parameters, table))))
+    });
+    for Parameter { key, table, expected, target } in parameters {
+        let of_joint = || {
+            let (_, entries) = tables.iter().find(|(own, _)| Some(*own) == table)?;
+            entries.as_ref()?.get(key)
+        };
         let required = || leg.and_then(|leg| leg.require(key, expected));
         match target {
             ParameterRef::Number(quantity, target) => {
@@ -55,7 +60,10 @@ pub(in crate::mechanism) fn read_leg(leg: Option<&Table<'_>>, parameters: Vec<Pa
                 *target = required().and_then(|value| value.point()).unwrap_or([f64::NAN; 2]);
             }
             ParameterRef::Limits(quantity, target) => {
-                *target = limits.and_then(|limits| limits.get(key)?.limits(quantity));
+                *target = of_joint().and_then(|value| value.limits(quantity));
+            }
+            ParameterRef::MotionLimit(limit, quantity, target) => {
+                *target = of_joint().and_then(|value| value.motion_limit(limit, quantity));
             }
         }
     }
@@ -63,14 +71,13 @@ pub(in crate::mechanism) fn read_leg(leg: Option<&Table<'_>>, parameters: Vec<Pa
 
 /// The keys that the table of a leg may have.
 pub(super) fn keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
-    let own =
-        parameters.iter().filter(|parameter| !matches!(parameter.target, ParameterRef::Limits(..)));
-    ["name"].into_iter().chain(own.map(|parameter| parameter.key)).chain(["limits"]).collect()
+    let own = parameters.iter().filter(|parameter| parameter.table.is_none());
+    let tables = JointTable::ALL.map(JointTable::key);
+    ["name"].into_iter().chain(own.map(|parameter| parameter.key)).chain(tables).collect()
 }
 
-/// The keys that the `limits` of a leg may have.
-pub(super) fn limit_keys(parameters: &[Parameter<'_>]) -> Vec<&'static str> {
-    let limits =
-        parameters.iter().filter(|parameter| matches!(parameter.target, ParameterRef::Limits(..)));
-    limits.map(|parameter| parameter.key).collect()
+/// The keys of the joints that a table of a leg may have.
+pub(super) fn joint_keys(parameters: &[Parameter<'_>], table: JointTable) -> Vec<&'static str> {
+    let joints = parameters.iter().filter(|parameter| parameter.table == Some(table));
+    joints.map(|parameter| parameter.key).collect()
 }

@@ -7,6 +7,7 @@ use super::checks;
 use super::hint::expected_one_of;
 use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
+use crate::mechanism::joint::MotionLimit;
 use crate::numeric::Quantity;
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
@@ -222,14 +223,18 @@ impl<'a> Value<'a> {
         Some(nalgebra::Unit::new_normalize(vector / largest))
     }
 
-    /// Reads one value per coordinate. A single value has no brackets around it.
-    pub(crate) fn per_coordinate(&self, quantities: &[Quantity]) -> Option<Vec<f64>> {
+    /// Reads one value per coordinate, each with `read`. A single value has no brackets around it.
+    pub(crate) fn per_coordinate(
+        &self,
+        quantities: &[Quantity],
+        read: impl Fn(&Self, Quantity) -> Option<f64>,
+    ) -> Option<Vec<f64>> {
         if let [quantity] = quantities {
-            return Some(vec![self.quantity(*quantity)?]);
+            return Some(vec![read(self, *quantity)?]);
         }
         let expected = format!("{} values, one for each coordinate", quantities.len());
         let items = self.exactly(quantities.len(), &expected)?;
-        all(items.iter().zip(quantities).map(|(item, &quantity)| item.quantity(quantity)))
+        all(items.iter().zip(quantities).map(|(item, &quantity)| read(item, quantity)))
     }
 
     /// Reads the lowest and highest value of each coordinate. A single pair has no outer brackets.
@@ -248,6 +253,14 @@ impl<'a> Value<'a> {
         let limits = self.each("limits [lowest, highest]", |item| item.quantity(quantity))?;
         let ordered = checks::ordered(limits, quantity, self.reader.units());
         ordered.map_err(|problem| self.report(problem)).ok()
+    }
+
+    /// Reads the largest rate or acceleration of a joint in the file's units and seconds; returns it in SI.
+    pub(crate) fn motion_limit(&self, limit: MotionLimit, quantity: Quantity) -> Option<f64> {
+        let units = self.reader.units();
+        let value = units.si(self.number()?, quantity);
+        let checked = checks::motion_limit(value, limit, quantity, units);
+        checked.map_err(|problem| self.report(problem)).ok()
     }
 
     /// Whether the value is a table.

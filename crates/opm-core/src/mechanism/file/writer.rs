@@ -1,7 +1,7 @@
 //! Writing a mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
 use crate::mechanism::{Mechanism, OrientationCoordinates, TaskHints};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
@@ -124,6 +124,14 @@ impl Writer {
         });
         if let Some(limits) = limits.collect() {
             entries.push(format!("limits = {}", one_or_all(limits)));
+        }
+        for limit in MotionLimit::ALL {
+            let largest = coordinates
+                .iter()
+                .map(|c| Some(self.number(limit.of(&c.motion_limits)?, c.quantity)));
+            if let Some(largest) = largest.collect() {
+                entries.push(format!("{} = {}", limit.key(), one_or_all(largest)));
+            }
         }
         entries
     }

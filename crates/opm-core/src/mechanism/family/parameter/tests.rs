@@ -37,6 +37,16 @@ fn a_change_by_name_is_the_change_in_the_file() {
         (paper, &[("limits = { S = [-300, 300] }", "")], &[("limits.S", ParameterValue::None)]),
         (
             paper,
+            &[("S = [-300, 300] }", "S = [-300, 300] }\nmax_rate = { S = 500 }")],
+            &[("max_rate.S", Number(0.5))],
+        ),
+        (
+            paper,
+            &[("b2 = 100", "b2 = 100\nmax_acceleration = { phi2 = 180 }")],
+            &[("leg4.max_acceleration.phi2", degree(180.0))],
+        ),
+        (
+            paper,
             &[("b2 = 100", "b2 = 100\nlimits = { phi1 = [-180, 180] }")],
             &[("leg4.limits.phi1", Pair([-180.0, 180.0].map(|v: f64| v.to_radians())))],
         ),
@@ -67,13 +77,17 @@ fn a_change_by_name_is_the_change_in_the_file() {
 
 #[test]
 fn every_parameter_is_listed_and_can_be_set() {
-    for (name, count) in FAMILIES.into_iter().zip([5 + 3 * 13 + 5, 3 + 3 * 6 + 1, 4 + 3 * 12 + 13])
-    {
+    for (name, count) in FAMILIES.into_iter().zip([
+        5 + 3 * (8 + 3 * 5) + 3 + 3 * 2,
+        3 + 3 * (3 + 3 * 3) + 1,
+        4 + 3 * (7 + 3 * 5) + 8 + 3 * 5,
+    ]) {
         let family = family(name);
         let parameters = family.parameters();
         assert_eq!(parameters.len(), count, "{name}");
         for (parameter, value) in &parameters {
             let changed = match value {
+                ParameterValue::None if parameter.contains(".max_") => Number(0.75),
                 ParameterValue::None => Pair([-0.1, 0.2]),
                 Number(value) => Number(value + 0.125),
                 Pair([a, b]) => Pair([a - 0.125, b + 0.25]),
@@ -102,13 +116,17 @@ fn every_problem_is_reported_with_its_parameter() {
             ("h", ParameterValue::None),
             ("limits.S", Pair([0.3, -0.3])),
             ("leg4.limits.phi2", Number(1.0)),
+            ("leg1.max_rate.S", Number(-0.5)),
+            ("leg2.max_acceleration.S", Pair([0.0, 1.0])),
+            ("leg3.max_rate.S", Number(f64::NAN)),
         ])
         .unwrap_err()
         .problems;
     let expected = [
         "`leg1.hh` is not a parameter; did you mean `leg1.h`? home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, \
-         a1, a2, alpha1, alpha2, eta, beta, limits.S, limits.phi1, limits.phi2, limits.theta2, \
-         limits.theta3; leg4 has base, b1, b2, limits.phi1, limits.phi2",
+         a1, a2, alpha1, alpha2, eta, beta, and limits, max_rate and max_acceleration (limits.S, ...) of S, phi1, phi2, \
+         theta2, theta3; leg4 has base, b1, b2, and limits, max_rate and max_acceleration (limits.phi1, ...) of phi1, \
+         phi2",
         "`a1` is 10000000000 m, expected an absolute value of at most 1000000000 m",
         "`base` is a number, expected a point [x, y]",
         "`h` is nothing, expected a number",
@@ -116,6 +134,9 @@ fn every_problem_is_reported_with_its_parameter() {
         "`leg1.h` is NaN, expected a finite number",
         "`leg2.a2` is a pair, expected a number",
         "`leg4.limits.phi2` is a number, expected limits [lowest, highest] or none",
+        "`leg1.max_rate.S` is -0.5 m/s, expected a value above 0",
+        "`leg2.max_acceleration.S` is a pair, expected a number or none",
+        "`leg3.max_rate.S` is NaN, expected a finite number",
     ];
     assert_eq!(problems, expected);
     // A parameter that only the helical leg has.
@@ -160,7 +181,7 @@ proptest! {
     #[test]
     fn a_written_family_is_read_again(
         which in 0..FAMILIES.len(),
-        shares in prop::collection::vec(-0.02..0.02_f64, 70),
+        shares in prop::collection::vec(-0.02..0.02_f64, 110),
         signs in prop::collection::vec(any::<bool>(), 8),
     ) {
         let family = family(FAMILIES[which]);
@@ -171,6 +192,7 @@ proptest! {
             .map(|((name, value), share)| match value {
                 Number(value) => (name, Number(value * (1.0 + share))),
                 Pair(pair) => (name, Pair(pair.map(|value| value * (1.0 + share)))),
+                ParameterValue::None if name.contains(".max_") => (name, Number(1.0 + share)),
                 ParameterValue::None => (name, Pair([-10.0 + share, 10.0 + share])),
             })
             .collect();

@@ -2,6 +2,7 @@
 
 use super::{ArmLeg, Home, PlanarPlanar, SliderLeg};
 use crate::mechanism::family::{Group, Parameter, TableKey};
+use crate::numeric::Quantity::{Angle, Length};
 
 impl PlanarPlanar {
     /// Every parameter: first those of home, then those of the legs in order.
@@ -31,7 +32,7 @@ impl SliderLeg {
 
     pub(super) fn parameters(&mut self) -> Vec<Parameter<'_>> {
         let limits = &mut self.limits;
-        vec![
+        let own = vec![
             Parameter::angle("alpha", &mut self.alpha, "the direction of the leg, an angle"),
             Parameter::length("h", &mut self.h, "the slider's distance from the origin"),
             Parameter::length("a1", &mut self.a1, "the length of the link on the slider"),
@@ -43,12 +44,15 @@ impl SliderLeg {
                 &mut self.platform,
                 "a point [u, z]: where the rod ends in the platform",
             ),
-            Parameter::length_limits("S", &mut limits.s),
-            Parameter::angle_limits("phi1", &mut limits.phi1),
-            Parameter::angle_limits("phi2", &mut limits.phi2),
-            Parameter::angle_limits("rod", &mut limits.rod),
-            Parameter::angle_limits("hinge", &mut limits.hinge),
-        ]
+        ];
+        let joints = [
+            ("S", Length, &mut limits.s),
+            ("phi1", Angle, &mut limits.phi1),
+            ("phi2", Angle, &mut limits.phi2),
+            ("rod", Angle, &mut limits.rod),
+            ("hinge", Angle, &mut limits.hinge),
+        ];
+        Parameter::with_limits(own, joints)
     }
 }
 
@@ -60,7 +64,7 @@ impl ArmLeg {
 
     pub(super) fn parameters(&mut self) -> Vec<Parameter<'_>> {
         let limits = &mut self.limits;
-        vec![
+        let own = vec![
             Parameter::point("base", &mut self.base, "a point [x, y]: where the arm stands"),
             Parameter::length("b1", &mut self.b1, "the length of the arm's first link"),
             Parameter::length("c", &mut self.c, "the elbow's distance from the vertical plane"),
@@ -77,11 +81,14 @@ impl ArmLeg {
                 &mut self.platform,
                 "a point [u, z]: where the support ends in the platform",
             ),
-            Parameter::angle_limits("phi1", &mut limits.phi1),
-            Parameter::angle_limits("phi2", &mut limits.phi2),
-            Parameter::angle_limits("fold1", &mut limits.fold1),
-            Parameter::angle_limits("fold2", &mut limits.fold2),
-            Parameter::angle_limits("hinge", &mut limits.hinge),
-        ]
+        ];
+        let joints = [
+            ("phi1", Angle, &mut limits.phi1),
+            ("phi2", Angle, &mut limits.phi2),
+            ("fold1", Angle, &mut limits.fold1),
+            ("fold2", Angle, &mut limits.fold2),
+            ("hinge", Angle, &mut limits.hinge),
+        ];
+        Parameter::with_limits(own, joints)
     }
 }

@@ -150,7 +150,7 @@ fn every_problem_is_reported() {
     let mut family = shipped();
     family.slider_legs[0].l = 0.1;
     family.slider_legs[1].a1 = -1.0;
-    family.slider_legs[2].limits.s = Some([0.0, 0.1]);
+    family.slider_legs[2].limits.s.range = Some([0.0, 0.1]);
     family.arm_leg.b1 = 0.05;
     let problems = family.assemble().unwrap_err().problems;
     let found: Vec<_> = problems.iter().map(|p| (p.leg, p.parameter)).collect();

@@ -2,6 +2,7 @@
 
 use super::{ArmLeg, Home, PlanoSpherical, SliderLeg};
 use crate::mechanism::family::{Group, Parameter, TableKey};
+use crate::numeric::Quantity::{Angle, Length};
 
 impl PlanoSpherical {
     /// Every parameter: first those of home, then those of the legs in order.
@@ -32,7 +33,7 @@ impl SliderLeg {
 
     pub(super) fn parameters(&mut self) -> Vec<Parameter<'_>> {
         let limits = &mut self.limits;
-        vec![
+        let own = vec![
             Parameter::angle("alpha", &mut self.alpha, "the direction of the planar leg, an angle"),
             Parameter::length("h", &mut self.h, "the slider's distance from the origin"),
             Parameter::length("a1", &mut self.a1, "the length of the link on the slider"),
@@ -49,12 +50,15 @@ impl SliderLeg {
                 &mut self.beta,
                 "the platform axis's angle from the platform's z",
             ),
-            Parameter::length_limits("S", &mut limits.s),
-            Parameter::angle_limits("phi1", &mut limits.phi1),
-            Parameter::angle_limits("phi2", &mut limits.phi2),
-            Parameter::angle_limits("theta2", &mut limits.theta2),
-            Parameter::angle_limits("theta3", &mut limits.theta3),
-        ]
+        ];
+        let joints = [
+            ("S", Length, &mut limits.s),
+            ("phi1", Angle, &mut limits.phi1),
+            ("phi2", Angle, &mut limits.phi2),
+            ("theta2", Angle, &mut limits.theta2),
+            ("theta3", Angle, &mut limits.theta3),
+        ];
+        Parameter::with_limits(own, joints)
     }
 }
 
@@ -65,12 +69,12 @@ impl ArmLeg {
     }
 
     pub(super) fn parameters(&mut self) -> Vec<Parameter<'_>> {
-        vec![
+        let own = vec![
             Parameter::point("base", &mut self.base, "a point [x, y]: where the arm stands"),
             Parameter::length("b1", &mut self.b1, "the length of the arm's first link"),
             Parameter::length("b2", &mut self.b2, "the length of the arm's second link"),
-            Parameter::angle_limits("phi1", &mut self.phi1),
-            Parameter::angle_limits("phi2", &mut self.phi2),
-        ]
+        ];
+        let joints = [("phi1", Angle, &mut self.phi1), ("phi2", Angle, &mut self.phi2)];
+        Parameter::with_limits(own, joints)
     }
 }

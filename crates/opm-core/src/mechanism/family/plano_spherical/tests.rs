@@ -157,11 +157,12 @@ prop_compose! {
         psi in -4.0..4.0_f64, base in [-0.2..0.2, -0.2..0.2], b1 in 0.05..0.4, b2 in 0.05..0.4,
         elbow in branch(),
     ) -> PlanoSpherical {
+        let free = JointLimits::default();
         PlanoSpherical {
             name: "random".into(),
             home: Home { x, y, zeta, xi, psi },
             slider_legs: sliders.into(),
-            arm_leg: ArmLeg { name: "arm".into(), base, b1, b2, elbow, phi1: None, phi2: None },
+            arm_leg: ArmLeg { name: "arm".into(), base, b1, b2, elbow, phi1: free, phi2: free },
         }
     }
 }
@@ -245,7 +246,7 @@ fn every_problem_is_reported_with_its_leg() {
     family.slider_legs[1].alpha1 = 0.0;
     family.slider_legs[2].name = "leg1".into();
     family.arm_leg.b2 = f64::NAN;
-    family.slider_legs[0].limits.s = Some([0.4, 0.5]);
+    family.slider_legs[0].limits.s.range = Some([0.4, 0.5]);
     let problems = family.assemble().unwrap_err().problems;
     let found: Vec<_> = problems.iter().map(|p| (p.leg, p.parameter)).collect();
     assert_eq!(
@@ -265,7 +266,7 @@ fn an_angle_at_home_is_taken_within_its_limits() {
     let mut family = paper();
     let free = family.assemble().unwrap();
     let phi1 = free.legs[0].joints[1].coordinates[0].home;
-    family.slider_legs[0].limits.phi1 = Some([phi1 + TAU - 0.1, phi1 + TAU + 0.2]);
+    family.slider_legs[0].limits.phi1.range = Some([phi1 + TAU - 0.1, phi1 + TAU + 0.2]);
     let limited = family.assemble().unwrap();
     let joint = &limited.legs[0].joints[1];
     assert!((joint.coordinates[0].home - phi1 - TAU).abs() < ROUNDING);

@@ -2,6 +2,7 @@
 
 use super::{Home, TranslationalHelical, TranslationalLeg};
 use crate::mechanism::family::{Group, Parameter, TableKey};
+use crate::numeric::Quantity::{Angle, Length};
 
 impl TranslationalHelical {
     /// Every parameter: first those of home, then those of the legs in order.
@@ -29,14 +30,17 @@ impl TranslationalLeg {
 
     pub(super) fn parameters(&mut self) -> Vec<Parameter<'_>> {
         let limits = &mut self.limits;
-        vec![
+        let own = vec![
             Parameter::angle("alpha", &mut self.alpha, "the direction of the planar leg, an angle"),
             Parameter::angle("beta", &mut self.beta, "the angle from it to the common axis"),
             Parameter::length("k", &mut self.k, "the distance along the common axis"),
             Parameter::pitch("pitch", &mut self.pitch, "the advance per radian"),
-            Parameter::length_limits("S", &mut limits.s),
-            Parameter::length_limits("r", &mut limits.r),
-            Parameter::angle_limits("phi", &mut limits.phi),
-        ]
+        ];
+        let joints = [
+            ("S", Length, &mut limits.s),
+            ("r", Length, &mut limits.r),
+            ("phi", Angle, &mut limits.phi),
+        ];
+        Parameter::with_limits(own, joints)
     }
 }

@@ -2,13 +2,15 @@
 
 use super::Properties;
 use super::values::{
-    array, described, exactly, form, joined_tables, limits, name, number, object, point, text,
+    array, described, exactly, form, joined_tables, limits, motion_limit, name, number, object,
+    point, text,
 };
 use crate::mechanism::family::{
-    FORMS, Family, FamilyForm, Group, Parameter, ParameterRef, TableKey,
+    FORMS, Family, FamilyForm, Group, JointTable, Parameter, ParameterRef, TableKey,
 };
 use crate::mechanism::file::joints::FAMILY_TASK_KEYS;
-use crate::mechanism::file::parameters::{keys, limit_keys};
+use crate::mechanism::file::parameters::{joint_keys, keys};
+use crate::mechanism::joint::MotionLimit;
 use serde_json::{Value, json};
 
 /// The keys of each family, with its name.
@@ -76,29 +78,55 @@ fn leg(group: &Group<'_>) -> Properties {
     let description = "The leg's name. If it is not given: leg1, leg2, ...";
     properties.insert("name".to_owned(), name(description));
     properties.extend(meanings(group));
-    let ranges = group.parameters.iter().filter_map(|parameter| match parameter.target {
-        ParameterRef::Limits(quantity, _) => {
-            let what = format!("The lowest and the highest value of the joint {}.", parameter.key);
-            Some((parameter.key.to_owned(), limits(&what, quantity)))
-        }
-        _ => None,
-    });
-    let description =
-        "Limits of the leg's joints, [lowest, highest]. A joint without limits is free.";
-    properties.insert("limits".to_owned(), described(description, object(ranges.collect())));
+    for table in JointTable::ALL {
+        let joints = group.parameters.iter().filter(|parameter| parameter.table == Some(table));
+        let joints =
+            joints.filter_map(|parameter| Some((parameter.key.to_owned(), joint(parameter)?)));
+        let table_of = described(joint_table(table), object(joints.collect()));
+        properties.insert(table.key().to_owned(), table_of);
+    }
     properties
+}
+
+/// What a table with a value for each joint of a leg means.
+fn joint_table(table: JointTable) -> &'static str {
+    match table {
+        JointTable::Limits => {
+            "Limits of the leg's joints, [lowest, highest]. A joint without limits is free."
+        }
+        JointTable::Motion(MotionLimit::Rate) => {
+            "The largest rates of the leg's joints, with which trajectories are compared."
+        }
+        JointTable::Motion(MotionLimit::Acceleration) => {
+            "The largest accelerations of the leg's joints, with which trajectories are compared."
+        }
+    }
+}
+
+/// What a joint's value in such a table means.
+fn joint(Parameter { key, target, .. }: &Parameter<'_>) -> Option<Value> {
+    match target {
+        ParameterRef::Limits(quantity, _) => {
+            let what = format!("The lowest and the highest value of the joint {key}.");
+            Some(limits(&what, *quantity))
+        }
+        ParameterRef::MotionLimit(limit, quantity, _) => {
+            Some(motion_limit(&format!("Of the joint {key}."), *limit, *quantity))
+        }
+        ParameterRef::Number(..) | ParameterRef::Optional(..) | ParameterRef::Point(_) => None,
+    }
 }
 
 /// What the parameters of a group mean, apart from limits.
 fn meanings(group: &Group<'_>) -> Properties {
-    let meaning = |Parameter { key, expected, target }: &Parameter<'_>| {
+    let meaning = |Parameter { key, expected, target, .. }: &Parameter<'_>| {
         let value = match target {
             ParameterRef::Number(quantity, _) => number(expected, *quantity),
             ParameterRef::Optional(quantity, _) => {
                 number(&format!("{expected}; only for legs that have one"), *quantity)
             }
             ParameterRef::Point(_) => point(expected, 2),
-            ParameterRef::Limits(..) => return None,
+            ParameterRef::Limits(..) | ParameterRef::MotionLimit(..) => return None,
         };
         Some(((*key).to_owned(), value))
     };
@@ -115,8 +143,9 @@ fn form_of(family: &FamilyForm) -> Value {
         let keys = keys(parameters);
         let required: Vec<_> =
             parameters.iter().filter(|p| is_required(p)).map(|p| p.key).collect();
-        let ranges = form(&limit_keys(parameters), &[], &[]);
-        let leg = || form(&keys, &required, &[("limits", ranges.clone())]);
+        let tables = JointTable::ALL
+            .map(|table| (table.key(), form(&joint_keys(parameters, table), &[], &[])));
+        let leg = || form(&keys, &required, &tables);
         match group.table {
             TableKey::Home => {
                 let coordinates: Vec<_> = parameters.iter().map(|p| p.key).collect();
@@ -146,7 +175,9 @@ fn form_of(family: &FamilyForm) -> Value {
 fn is_required(parameter: &Parameter<'_>) -> bool {
     match parameter.target {
         ParameterRef::Number(..) | ParameterRef::Point(_) => true,
-        ParameterRef::Optional(..) | ParameterRef::Limits(..) => false,
+        ParameterRef::Optional(..) | ParameterRef::Limits(..) | ParameterRef::MotionLimit(..) => {
+            false
+        }
     }
 }
 

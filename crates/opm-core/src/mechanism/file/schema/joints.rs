@@ -8,7 +8,7 @@ use crate::mechanism::OrientationCoordinates;
 use crate::mechanism::file::joints::{
     FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
 };
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
@@ -104,6 +104,8 @@ fn joint() -> Value {
         ),
         ("home", json!({ "description": AT_HOME })),
         ("limits", json!({ "description": LIMITS })),
+        (MotionLimit::Rate.key(), json!({ "description": MAX_RATE })),
+        (MotionLimit::Acceleration.key(), json!({ "description": MAX_ACCELERATION })),
     ];
     let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
     let mut joint = described("A joint, at home.", object(properties));
@@ -122,6 +124,13 @@ const AT_HOME: &str = "The value at home, 0 if it is not given; a reported value
 const LIMITS: &str = "The lowest and the highest value, [lowest, highest], both included. For a joint of \
                       several coordinates an array with one pair for each. In units.angle or units.length.";
 
+const MAX_RATE: &str = "The largest absolute rate, above 0, with which trajectories are compared. A number, or for \
+                        a joint of several coordinates an array with one for each. In units.angle/s or \
+                        units.length/s.";
+const MAX_ACCELERATION: &str = "The largest absolute acceleration, above 0, with which trajectories are compared. A \
+                                number, or for a joint of several coordinates an array with one for each. In \
+                                units.angle/s^2 or units.length/s^2.";
+
 /// The keys of a joint of one type.
 fn joint_form(kind: Type) -> Value {
     // Only the number of its coordinates counts.
@@ -137,9 +146,13 @@ fn joint_form(kind: Type) -> Value {
     let number = json!({ "type": "number" });
     let pair = exactly(2, json!({ "type": "array", "items": number }));
     let several = |item: &Value, count| exactly(count, json!({ "type": "array", "items": item }));
-    let (home, limits) = match joint.freedoms() {
-        1 => (number.clone(), pair),
-        count => (several(&number, count), several(&pair, count)),
-    };
-    form(&kind.keys(), &kind.needs(), &[("home", home), ("limits", limits)])
+    let positive = json!({ "type": "number", "exclusiveMinimum": 0 });
+    let [home, limits, largest] =
+        [number.clone(), pair, positive].map(|item| match joint.freedoms() {
+            1 => item,
+            count => several(&item, count),
+        });
+    let [rate, acceleration] = MotionLimit::ALL.map(|limit| (limit.key(), largest.clone()));
+    let narrower = [("home", home), ("limits", limits), rate, acceleration];
+    form(&kind.keys(), &kind.needs(), &narrower)
 }

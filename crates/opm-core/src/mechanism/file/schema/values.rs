@@ -1,6 +1,7 @@
 //! The parts that schemas consist of.
 
 use super::Properties;
+use crate::mechanism::joint::MotionLimit;
 use crate::numeric::Quantity;
 use serde_json::{Value, json};
 
@@ -49,6 +50,16 @@ pub fn point(description: &str, dimension: usize) -> Value {
 /// The lowest and the highest value of a coordinate.
 pub fn limits(description: &str, quantity: Quantity) -> Value {
     numbers(&in_units(description, quantity), 2)
+}
+
+/// The largest rate or acceleration of a joint.
+pub fn motion_limit(description: &str, limit: MotionLimit, quantity: Quantity) -> Value {
+    let unit = match quantity {
+        Quantity::Angle => "units.angle",
+        Quantity::Length => "units.length",
+    };
+    let description = format!("{description} In {unit}{}, above 0.", limit.per_time());
+    json!({ "description": description, "type": "number", "exclusiveMinimum": 0 })
 }
 
 /// An array of `count` numbers.

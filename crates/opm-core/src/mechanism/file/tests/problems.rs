@@ -383,3 +383,35 @@ fn a_mode_without_choices_is_empty() {
     let text = HELICAL.replace("home =", "mode = \"\"\nhome =");
     assert_eq!(read(&text).unwrap().mode.as_deref(), Some(""));
 }
+
+#[test]
+fn limits_of_motion() {
+    for (from, to, message) in [
+        ("max_rate = 500", "max_rate = ^-500", "`max_rate` is -500 mm/s, expected a value above 0"),
+        ("max_rate = 500", "max_rate = ^0", "`max_rate` is 0 mm/s, expected a value above 0"),
+        ("max_rate = 500", "max_rate = ^nan", "`max_rate` is nan, expected a finite number"),
+        ("max_rate = 500", "max_rate = ^1e20", "expected an absolute value of at most"),
+        ("max_rate = 500", "max_rate = ^[1]", "`max_rate` is an array, expected a number"),
+        (
+            "max_acceleration = 2e3",
+            "max_acceleration = ^-1",
+            "`max_acceleration` is -1 mm/s^2, expected a value above 0",
+        ),
+        (
+            "max_rate = [360, 50]",
+            "max_rate = ^[360]",
+            "has 1 value, expected 2 values, one for each",
+        ),
+        ("max_rate = [360, 50]", "max_rate = [^-3, 50]", "`max_rate` is -3 deg/s, expected"),
+        ("max_rate = 500", "^max_rates = 500", "unknown key `max_rates`, did you mean `max_rate`?"),
+    ] {
+        assert_problem(JOINTS, from, to, message);
+    }
+    for (to, message) in [
+        ("b2 = 100\nmax_rate = { phi1 = ^-2 }", "`phi1` is -2 deg/s, expected a value above 0"),
+        ("b2 = 100\nmax_rate = ^5", "`max_rate` is an integer, expected a table"),
+        ("b2 = 100\nmax_acceleration = { ^phi = 2 }", "unknown key `phi`, did you mean `phi1`?"),
+    ] {
+        assert_problem(PLANO, "b2 = 100", to, message);
+    }
+}

@@ -1,7 +1,7 @@
 //! A random mechanism that is written and read again is the same.
 
 use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, write};
-use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::joint::{Joint, JointKind, MotionLimits};
 use crate::mechanism::leg::Leg;
 use crate::mechanism::{FrameHints, Mechanism, TaskHints};
 use nalgebra::{Point3, Unit, Vector3};
@@ -38,6 +38,7 @@ prop_compose! {
         kind in kind(), axis in direction(), point in point(), actuated in any::<bool>(),
         home in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64],
         room in proptest::option::of([0.0..1.0, 0.0..1.0_f64]),
+        largest in [proptest::option::of(0.1..3.0_f64), proptest::option::of(0.1..3.0_f64)],
     ) -> Joint {
         let axis = match kind {
             JointKind::Spherical => Vector3::z_axis(),
@@ -52,6 +53,8 @@ prop_compose! {
         for (coordinate, home) in joint.coordinates.iter_mut().zip(home) {
             coordinate.home = home;
             coordinate.limits = room.map(|[below, above]| [home - below, home + above]);
+            let [max_rate, max_acceleration] = largest;
+            coordinate.motion_limits = MotionLimits { max_rate, max_acceleration };
         }
         joint
     }
