@@ -55,6 +55,7 @@ pub(in crate::mechanism) const FORMS: [(&str, FamilyForm); 3] = [
 
 /// The parameters of a mechanism of one family.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one family for each mechanism")]
 pub enum Family {
     /// The 5-DoF plano-spherical manipulator, 3-PRR(RR) + RRS.
     PlanoSpherical(PlanoSpherical),
