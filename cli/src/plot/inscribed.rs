@@ -3,16 +3,15 @@
 use super::label::value_label;
 use super::source::{Rate, Source};
 use opm_study::recording::inscribed_of;
-use opm_workspace::InscribedShape;
+use opm_workspace::{Inscribed, InscribedShape};
 use std::f64::consts::TAU;
 
 /// Number of corners of the line that is drawn for a circle.
 const CORNERS: u32 = 180;
 
-/// The largest shape inside: for each coordinate its name, centre and radius, radians and metres.
+/// The largest shape inside, and what is said about it.
 pub struct Shape {
-    shape: InscribedShape,
-    sizes: Vec<(String, [f64; 2])>,
+    found: Inscribed,
     /// Its name and numbers, in the units of the picture.
     pub text: String,
 }
@@ -20,25 +19,27 @@ pub struct Shape {
 impl Shape {
     /// The shape that a recording has.
     pub fn of(source: &Source<'_>) -> Option<Self> {
-        let (shape, sizes) = inscribed_of(&source.metadata("result"))?;
-        let shown = |name: &str, value: f64| {
+        let found = inscribed_of(&source.metadata("result"))?;
+        let shown = |i: usize, value: f64| {
+            let name = &*found.names[i];
             let quantity = source.quantity_of(name);
             let (measure, factor) = source.measure(name, quantity, Rate::Position);
             format!("{} {}", value_label(value / factor), measure.unit.symbol)
         };
-        let centre = sizes.iter().map(|(name, [at, _])| format!("{name} = {}", shown(name, *at)));
-        let centre = centre.collect::<Vec<_>>().join(", ");
-        let radii = match (shape, sizes.first()) {
-            (InscribedShape::Disc | InscribedShape::Ball, Some((name, [_, radius]))) => {
-                format!("radius {}", shown(name, *radius))
+        let each = |text: &dyn Fn(usize) -> String| {
+            (0..found.names.len()).map(text).collect::<Vec<_>>().join(", ")
+        };
+        let centre = each(&|i| format!("{} = {}", found.names[i], shown(i, found.centre[i])));
+        let size = match found.shape {
+            InscribedShape::Disc | InscribedShape::Ball => {
+                format!("radius {}", shown(0, found.radii[0]))
             }
-            _ => {
-                let sides = sizes.iter().map(|(name, [_, half])| shown(name, 2.0 * half));
-                format!("sides {}", sides.collect::<Vec<_>>().join(", "))
+            InscribedShape::Box => {
+                format!("sides {}", each(&|i| shown(i, 2.0 * found.radii[i])))
             }
         };
-        let text = format!("{} inside: {radii}, centre {centre}", shape.name());
-        Some(Self { shape, sizes, text })
+        let text = format!("{} inside: {size}, centre {centre}", found.shape.name());
+        Some(Self { found, text })
     }
 
     /// The line where a plane of two coordinates meets the shape, with the other coordinates held; `None` where they do not
@@ -48,12 +49,15 @@ impl Shape {
         plane: [&str; 2],
         held: impl Iterator<Item = (&'a str, f64)>,
     ) -> Option<Vec<[f64; 2]>> {
-        let size =
-            |name: &str| self.sizes.iter().find(|known| known.0 == name).map(|known| known.1);
+        let Inscribed { shape, names, centre, radii, .. } = &self.found;
+        let size = |name: &str| {
+            let i = names.iter().position(|known| known == name)?;
+            Some([centre[i], radii[i]])
+        };
         let [[x, a], [y, b]] = [size(plane[0])?, size(plane[1])?];
         // The distance of the plane from the centre, as a share of the radius.
         let mut apart = 0.0_f64;
-        let mut beyond = self.sizes.len() - 2;
+        let mut beyond = names.len() - 2;
         for (name, value) in held {
             if let Some([centre, radius]) = size(name) {
                 apart = apart.hypot((value - centre) / radius);
@@ -63,7 +67,7 @@ impl Shape {
         if apart > 1.0 || beyond > 0 {
             return None;
         }
-        Some(match self.shape {
+        Some(match shape {
             InscribedShape::Box => [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
                 .map(|[s, t]| [x + s * a, y + t * b])
                 .into(),
@@ -84,14 +88,23 @@ mod tests {
     /// A plane at three fifths of the radius meets a ball in a circle of four fifths.
     #[test]
     fn a_slice_of_a_ball_is_a_smaller_circle() {
-        let sizes = ["x", "y", "z"].map(|name| (name.to_owned(), [1.0, 5.0]));
-        let ball =
-            Shape { shape: InscribedShape::Ball, sizes: sizes.clone().into(), text: String::new() };
+        let of = |shape: InscribedShape| Shape {
+            found: Inscribed {
+                shape,
+                names: ["x", "y", "z"].map(str::to_owned).into(),
+                centre: vec![1.0; 3],
+                radii: vec![5.0; 3],
+                error: vec![0.0; 3],
+                at_edge: false,
+            },
+            text: String::new(),
+        };
+        let ball = of(InscribedShape::Ball);
         let line = ball.across(["x", "z"], [("y", 4.0)].into_iter()).expect("they meet");
         assert!(line.iter().all(|[x, z]| ((x - 1.0).hypot(z - 1.0) - 4.0).abs() < 1e-12));
         assert_eq!(ball.across(["x", "z"], [("y", 6.5)].into_iter()), None);
         assert_eq!(ball.across(["x", "psi"], [("y", 1.0)].into_iter()), None);
-        let cuboid = Shape { shape: InscribedShape::Box, sizes: sizes.into(), text: String::new() };
+        let cuboid = of(InscribedShape::Box);
         let line = cuboid.across(["x", "y"], [("z", 5.9)].into_iter()).expect("they meet");
         assert_eq!(line, [[-4.0, -4.0], [6.0, -4.0], [6.0, 6.0], [-4.0, 6.0]]);
     }

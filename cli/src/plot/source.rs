@@ -4,10 +4,10 @@ use crate::args::Output;
 use crate::failure::Failure;
 use crate::progress::watch_reading;
 use crate::text::count;
-use opm_core::Quantity;
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::mechanism::file::{AngleUnit, FileUnits, MechanismFile, read as read_mechanism};
+use opm_core::{Leg, Quantity};
 use opm_mcap::workspace::SLICES_TOPIC;
 use opm_mcap::{Message, Metadata, ReadError, Recording, read};
 use opm_plot::{Measure, Steps, Unit};
@@ -176,7 +176,7 @@ impl<'a> Source<'a> {
         let name =
             run.get("input").filter(|_| run.get("command").is_some_and(|c| c == "linkage"))?;
         let legs = self.mechanism.iter().flat_map(|known| &known.file.mechanism.legs);
-        let known = legs.flat_map(|leg| leg.coordinates()).find(|c| c.name == *name);
+        let known = legs.flat_map(Leg::coordinates).find(|c| c.name == *name);
         let recorded = || {
             let joints = self.metadata("joints");
             let field =

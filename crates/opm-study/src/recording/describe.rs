@@ -20,6 +20,9 @@ const CONDITIONING_PARTS: [&str; 4] = ["poses", "min", "max", "sum"];
 /// The key of the largest shape inside the set, and the prefix of the keys of its coordinates.
 const INSCRIBED: &str = "inscribed";
 
+/// The key that says whether that shape touches the edge of the grid.
+const AT_EDGE: &str = "inscribed_at_edge";
+
 /// The properties of a workspace that are known before it is swept.
 pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
     let mut run = record([
@@ -104,24 +107,33 @@ pub fn result(workspace: &Workspace, count: &Count, inscribed: Option<&Inscribed
     result.extend(ranges(workspace, count));
     if let Some(found) = inscribed {
         result.insert(INSCRIBED.to_owned(), found.shape.name().to_owned());
-        let sizes = found.centre.iter().zip(&found.radii);
-        result.extend(found.names.iter().zip(sizes).map(|(name, (centre, radius))| {
-            (format!("{INSCRIBED}.{name}"), format!("{centre}:{radius}"))
+        result.insert(AT_EDGE.to_owned(), found.at_edge.to_string());
+        result.extend(found.names.iter().enumerate().map(|(i, name)| {
+            let [centre, radius, error] = [&found.centre, &found.radii, &found.error].map(|v| v[i]);
+            (format!("{INSCRIBED}.{name}"), format!("{centre}:{radius}:{error}"))
         }));
     }
     result
 }
 
-/// The largest shape inside that a recording has: its name, and for each coordinate its name, centre and radius in
-/// radians and metres.
-pub fn inscribed_of(result: &Metadata) -> Option<(InscribedShape, Vec<(String, [f64; 2])>)> {
+/// The largest shape inside that a recording has, by its record `result`.
+pub fn inscribed_of(result: &Metadata) -> Option<Inscribed> {
     let shape = InscribedShape::from_name(result.get(INSCRIBED)?)?;
-    let sizes = result.iter().filter_map(|(key, text)| {
-        let name = key.strip_prefix(INSCRIBED)?.strip_prefix('.')?;
-        let (centre, radius) = text.split_once(':')?;
-        Some((name.to_owned(), [centre.parse().ok()?, radius.parse().ok()?]))
-    });
-    Some((shape, sizes.collect()))
+    let at_edge = result.get(AT_EDGE)?.parse().ok()?;
+    let (names, centre, radii, error) = (vec![], vec![], vec![], vec![]);
+    let mut found = Inscribed { shape, names, centre, radii, error, at_edge };
+    for (key, text) in result {
+        let Some(name) = key.strip_prefix(INSCRIBED).and_then(|key| key.strip_prefix('.')) else {
+            continue;
+        };
+        let numbers: Vec<f64> = text.split(':').map(str::parse).collect::<Result<_, _>>().ok()?;
+        let [centre, radius, error] = numbers[..] else { return None };
+        found.names.push(name.to_owned());
+        found.centre.push(centre);
+        found.radii.push(radius);
+        found.error.push(error);
+    }
+    (found.names.len() >= 2).then_some(found)
 }
 
 /// The ranges of the imaginary joints, with all digits.
