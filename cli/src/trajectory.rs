@@ -9,6 +9,7 @@ use crate::motion;
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::count;
+use opm_core::motion::TimingError;
 use opm_mcap::RecordError;
 use opm_study::recording::{
     MotionRecorder, TableOptions, is_motion_table, partial, write_motion_csv, write_motion_table,
@@ -81,11 +82,23 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let target = Target::of(args, output)?;
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
-    let motion = motion::open(&args.motion, args.ends.map(Into::into), &manipulator)?;
-    let mut request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);
+    let mut motion = motion::open(&args.motion, args.ends.map(Into::into), &manipulator)?;
     if let Some(mode) = &args.mode {
-        request = request.mode(load::mode(&manipulator, mode)?);
+        motion.motion.mode = Some(load::mode(&manipulator, mode)?);
     }
+    let mut given_duration = None;
+    if args.time_optimal {
+        given_duration = Some(motion.motion.duration);
+        let mode = motion.motion.mode.unwrap_or_else(|| manipulator.home_mode());
+        motion.motion = motion.motion.time_optimal(&manipulator, mode).map_err(|error| {
+            let of = match error {
+                TimingError::NoLimits { .. } => &args.mechanism.file,
+                _ => &args.motion,
+            };
+            Failure::work(format!("{}: {error} (--time-optimal)", of.display()))
+        })?;
+    }
+    let mut request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);
     if let Some(rate) = args.rate {
         request = request.rate(rate);
     }
@@ -160,7 +173,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
             count(violations)
         ));
     }
-    let report = Report { request, summary: &summary, units: loaded.file.units };
+    let report = Report { request, summary: &summary, units: loaded.file.units, given_duration };
     if !matches!(target, Target::Printed) {
         output.print(&report.json(), report.text())?;
     }

@@ -113,6 +113,8 @@ struct Source {
     rate: f64,
     /// How the motion through the poses of a table starts and ends.
     ends: Ends,
+    /// Whether the motion has the fastest timing instead of its own.
+    time_optimal: bool,
 }
 
 /// A part of a motion that the mechanism cannot follow, or a singularity on its way.
@@ -163,6 +165,9 @@ pub struct Violation {
 /// ends : str, optional
 ///     How a spline through waypoints or the poses of a table starts and ends: ``"rest"`` (no speed; if not given),
 ///     ``"natural"`` (no acceleration), or ``"periodic"`` (as it ends, so it starts). A motion file says it itself.
+/// time_optimal : bool, optional
+///     The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
+///     joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.
 ///
 /// Raises
 /// ------
@@ -172,7 +177,8 @@ pub struct Violation {
 ///     Lists every problem of the file with its line and column; or waypoints are not poses, or times do not increase (the
 ///     message gives the index of the waypoint, counted from zero).
 #[pyfunction]
-#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None))]
+#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None, time_optimal = false))]
+#[allow(clippy::too_many_arguments)]
 pub fn trajectory(
     py: Python<'_>,
     manipulator: &Bound<'_, Manipulator>,
@@ -181,6 +187,7 @@ pub fn trajectory(
     rate: Option<f64>,
     mode: Option<&str>,
     ends: Option<&str>,
+    time_optimal: bool,
 ) -> PyResult<Trajectory> {
     let (owner, manipulator) = (manipulator, manipulator.get());
     let ends = ends.map(spline_ends).transpose()?;
@@ -198,6 +205,10 @@ pub fn trajectory(
     };
     let rate = rate.or(motion.rate).unwrap_or(DEFAULT_RATE);
     let inner = &*manipulator.inner;
+    let motion = match time_optimal {
+        true => motion.time_optimal(inner, mode).map_err(|error| failed(&error))?,
+        false => motion,
+    };
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
     let followed = followed.map_err(|error| failed(&error))?;
     let stop = AtomicBool::new(false);
@@ -205,7 +216,8 @@ pub fn trajectory(
     let record =
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))??;
     let manipulator = owner.clone().unbind();
-    record.finish(py, Source { manipulator, motion, file_name, text, mode, rate, ends })
+    record
+        .finish(py, Source { manipulator, motion, file_name, text, mode, rate, ends, time_optimal })
 }
 
 /// A motion, the name of its file, and the text of that.
@@ -477,11 +489,12 @@ const ATTRIBUTES: [&str; 24] = [
     "rows",
 ];
 
-/// The pickled input of a trajectory: manipulator, name and text of the file, rate, ends of a table.
-type Followable = (Py<Manipulator>, String, String, f64, &'static str);
+/// The pickled input of a trajectory: manipulator, name and text of the file, rate, ends of a table, and whether it has
+/// the fastest timing.
+type Followable = (Py<Manipulator>, String, String, f64, &'static str, bool);
 
 /// The same, as it is read.
-type Restored = (Py<Manipulator>, String, String, f64, String);
+type Restored = (Py<Manipulator>, String, String, f64, String, bool);
 
 #[pymethods]
 impl Violation {
@@ -501,21 +514,29 @@ impl Trajectory {
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<Pickled<'py, (Bound<'py, PyDict>, Followable)>> {
-        let Source { manipulator, file_name, text, rate, ends, .. } = &slf.get().source;
+        let Source { manipulator, file_name, text, rate, ends, time_optimal, .. } =
+            &slf.get().source;
         let manipulator = manipulator.clone_ref(slf.py());
-        let source = (manipulator, file_name.clone(), text.clone(), *rate, ends.name());
+        let source =
+            (manipulator, file_name.clone(), text.clone(), *rate, ends.name(), *time_optimal);
         let attributes = attributes(slf.as_any(), &ATTRIBUTES)?;
         Ok((slf.get_type().getattr("_restored")?, (attributes, source)))
     }
 
     #[staticmethod]
     fn _restored(attributes: &Bound<'_, PyDict>, source: Restored) -> PyResult<Self> {
-        let (manipulator, file_name, text, rate, ends) = source;
+        let (manipulator, file_name, text, rate, ends, time_optimal) = source;
         let ends = spline_ends(&ends)?;
         let csv = file_name.to_ascii_lowercase().ends_with(".csv").then_some(ends);
         let motion = parse(manipulator.get(), &text, (&file_name, &file_name), csv)?;
         let mode: String = attribute(attributes, "mode")?;
         let signs = manipulator.get().mode(&mode)?;
+        let motion = match time_optimal {
+            true => motion
+                .time_optimal(&manipulator.get().inner, signs)
+                .map_err(|error| failed(&error))?,
+            false => motion,
+        };
         Ok(Self {
             times: attribute(attributes, "times")?,
             poses: attribute(attributes, "poses")?,
@@ -541,7 +562,16 @@ impl Trajectory {
             name: attribute(attributes, "name")?,
             rows: attribute(attributes, "rows")?,
             mode,
-            source: Source { manipulator, motion, file_name, text, mode: signs, rate, ends },
+            source: Source {
+                manipulator,
+                motion,
+                file_name,
+                text,
+                mode: signs,
+                rate,
+                ends,
+                time_optimal,
+            },
         })
     }
 

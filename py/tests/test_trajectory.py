@@ -1,6 +1,7 @@
 """Trajectories from Python, against the command line, formulas and inverse kinematics."""
 
 import json
+import pickle
 import subprocess
 import sys
 
@@ -182,3 +183,36 @@ def test_actuated_joints_lead_back_to_the_motion(manipulator, followed):
     with pytest.raises(opm.OpmError, match="row 3: S2 is NaN"):
         joints[3, 1] = np.nan
         manipulator.forward_track(joints)
+
+
+def test_a_joint_above_its_rate_is_a_violation():
+    """A slider of the helical manipulator moves as x does: its speed is 50 pi mm/s at most."""
+    slow = opm.examples.load("translational-helical-3dof").with_parameters({"leg3.max_rate.S": 0.15})
+    times = np.linspace(0, 1, 201)
+    poses = np.zeros((201, 3))
+    poses[:, 0] = 0.05 * np.sin(np.pi * times)
+    found = opm.trajectory(slow, poses, times=times, rate=500, ends="natural")
+    assert found.within_limits.all()
+    assert [(v.kind, v.unit, v.leg, v.joint) for v in found.violations] == [("rate", "m/s", "leg3", "S3")] * 2
+    assert found.violations[0].amount == pytest.approx(0.05 * np.pi - 0.15, rel=1e-3)
+    assert "S3 above its max_rate" in found.violations[0].message
+
+
+def test_the_fastest_timing_keeps_the_limits_and_the_poses(tmp_path):
+    """Along x, the slider S3 goes the whole way, which takes the time of the trapezoid of its speed."""
+    limits = {"max_rate.S": 0.4, "max_acceleration.S": 2.0}
+    fast = opm.examples.load("translational-helical-3dof").with_parameters(limits)
+    poses, times = [[-0.1, 0, 0], [0.1, 0, 0]], [0, 5]
+    found = opm.trajectory(fast, poses, times=times, rate=1000, time_optimal=True)
+    assert found.times[-1] == pytest.approx(0.2 / 0.4 + 0.4 / 2.0, rel=5e-4)
+    assert found.violations == [] and np.abs(found["S3"][[0, -1]] - found["S3"].mean()).min() > 0.09
+    actuated = [found.joint_names.index(f"S{i}") for i in (1, 2, 3)]
+    assert np.abs(found.joint_rates[:, actuated]).max() <= 0.4 * (1 + 1e-9)
+    assert np.abs(found.joint_accelerations[:, actuated]).max() <= 2 * (1 + 1e-9)
+    again = pickle.loads(pickle.dumps(found))
+    assert again == found
+    one, other = tmp_path / "one.csv", tmp_path / "other.csv"
+    found.write_table(one), again.write_table(other)
+    assert one.read_bytes() == other.read_bytes()
+    with pytest.raises(opm.OpmError, match="no max_acceleration of S1, S2, S3"):
+        opm.trajectory(opm.examples.load("translational-helical-3dof"), poses, times=times, time_optimal=True)

@@ -72,6 +72,10 @@ pub struct LinkageArgs {
 /// samples are found too, unless one comes and goes more than once there. The rest of the motion is
 /// recorded; with --strict the exit status is then 1.
 ///
+/// --time-optimal keeps the sequence of poses and replaces the times: the platform starts and ends at rest, and moves
+/// as fast as the limits of rates and accelerations in the mechanism file let it. Every actuated joint needs a
+/// max_acceleration.
+///
 /// The recording (.mcap) has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
 /// and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of /bodies in
 /// Rerun.
@@ -87,6 +91,8 @@ Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o joints.csv --rates
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
+  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --time-optimal \\
+    --set max_acceleration.S=2
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
     /// The mechanism.
@@ -116,6 +122,9 @@ pub struct TrajectoryArgs {
     /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
     #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
     pub mode: Option<String>,
+    /// The fastest timing along the same path, from rest to rest, within the joints' max_rate and max_acceleration
+    #[arg(long)]
+    pub time_optimal: bool,
     /// Exit with status 1 if the mechanism cannot follow all of it
     #[arg(long)]
     pub strict: bool,

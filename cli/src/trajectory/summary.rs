@@ -18,6 +18,8 @@ pub struct Report<'a> {
     pub summary: &'a MotionSummary,
     /// The units of the mechanism file.
     pub units: FileUnits,
+    /// The duration of the motion as it is given, seconds, if it got another timing.
+    pub given_duration: Option<f64>,
 }
 
 impl Report<'_> {
@@ -29,7 +31,7 @@ impl Report<'_> {
                 "acceleration": acceleration.get(),
             })
         };
-        let Self { request, summary, .. } = self;
+        let Self { request, summary, given_duration, .. } = self;
         let manipulator = request.manipulator;
         let dependent: Map<String, Value> =
             (manipulator.dependent_coordinates().iter().zip(&summary.dependent))
@@ -65,6 +67,9 @@ impl Report<'_> {
             "violation_count": summary.violation_count,
             "violations": violations,
         });
+        if let Some(given) = given_duration {
+            json["given_duration"] = json!(given);
+        }
         if !dependent.is_empty() {
             json["dependent"] = dependent.into();
         }
@@ -72,7 +77,7 @@ impl Report<'_> {
     }
 
     pub fn text(&self) -> String {
-        let Self { request, summary, units } = *self;
+        let Self { request, summary, units, given_duration } = *self;
         let MotionRequest { manipulator, motion, .. } = request;
         let mut text = format!("{}, {}", manipulator.mechanism().name, motion.name);
         let mode = manipulator.format_mode(request.mode);
@@ -81,8 +86,10 @@ impl Report<'_> {
         }
         let _ = writeln!(
             text,
-            "\n{} s at {} Hz: {} samples, {} in reach, {} within limits\n",
+            "\n{} s{} at {} Hz: {} samples, {} in reach, {} within limits\n",
             short(motion.duration),
+            given_duration
+                .map_or_else(String::new, |given| format!(" ({} s as given)", short(given))),
             short(request.rate),
             count(summary.samples),
             count(summary.reached),

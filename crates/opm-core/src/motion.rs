@@ -12,10 +12,14 @@ mod points;
 mod schema;
 mod spline;
 pub mod table;
+mod time_optimal;
+mod timing;
 
 use crate::manipulator::Mode;
 pub use spline::{Ends, Spline, SplineError};
 use std::f64::consts::TAU;
+pub use time_optimal::TimingError;
+pub use timing::{TimedPath, Timing};
 
 /// A sinusoid `amplitude · sin(2π · frequency · t + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +48,45 @@ pub enum Path {
     Harmonics(Vec<Harmonics>),
     /// Every coordinate is a cubic spline; all of them have the same knots.
     Spline(Spline),
+    /// Another path, with a timing of its own.
+    Timed(TimedPath),
+}
+
+impl Path {
+    /// Writes the pose and its derivatives at time `t`, in seconds, into `out`.
+    fn at(&self, t: f64, out: &mut Instant) {
+        match self {
+            Self::Harmonics(coordinates) => {
+                out.resize(coordinates.len());
+                for (i, harmonics) in coordinates.iter().enumerate() {
+                    let [value, first, second] = harmonics.at(t);
+                    out.pose[i] = value;
+                    out.velocity[i] = first;
+                    out.acceleration[i] = second;
+                }
+            }
+            Self::Spline(spline) => spline.at(t, out),
+            Self::Timed(timed) => timed.at(t, out),
+        }
+    }
+
+    /// The number of task coordinates.
+    fn coordinate_count(&self) -> usize {
+        match self {
+            Self::Harmonics(coordinates) => coordinates.len(),
+            Self::Spline(spline) => spline.column_count(),
+            Self::Timed(timed) => timed.path.coordinate_count(),
+        }
+    }
+
+    /// The times at which a derivative may jump, in order.
+    fn knots(&self) -> &[f64] {
+        match self {
+            Self::Harmonics(_) => &[],
+            Self::Spline(spline) => spline.times(),
+            Self::Timed(timed) => timed.timing.times(),
+        }
+    }
 }
 
 /// A motion of the platform, in the task coordinates of one manipulator.
@@ -124,26 +167,12 @@ impl PlatformMotion {
     /// ends of a spline give the values at its end. Nothing is allocated if `out` was made for this
     /// number of coordinates; otherwise it is resized.
     pub fn at(&self, t: f64, out: &mut Instant) {
-        match &self.path {
-            Path::Harmonics(coordinates) => {
-                out.resize(coordinates.len());
-                for (i, harmonics) in coordinates.iter().enumerate() {
-                    let [value, first, second] = harmonics.at(t);
-                    out.pose[i] = value;
-                    out.velocity[i] = first;
-                    out.acceleration[i] = second;
-                }
-            }
-            Path::Spline(spline) => spline.at(t, out),
-        }
+        self.path.at(t, out);
     }
 
     /// The number of task coordinates that the motion gives.
     pub fn coordinate_count(&self) -> usize {
-        match &self.path {
-            Path::Harmonics(coordinates) => coordinates.len(),
-            Path::Spline(spline) => spline.column_count(),
-        }
+        self.path.coordinate_count()
     }
 
     /// End time, seconds.

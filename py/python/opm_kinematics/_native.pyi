@@ -1625,6 +1625,7 @@ def trajectory(
     rate: float | None = None,
     mode: str | None = None,
     ends: str | None = None,
+    time_optimal: bool = False,
 ) -> Trajectory:
     """Follow a motion of the platform.
 
@@ -1644,6 +1645,9 @@ def trajectory(
     ends : str, optional
         How a spline through waypoints or the poses of a table starts and ends: ``"rest"`` (no speed; if not given),
         ``"natural"`` (no acceleration), or ``"periodic"`` (as it ends, so it starts). A motion file says it itself.
+    time_optimal : bool, optional
+        The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
+        joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.
 
     Raises
     ------

@@ -5,6 +5,7 @@ use super::{Attachment, PROGRAM, create, expect_mcap, record};
 use crate::error::StudyError;
 use crate::motion::{MOST_LISTED, MotionRequest, MotionSummary};
 use opm_core::manipulator::Manipulator;
+use opm_core::motion::Path as MotionPath;
 use opm_core::skeleton;
 use opm_core::task::TaskCoordinate;
 use opm_core::trajectory::{Change, Sample, Trajectory, Violation, ViolationReport};
@@ -179,6 +180,10 @@ fn recorded<'a>(
 ) -> opm_mcap::Trajectory<'a> {
     let MotionRequest { manipulator, motion, mode, rate, .. } = *request;
     let [mechanism_file, motion_file] = files;
+    let timing = match motion.path {
+        MotionPath::Timed(_) => "time-optimal",
+        MotionPath::Harmonics(_) | MotionPath::Spline(_) => "as given",
+    };
     opm_mcap::Trajectory {
         pose: task_coordinates(manipulator.task_coordinates(), Role::Task),
         dependent: task_coordinates(manipulator.dependent_coordinates(), Role::Dependent),
@@ -199,6 +204,7 @@ fn recorded<'a>(
             ("start", motion.start.to_string()),
             ("duration", motion.duration.to_string()),
             ("rate", rate.to_string()),
+            ("timing", timing.to_owned()),
         ]),
     }
 }

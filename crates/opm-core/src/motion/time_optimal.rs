@@ -1,0 +1,455 @@
+//! The fastest timing along the path of a motion, within the limits of the joints' rates and accelerations.
+//!
+//! The parameter `s` is the motion's own time, so the joints' derivatives by it, `q'` and `q''`, are the rates and
+//! accelerations along the motion. With `x = (ds/dt)²` and `u = d²s/dt²`, the joints have the rate `q' √x` and the
+//! acceleration `q' u + q'' x`. On a grid, `u` is constant between two points, so that `x` is linear there. The method is
+//! TOPP-RA (H. Pham, Q.-C. Pham, *A New Approach to Time-Optimal Path Parameterization Based on Reachability Analysis*,
+//! IEEE Transactions on Robotics 34, 2018):
+//!
+//! * backwards, the largest `x` at each point from which the end can still be reached (controllable sets; as every limit
+//!   holds in both directions, they all contain `x = 0`);
+//! * forwards, from each point to the largest `x` at the next one that is in its controllable set.
+//!
+//! Both ends of an interval obey the limits with the `u` of the interval (the interpolation scheme of the paper), which
+//! keeps accelerations steady where a joint reverses. The grid is refined until the limits hold between its points too.
+//! What rounding and the last [`EXCESS`] leave is removed by a slower clock for the whole motion.
+//!
+//! At an end at which the motion itself is at rest, `q'` is zero and every `ds/dt` is rest: `x` is free there, and the
+//! acceleration `q'' x` limits it. At other ends `x` is zero.
+
+use super::{Instant, Path, PlatformMotion, TimedPath, Timing};
+use crate::manipulator::{Manipulator, Mode, PoseError, Solution};
+use crate::velocity::{JointMotion, VelocityError};
+
+/// The smallest number of intervals of the grid. The duration is above the shortest by a share of the order of one in
+/// this number, because accelerations are at their limits at one end of each interval.
+const INTERVALS: f64 = 4000.0;
+
+/// The grid is refined until no square of a rate and no acceleration is above its limit by more than this share of it.
+const EXCESS: f64 = 5e-7;
+
+/// How often intervals are halved at most.
+const ROUNDS: usize = 24;
+
+/// The largest number of intervals.
+const MOST_INTERVALS: usize = 1 << 20;
+
+/// The ends of an interval are evaluated this share of it inside (far less than [`ROOM`]), because second derivatives may jump between intervals.
+const INSET: f64 = 1e-9;
+
+/// The forward pass stays this share below the largest `x`. Where a joint has `q' = 0`, an `x` right at the largest one
+/// would leave no choice of `u`. Sets that contain zero and are convex can be reached as well when they are shrunk.
+const ROOM: f64 = 1e-7;
+
+/// A motion is at rest at an end if all speeds are at most this share of the largest ones.
+const REST: f64 = 1e-9;
+
+/// The largest `x` as a multiple of the usual one, for places where the motion stands still for a while: they are passed
+/// a thousand times faster than others.
+const FASTEST: f64 = 1e6;
+
+/// Why a motion has no fastest timing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TimingError {
+    /// Actuated joints have no limit of their accelerations.
+    #[error(
+        "no max_acceleration of {}: the fastest timing needs one for every actuated joint, and max_rate where there is one",
+        .joints.join(", ")
+    )]
+    NoLimits {
+        /// The names of the joints.
+        joints: Vec<String>,
+    },
+    /// The motion is for a manipulator with another number of task coordinates.
+    #[error("the motion has {given} task coordinates, expected {expected}, as the manipulator has")]
+    Coordinates {
+        /// The number of coordinates of the motion.
+        given: usize,
+        /// The number of task coordinates of the manipulator.
+        expected: usize,
+    },
+    /// The platform or the joints that have limits do not move.
+    #[error("nothing moves that has a limit, expected a motion from one pose to another")]
+    Still,
+    /// A leg does not reach a pose.
+    #[error(
+        "at t = {time} s, {leg} does not reach the pose: what cannot be followed has no timing"
+    )]
+    OutOfReach {
+        /// The time of the motion as it is given, seconds.
+        time: f64,
+        /// The name of the leg.
+        leg: String,
+    },
+    /// A joint has no rate, or the limits leave none.
+    #[error("at t = {time} s, a leg is singular: its joints cannot have limited rates there")]
+    Singular {
+        /// The time of the motion as it is given, seconds.
+        time: f64,
+    },
+    /// A pose of the motion cannot be computed with.
+    #[error("at t = {time} s: {source}")]
+    Pose {
+        /// The time of the motion as it is given, seconds.
+        time: f64,
+        /// The reason.
+        source: PoseError,
+    },
+    /// A velocity or acceleration of the motion cannot be computed with.
+    #[error("at t = {time} s: {source}")]
+    Velocity {
+        /// The time of the motion as it is given, seconds.
+        time: f64,
+        /// The reason.
+        source: VelocityError,
+    },
+}
+
+impl PlatformMotion {
+    /// The same path, from rest to rest, in the shortest time within `max_rate` and `max_acceleration` of all joints
+    /// that have them. Every actuated joint must have a `max_acceleration`.
+    ///
+    /// Rates and accelerations stay within their limits between the points of the grid too. The duration is above the
+    /// shortest possible one by a share of some 1e-4 at most on smooth paths. Limits of the joints' values and
+    /// singularities are not considered.
+    ///
+    /// # Errors
+    /// [`TimingError`]: an actuated joint has no limit, nothing moves, or the motion cannot be followed.
+    pub fn time_optimal(&self, manipulator: &Manipulator, mode: Mode) -> Result<Self, TimingError> {
+        let limits = limits(manipulator)?;
+        let (given, expected) = (self.coordinate_count(), manipulator.task_coordinates().len());
+        if given != expected {
+            return Err(TimingError::Coordinates { given, expected });
+        }
+        let mut joints = Joints::new(self, manipulator, mode, &limits);
+        let mut grid = Grid::new(&mut joints)?;
+        let (mut squares, mut excess);
+        let mut round = 0;
+        loop {
+            squares = grid.squares(&limits);
+            let excesses = grid.excesses(&mut joints, &squares)?;
+            excess = excesses.iter().copied().fold(0.0, f64::max);
+            let more = excesses.iter().filter(|&&excess| excess > EXCESS).count();
+            if more == 0 || round == ROUNDS || grid.intervals.len() + more > MOST_INTERVALS {
+                break;
+            }
+            grid.refine(&mut joints, &excesses)?;
+            round += 1;
+        }
+        // A clock that is slower by the factor k divides rates by k and accelerations by k². Between the quarters of an
+        // interval there is less above them than between its ends, of which the quarters tell.
+        squares.iter_mut().for_each(|square| *square /= 1.0 + excess + EXCESS);
+        let timing = Timing::new(grid.points.clone(), &squares, self.start)
+            .map_err(|knot| TimingError::Singular { time: grid.points[knot] })?;
+        let duration = timing.end() - self.start;
+        let path = Path::Timed(TimedPath { path: Box::new(self.path.clone()), timing });
+        Ok(Self { duration, path, ..self.clone() })
+    }
+}
+
+/// The limits of one joint coordinate, infinite where there is none.
+#[derive(Clone, Copy)]
+struct Limit {
+    coordinate: usize,
+    rate: f64,
+    acceleration: f64,
+}
+
+/// The limits of all joint coordinates that have any.
+fn limits(manipulator: &Manipulator) -> Result<Vec<Limit>, TimingError> {
+    let mut joints = Vec::new();
+    for &number in manipulator.actuated() {
+        let coordinate = &manipulator.coordinates()[number];
+        if coordinate.motion_limits.max_acceleration.is_none() {
+            joints.push(coordinate.name.clone());
+        }
+    }
+    if !joints.is_empty() {
+        return Err(TimingError::NoLimits { joints });
+    }
+    let each = manipulator.coordinates().iter().enumerate().map(|(coordinate, c)| Limit {
+        coordinate,
+        rate: c.motion_limits.max_rate.unwrap_or(f64::INFINITY),
+        acceleration: c.motion_limits.max_acceleration.unwrap_or(f64::INFINITY),
+    });
+    Ok(each.filter(|limit| limit.rate.min(limit.acceleration).is_finite()).collect())
+}
+
+/// The first and the second derivative of a limited joint by the parameter.
+type Derivatives = [f64; 2];
+
+/// The joints along the motion.
+struct Joints<'a> {
+    motion: &'a PlatformMotion,
+    manipulator: &'a Manipulator,
+    mode: Mode,
+    limits: &'a [Limit],
+    instant: Instant,
+    solution: Solution,
+    rates: JointMotion,
+}
+
+impl<'a> Joints<'a> {
+    fn new(
+        motion: &'a PlatformMotion,
+        manipulator: &'a Manipulator,
+        mode: Mode,
+        limits: &'a [Limit],
+    ) -> Self {
+        let instant = Instant::new(manipulator.task_coordinates().len());
+        let (solution, rates) = (manipulator.solution(), manipulator.joint_motion());
+        Self { motion, manipulator, mode, limits, instant, solution, rates }
+    }
+
+    /// The derivatives of every limited joint.
+    fn at(&mut self, time: f64) -> Result<Vec<Derivatives>, TimingError> {
+        let Self { motion, manipulator, mode, limits, instant, solution, rates } = self;
+        motion.at(time, instant);
+        let reached = manipulator.inverse(&instant.pose, *mode, solution);
+        if reached.map_err(|source| TimingError::Pose { time, source })?.is_none() {
+            let leg = solution.unreachable().first().map_or(0, |unreachable| unreachable.leg);
+            let leg = manipulator.mechanism().legs[leg].name.clone();
+            return Err(TimingError::OutOfReach { time, leg });
+        }
+        let regular =
+            manipulator.velocity(solution, &instant.velocity, &instant.acceleration, rates);
+        match regular {
+            Ok(true) => {}
+            Ok(false) | Err(VelocityError::Overflow { .. }) => {
+                return Err(TimingError::Singular { time });
+            }
+            Err(source) => return Err(TimingError::Velocity { time, source }),
+        }
+        let of = |limit: &Limit| {
+            let number = limit.coordinate;
+            [rates.joint_rates[number], rates.joint_accelerations[number]]
+        };
+        Ok(limits.iter().map(of).collect())
+    }
+}
+
+/// The interval between two points of the grid: the derivatives at its ends.
+struct Interval([Vec<Derivatives>; 2]);
+
+/// The points at which the timing is computed.
+struct Grid {
+    /// The parameter at the points, increasing.
+    points: Vec<f64>,
+    /// The intervals between them.
+    intervals: Vec<Interval>,
+    /// The largest `x` at the first and at the last point.
+    ends: [f64; 2],
+    /// The largest `x` anywhere.
+    fastest: f64,
+}
+
+/// `|a x + b y| <= c`, for `x` at the start of an interval and `y` at its end.
+#[derive(Clone, Copy)]
+struct Strip {
+    a: f64,
+    b: f64,
+    c: f64,
+}
+
+impl Grid {
+    fn new(joints: &mut Joints<'_>) -> Result<Self, TimingError> {
+        let motion = joints.motion;
+        let mut knots = vec![motion.start];
+        let inside = |t: &&f64| **t > motion.start && **t < motion.end();
+        knots.extend(motion.path.knots().iter().filter(inside));
+        knots.push(motion.end());
+        let mut points = vec![motion.start];
+        for pair in knots.windows(2) {
+            let width = pair[1] - pair[0];
+            let parts = (INTERVALS * width / motion.duration).ceil().max(2.0) as usize;
+            points.extend((1..parts).map(|i| pair[0] + width * i as f64 / parts as f64));
+            points.push(pair[1]);
+        }
+        let mut intervals = Vec::with_capacity(points.len());
+        for pair in points.windows(2) {
+            intervals.push(Interval::new(joints, [pair[0], pair[1]])?);
+        }
+        let mut grid = Self { points, intervals, ends: [0.0; 2], fastest: f64::INFINITY };
+        grid.limit_ends(joints);
+        if grid.fastest.is_finite() { Ok(grid) } else { Err(TimingError::Still) }
+    }
+
+    /// Finds the largest `x` anywhere, and at both ends.
+    fn limit_ends(&mut self, joints: &Joints<'_>) {
+        let Joints { motion, limits, .. } = joints;
+        let mut instant = joints.instant.clone();
+        let mut largest = vec![0.0_f64; instant.velocity.len()];
+        let mut moves = Vec::with_capacity(self.points.len());
+        for &point in &self.points {
+            motion.at(point, &mut instant);
+            for (largest, velocity) in largest.iter_mut().zip(&instant.velocity) {
+                *largest = largest.max(velocity.abs());
+            }
+            moves.push(instant.velocity.clone());
+        }
+        let rests = |velocity: &[f64]| {
+            velocity.iter().zip(&largest).all(|(now, largest)| now.abs() <= REST * largest)
+        };
+        let mut usual: Vec<f64> = Vec::new();
+        for (interval, velocity) in self.intervals.iter().zip(&moves) {
+            let of = |(limit, [first, second]): (&Limit, &Derivatives)| {
+                let by_rate = limit.rate / first.abs();
+                let by_acceleration =
+                    limit.acceleration / (second.abs() + first.abs() / motion.duration);
+                (by_rate * by_rate).min(by_acceleration)
+            };
+            if !rests(velocity) {
+                let each = limits.iter().zip(&interval.0[0]).map(of);
+                usual.push(each.fold(f64::INFINITY, f64::min));
+            }
+        }
+        usual.sort_by(f64::total_cmp);
+        self.fastest = usual.get(usual.len() / 2).map_or(f64::INFINITY, |usual| FASTEST * usual);
+        let [first, last] = [0, moves.len() - 1];
+        self.ends = [first, last].map(|end| if rests(&moves[end]) { self.fastest } else { 0.0 });
+    }
+
+    /// The squares of the parameter's rate at the points: controllable sets backwards, then the largest values forwards.
+    fn squares(&self, limits: &[Limit]) -> Vec<f64> {
+        let last = self.intervals.len();
+        let mut largest = vec![self.fastest; last + 1];
+        for (i, Interval(ends)) in self.intervals.iter().enumerate() {
+            for (limit, [before, after]) in
+                limits.iter().zip(ends[0].iter().zip(&ends[1]).map(|(a, b)| [a[0], b[0]]))
+            {
+                largest[i] = largest[i].min((limit.rate / before).powi(2));
+                largest[i + 1] = largest[i + 1].min((limit.rate / after).powi(2));
+            }
+        }
+        largest[0] = largest[0].min(self.ends[0]);
+        largest[last] = largest[last].min(self.ends[1]);
+        let mut strips = Vec::new();
+        for i in (0..last).rev() {
+            self.strips(i, limits, &mut strips);
+            largest[i] = largest_start(&strips, [largest[i], largest[i + 1]]);
+        }
+        largest.iter_mut().for_each(|largest| *largest *= 1.0 - ROOM);
+        let mut squares = vec![largest[0]];
+        for i in 0..last {
+            self.strips(i, limits, &mut strips);
+            squares.push(largest_end(&strips, squares[i], largest[i + 1]));
+        }
+        squares
+    }
+
+    /// The limits of accelerations in an interval, at its two ends.
+    fn strips(&self, i: usize, limits: &[Limit], strips: &mut Vec<Strip>) {
+        // u = (y - x) / twice.
+        let twice = 2.0 * (self.points[i + 1] - self.points[i]);
+        let Interval([before, after]) = &self.intervals[i];
+        strips.clear();
+        for (limit, (before, after)) in limits.iter().zip(before.iter().zip(after)) {
+            let c = limit.acceleration;
+            let [first, second] = [before[0] / twice, before[1]];
+            strips.push(Strip { a: second - first, b: first, c });
+            let [first, second] = [after[0] / twice, after[1]];
+            strips.push(Strip { a: -first, b: first + second, c });
+        }
+        strips.retain(|strip| strip.c.is_finite());
+    }
+
+    /// For each interval, by which share a square of a rate or an acceleration is above its limit, at the quarters.
+    fn excesses(&self, joints: &mut Joints<'_>, squares: &[f64]) -> Result<Vec<f64>, TimingError> {
+        let mut excesses = Vec::with_capacity(self.intervals.len());
+        for (i, Interval(ends)) in self.intervals.iter().enumerate() {
+            let [from, to] = [self.points[i], self.points[i + 1]];
+            let [x, y] = [squares[i], squares[i + 1]];
+            let u = (y - x) / (2.0 * (to - from));
+            let mut excess = 0.0_f64;
+            for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let square = x + share * (y - x);
+                let between;
+                let derivatives = match share {
+                    0.0 => &ends[0],
+                    1.0 => &ends[1],
+                    share => {
+                        between = joints.at(from + share * (to - from))?;
+                        &between
+                    }
+                };
+                for (limit, [first, second]) in joints.limits.iter().zip(derivatives) {
+                    let rate = first / limit.rate;
+                    let acceleration = (first * u + second * square) / limit.acceleration;
+                    excess = excess.max(rate * rate * square - 1.0).max(acceleration.abs() - 1.0);
+                }
+            }
+            excesses.push(excess);
+        }
+        Ok(excesses)
+    }
+
+    /// Halves the intervals with too large an excess.
+    fn refine(&mut self, joints: &mut Joints<'_>, excesses: &[f64]) -> Result<(), TimingError> {
+        let mut points = vec![self.points[0]];
+        let mut intervals = Vec::with_capacity(self.intervals.len());
+        let old = std::mem::take(&mut self.intervals);
+        for (i, interval) in old.into_iter().enumerate() {
+            let [from, to] = [self.points[i], self.points[i + 1]];
+            let middle = from + 0.5 * (to - from);
+            if excesses[i] > EXCESS && middle > from && middle < to {
+                intervals.push(Interval::new(joints, [from, middle])?);
+                intervals.push(Interval::new(joints, [middle, to])?);
+                points.push(middle);
+            } else {
+                intervals.push(interval);
+            }
+            points.push(to);
+        }
+        (self.points, self.intervals) = (points, intervals);
+        Ok(())
+    }
+}
+
+impl Interval {
+    fn new(joints: &mut Joints<'_>, [from, to]: [f64; 2]) -> Result<Self, TimingError> {
+        let inset = INSET * (to - from);
+        Ok(Self([joints.at(from + inset)?, joints.at(to - inset)?]))
+    }
+}
+
+/// The largest `x` for which some `y` is within all strips, with both between zero and their own largest values.
+///
+/// `y` is eliminated (Fourier and Motzkin): every upper limit of `y`, `y <= k - m x`, must be above every lower one.
+fn largest_start(strips: &[Strip], [most_x, most_y]: [f64; 2]) -> f64 {
+    let mut most = most_x;
+    for one in strips {
+        let Some([k, m]) = one.line() else {
+            most = most.min(one.c / one.a.abs());
+            continue;
+        };
+        // With the lower and the upper limit of `y` itself.
+        if m > 0.0 {
+            most = most.min(k / m);
+        } else if m < 0.0 {
+            most = most.min((most_y + k) / -m);
+        }
+        for other in strips {
+            if let Some([below, slope]) = other.line()
+                && m > slope
+            {
+                most = most.min((k + below) / (m - slope));
+            }
+        }
+    }
+    most
+}
+
+/// The largest `y` within all strips for this `x`.
+fn largest_end(strips: &[Strip], x: f64, most_y: f64) -> f64 {
+    let lines = strips.iter().filter_map(|strip| strip.line());
+    lines.fold(most_y, |most, [k, m]| most.min(k - m * x)).max(0.0)
+}
+
+impl Strip {
+    /// `k` and `m` for which the strip is `-k - m x <= y <= k - m x`; `None` if `y` does not matter.
+    fn line(self) -> Option<[f64; 2]> {
+        let Self { a, b, c } = self;
+        (b.abs() > f64::EPSILON * a.abs()).then(|| [c / b.abs(), a / b])
+    }
+}
