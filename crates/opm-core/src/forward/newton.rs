@@ -200,10 +200,14 @@ impl Newton<'_> {
                 Quantity::Length => off / m.closure.size,
             };
         };
-        for (leg, solved) in m.legs.iter().zip(&solution.legs) {
+        for (leg, compiled) in m.legs.iter().enumerate() {
             for section in [Section::Lower, Section::Upper] {
-                let coordinates = leg.section(section).coordinates.iter();
-                for (coordinate, displacement) in coordinates.zip(solved.section(section)) {
+                if !compiled.section(section).driven {
+                    continue;
+                }
+                let coordinates = compiled.section(section).coordinates.iter();
+                let displacements = solution.legs[leg].section(section);
+                for (coordinate, displacement) in coordinates.zip(displacements) {
                     let Some(ChainCoordinate { number, actuated: Some(actuated), home, limits }) =
                         coordinate
                     else {

@@ -163,7 +163,7 @@ impl Basis {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rows {
     All,
-    /// Those of actuated and of locked joints. Other rows have no meaning.
+    /// Those of actuated and of locked joints. Other rows have no meaning, nor have the differentials of the legs.
     Driven,
 }
 
@@ -291,7 +291,9 @@ impl Manipulator {
                 self.clear_rows(number, out);
                 [0.0; 6]
             };
-            out.legs[number] = differential;
+            if rows == Rows::All || leg.lean.is_some() {
+                out.legs[number] = differential;
+            }
             out.taus[number] = at.legs[number].tau;
             if let Some(lift) = &leg.lift {
                 // The height has the last column. It does not move the imaginary joint.

@@ -42,19 +42,19 @@ struct BallHome {
 }
 
 /// What the exponential of a screw consists of, for each leg: with the angle `θ = 2 h q`, its rotation is
-/// `cos(θ/2) + a sin(θ/2)`, and its translation `s sin θ + c (1 − cos θ) + d q`.
+/// `cos(θ/2) + a sin(θ/2)`, and its translation `s sin θ + c (1 − cos θ) + d (q − sin θ)`.
 #[derive(Clone, Debug)]
 struct Exponents {
     /// Half of the angle for a unit of the value, `h`: zero where the joint only slides.
     half: Lanes,
     /// The axis `a`; zero where the joint only slides.
     axis: [Lanes; 3],
-    /// The velocity `s` of the origin perpendicular to the axis.
+    /// The velocity `s` of the origin; zero where the joint only slides.
     by_sine: [Lanes; 3],
     /// `c = a × s`.
     by_versine: [Lanes; 3],
     /// The advance `d` for a unit of the value.
-    by_value: [Lanes; 3],
+    by_rest: [Lanes; 3],
 }
 
 /// A displacement for each leg: a unit quaternion, its real part first, and a translation.
@@ -71,21 +71,23 @@ impl Exponents {
         axis: [ZEROS; 3],
         by_sine: [ZEROS; 3],
         by_versine: [ZEROS; 3],
-        by_value: [ZEROS; 3],
+        by_rest: [ZEROS; 3],
     };
 
     /// Sets the exponential of one leg.
     fn set(&mut self, lane: usize, screw: &Screw) {
         let Screw { angular: axis, linear } = *screw;
         let rotates = axis != Vector3::zeros();
-        let advance = if rotates { axis * axis.dot(&linear) } else { linear };
-        let across = linear - advance;
-        self.half[lane] = if rotates { 0.5 } else { 0.0 };
+        let (half, origin, advance) = match rotates {
+            true => (0.5, linear, axis * axis.dot(&linear)),
+            false => (0.0, Vector3::zeros(), linear),
+        };
+        self.half[lane] = half;
         let parts = [
             (&mut self.axis, axis),
-            (&mut self.by_sine, across),
-            (&mut self.by_versine, axis.cross(&across)),
-            (&mut self.by_value, advance),
+            (&mut self.by_sine, origin),
+            (&mut self.by_versine, axis.cross(&origin)),
+            (&mut self.by_rest, advance),
         ];
         for (part, vector) in parts {
             for (lanes, component) in part.iter_mut().zip(&vector) {
@@ -130,7 +132,7 @@ impl Displacements {
     /// These displacements, followed towards the platform by exponentials.
     #[inline(always)]
     fn followed(&self, exponents: &Exponents, by: &Lanes) -> Self {
-        let Exponents { half, axis, by_sine, by_versine, by_value } = exponents;
+        let Exponents { half, axis, by_sine, by_versine, by_rest } = exponents;
         let mut angles = ZEROS;
         for i in 0..LANES {
             angles[i] = half[i] * by[i];
@@ -139,9 +141,9 @@ impl Displacements {
         let mut moved = *self;
         for i in 0..LANES {
             let (sine, versine) = (2.0 * sin[i] * cos[i], 2.0 * sin[i] * sin[i]);
-            let along = |k: usize| {
-                by_sine[k][i] * sine + by_versine[k][i] * versine + by_value[k][i] * by[i]
-            };
+            let rest = by[i] - sine;
+            let along =
+                |k: usize| by_sine[k][i] * sine + by_versine[k][i] * versine + by_rest[k][i] * rest;
             let t = [along(0), along(1), along(2)];
             let (w, q) = (self.rotation[0][i], [1, 2, 3].map(|k| self.rotation[k][i]));
             let t = rotated(w, q, t);
@@ -149,11 +151,11 @@ impl Displacements {
                 moved.translation[k][i] = self.translation[k][i] + t[k];
             }
             let (c, e) = (cos[i], [axis[0][i] * sin[i], axis[1][i] * sin[i], axis[2][i] * sin[i]]);
-            let [x, y, z] = cross(q, e);
-            moved.rotation[0][i] = w * c - (q[0] * e[0] + q[1] * e[1] + q[2] * e[2]);
-            moved.rotation[1][i] = (w * e[0] + q[0] * c) + x;
-            moved.rotation[2][i] = (w * e[1] + q[1] * c) + y;
-            moved.rotation[3][i] = (w * e[2] + q[2] * c) + z;
+            // In the order of nalgebra's product.
+            moved.rotation[0][i] = w * c - q[0] * e[0] - q[1] * e[1] - q[2] * e[2];
+            moved.rotation[1][i] = w * e[0] + q[0] * c + q[1] * e[2] - q[2] * e[1];
+            moved.rotation[2][i] = w * e[1] - q[0] * e[2] + q[1] * c + q[2] * e[0];
+            moved.rotation[3][i] = w * e[2] + q[0] * e[1] - q[1] * e[0] + q[2] * c;
         }
         moved
     }
