@@ -25,9 +25,9 @@ const HALVINGS: u32 = 20;
 /// taken only as long as they reduce the error, and with the last Jacobian: another one would not be better.
 const ARRIVED: f64 = 1e-11;
 
-/// The joints have their values to within this, in radians and shares of the size, which is their rounding, some units
-/// in the last place of an angle: no step is taken.
-const EXACT: f64 = 4e-15;
+/// The joints have their values to within this, in radians and shares of the size, which is their rounding: no step
+/// is taken.
+const EXACT: f64 = 1e-15;
 
 /// A step with a new Jacobian that leaves this share of the error or less is followed by one with the same Jacobian,
 /// which leaves twice this share of the rest. Two such steps together have third order, and the second one costs a third

@@ -146,9 +146,8 @@ impl Displacements {
                 |k: usize| by_sine[k][i] * sine + by_versine[k][i] * versine + by_rest[k][i] * rest;
             let t = [along(0), along(1), along(2)];
             let (w, q) = (self.rotation[0][i], [1, 2, 3].map(|k| self.rotation[k][i]));
-            let t = rotated(w, q, t);
-            for k in 0..3 {
-                moved.translation[k][i] = self.translation[k][i] + t[k];
+            for (k, t) in rotated(w, q, t).into_iter().enumerate() {
+                moved.translation[k][i] = self.translation[k][i] + t;
             }
             let (c, e) = (cos[i], [axis[0][i] * sin[i], axis[1][i] * sin[i], axis[2][i] * sin[i]]);
             // In the order of nalgebra's product.
@@ -167,7 +166,7 @@ impl Displacements {
         let [a, b, c, d] = <[f64; 4]>::from(target.rotation.into_inner().coords);
         let (point, wanted, real) = (<[f64; 3]>::from(platform.coords), [a, b, c], d);
         let mut distances = ZEROS;
-        for i in 0..LANES {
+        for (i, distance) in distances.iter_mut().enumerate() {
             let (w, q) = (self.rotation[0][i], [1, 2, 3].map(|k| self.rotation[k][i]));
             // The sine of half the angle, twice: acos would lose half of the digits.
             let [x, y, z] = cross(wanted, q);
@@ -179,7 +178,7 @@ impl Displacements {
             let x = x + self.translation[0][i] - aim[0];
             let y = y + self.translation[1][i] - aim[1];
             let z = z + self.translation[2][i] - aim[2];
-            distances[i] = angle + (x * x + y * y + z * z).sqrt() / size;
+            *distance = angle + (x * x + y * y + z * z).sqrt() / size;
         }
         distances
     }
