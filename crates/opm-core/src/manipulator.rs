@@ -63,7 +63,6 @@ use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
-pub(crate) use closure::Products;
 use leg::CompileContext;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 use mode::ModeLayout;
@@ -159,7 +158,7 @@ pub struct Manipulator {
     /// The legs' products of exponentials.
     pub(crate) closure: Closure,
     /// The instructions of the processor at hand.
-    arch: Arch,
+    pub(crate) arch: Arch,
 }
 
 impl Manipulator {

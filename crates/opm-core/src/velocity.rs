@@ -65,6 +65,7 @@ mod weighted;
 
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;
+pub(crate) use jacobian::Rows;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub use many::{ConditionBatch, ConditionQuery};
@@ -391,10 +392,16 @@ impl Manipulator {
     /// The differentials of a leg's sections at a solution.
     #[inline]
     fn leg_differential(&self, at: &Solution, number: usize) -> LegDifferential {
+        self.differential_for(Rows::All, at, number)
+    }
+
+    /// The same for some rows of the Jacobian.
+    #[inline(always)]
+    fn differential_for(&self, rows: Rows, at: &Solution, number: usize) -> LegDifferential {
         let leg = &self.legs[number];
         match &leg.lean {
-            None => self.differential_of(leg, at, number),
-            Some(lean) => self.raised_differential(leg, lean, at, number),
+            None => self.differential_of(leg, rows, at, number),
+            Some(lean) => self.raised_differential((leg, lean), rows, at, number),
         }
     }
 
@@ -403,29 +410,48 @@ impl Manipulator {
     #[inline(never)]
     fn raised_differential(
         &self,
-        leg: &CompiledLeg,
-        lean: &Lean,
+        (leg, lean): (&CompiledLeg, &Lean),
+        rows: Rows,
         at: &Solution,
         number: usize,
     ) -> LegDifferential {
         // A leg that is solved at a height has a closed form there.
         let raised = leg.raised(lean, self.leg_rise(at, number));
-        self.differential_of(raised.as_ref().unwrap_or(leg), at, number)
+        self.differential_of(raised.as_ref().unwrap_or(leg), rows, at, number)
     }
 
-    /// The differentials of the sections of a leg, which is `leg` at the height of a solution.
+    /// The differentials of the sections of a leg, which is `leg` at the height of a solution. A section of passive
+    /// joints that does not have the imaginary joint adds nothing to the rows of the driven joints.
     #[inline(always)]
-    fn differential_of(&self, leg: &CompiledLeg, at: &Solution, number: usize) -> LegDifferential {
-        let solved = &at.legs[number];
+    fn differential_of(
+        &self,
+        leg: &CompiledLeg,
+        rows: Rows,
+        at: &Solution,
+        number: usize,
+    ) -> LegDifferential {
         let (task, length) = (self.task(), self.characteristic_length());
         let coordinates = self.coordinates();
-        let vector = |first: usize| {
-            Vector3::from_fn(|i, _| at.joints[first + i] - coordinates[first + i].home)
+        let of = |section: Section| {
+            let compiled = leg.section(section);
+            if rows == Rows::Driven && leg.split_section != section && !compiled.driven {
+                return Differential::UNUSED;
+            }
+            let displacements = at.legs[number].section(section);
+            // Revolutions that the joints' values count do not change the rates of actuated joints.
+            let vector = |first: usize| match rows {
+                Rows::All => {
+                    Vector3::from_fn(|i, _| at.joints[first + i] - coordinates[first + i].home)
+                }
+                Rows::Driven => Vector3::from_fn(|i, _| displacements[i].value()),
+            };
+            let kind = match section {
+                Section::Lower => task.lower.kind,
+                Section::Upper => task.upper.kind,
+            };
+            Differential::new(kind, compiled, displacements, vector, length)
         };
-        LegDifferential {
-            lower: Differential::new(task.lower.kind, &leg.lower, &solved.lower, vector, length),
-            upper: Differential::new(task.upper.kind, &leg.upper, &solved.upper, vector, length),
-        }
+        LegDifferential { lower: of(Section::Lower), upper: of(Section::Upper) }
     }
 
     /// Rates and accelerations of a leg's joints, for the twists of the two sections.

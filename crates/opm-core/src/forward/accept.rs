@@ -5,9 +5,10 @@ use super::matches::{Match, Matches};
 use super::search::Search;
 use super::{Assemblies, Assembly, Unmet};
 use crate::group::Displacement;
-use crate::manipulator::{Dependent, Manipulator, Mode, Products, Section, Solution, Unreachable};
+use crate::manipulator::{Dependent, Manipulator, Mode, Section, Solution, Unreachable};
 use crate::numeric::Quantity;
 use nalgebra::Isometry3;
+use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
 /// A leg's solution at an assembled pose has the values of the actuated joints to within this, in radians or
@@ -52,13 +53,13 @@ impl Assembly {
 
 impl Manipulator {
     /// Writes the assembly at a pose, where the actuated joints have these displacements from home. The other joints
-    /// are those of a solution there, improved where that does not close to rounding.
+    /// are those of a solution there, improved where that does not close to rounding. `tried` is a buffer.
     pub(super) fn write_assembly(
         &self,
         Place { pose, target, mode }: Place<'_>,
         displacements: &[f64],
         solution: &Solution,
-        products: &mut Products,
+        tried: &mut Vec<f64>,
         out: &mut Assembly,
     ) {
         let write = |to: &mut Vec<f64>, from: &[f64]| {
@@ -81,9 +82,9 @@ impl Manipulator {
             };
             *joint = given + TAU * revolutions;
         }
-        out.residual = self.closure.residual(&out.joints, target, products);
+        out.residual = self.closure.residual(&out.joints, target);
         if out.residual > SETTLED {
-            out.residual = self.closure.settle(&mut out.joints, target, out.residual, products);
+            out.residual = self.closure.settle(&mut out.joints, target, out.residual, tried);
         }
     }
 }
@@ -134,22 +135,27 @@ impl Search<'_> {
         m.task().write_pose(v, b, self.rise, &mut all);
         m.write_independent(&mut all, &mut pose);
         if m.check_pose(&pose).is_ok() {
-            self.assemble_at(&all, &pose);
+            m.arch.dispatch(AssembleAt { search: self, all: &all, pose: &pose });
         }
         self.poses = [all, pose];
     }
 
     /// The same at a pose: all of its coordinates, and the independent ones.
+    #[inline(always)]
     fn assemble_at(&mut self, all: &[f64], pose: &[f64]) {
         let m = self.manipulator;
         let (v, b) = m.task().sections(all);
         let rise = m.task().rise(all);
         let target = m.task().raised(rise, m.task().isometry(&v, &b));
         let mut matches = std::mem::take(&mut self.matches);
-        let open = matches.iter_mut().enumerate().find_map(|(leg, found)| {
+        let mut open = None;
+        for (leg, found) in matches.iter_mut().enumerate() {
             self.match_leg(leg, [&v, &b], rise, found);
-            found.list.is_empty().then_some(found.least)
-        });
+            if found.list.is_empty() {
+                open = Some(found.least);
+                break;
+            }
+        }
         match open {
             Some(error) => self.reject(error),
             None => self.accept_matches(&matches, all, pose, &target),
@@ -159,6 +165,7 @@ impl Search<'_> {
 
     /// Accepts every combination of solutions of the legs at a pose. `all` has all of its coordinates, and `pose` the
     /// independent ones.
+    #[inline(always)]
     fn accept_matches(
         &mut self,
         matches: &[Matches],
@@ -176,8 +183,9 @@ impl Search<'_> {
                 let Match { mode: own, solution, .. } = &list[rest % list.len()];
                 rest /= list.len();
                 mode = mode.with(*own);
-                m.write_leg(leg, solution, &mut self.solution);
+                self.solution.legs[leg] = *solution;
             }
+            m.write_legs(&mut self.solution);
             if m.task().height.is_some() {
                 self.solution.solved.pose.copy_from_slice(all);
                 m.write_lifts(&mut self.solution);
@@ -222,8 +230,8 @@ impl Search<'_> {
         let m = self.manipulator;
         let place = Place { pose, target, mode };
         let mut assembly = Assembly::buffer(m);
-        let (solution, products) = (&self.solution, &mut self.products);
-        m.write_assembly(place, self.displacements, solution, products, &mut assembly);
+        let (solution, tried) = (&self.solution, &mut self.tried);
+        m.write_assembly(place, self.displacements, solution, tried, &mut assembly);
         if assembly.residual > SETTLED && assembly.residual < MATCH {
             // Near a singularity of a section, Newton's method on the whole mechanism restores digits that
             // the sections have lost.
@@ -269,5 +277,21 @@ impl Search<'_> {
         let Assemblies { loose, unmet, .. } = &mut self.out;
         unmet.retain(|unmet| !matches!(unmet, Unmet::Section(section) if loose.contains(section)));
         self.out
+    }
+}
+
+/// [`Search::assemble_at`], with the instructions of the processor at hand.
+struct AssembleAt<'s, 'a, 'p> {
+    search: &'s mut Search<'a>,
+    all: &'p [f64],
+    pose: &'p [f64],
+}
+
+impl WithSimd for AssembleAt<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.search.assemble_at(self.all, self.pose);
     }
 }

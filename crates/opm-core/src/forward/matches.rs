@@ -80,6 +80,7 @@ impl LowerSection {
 
 impl Search<'_> {
     /// Finds the solutions of a leg at a pose that have the given values of its actuated joints.
+    #[inline(always)]
     pub(super) fn match_leg(
         &mut self,
         leg: usize,
@@ -103,6 +104,8 @@ impl Search<'_> {
     }
 
     /// Tries every combination of branches of a leg whose sections depend on its own height.
+    #[cold]
+    #[inline(never)]
     fn match_leaning(&self, leg: usize, pose: [&Displacement; 2], rise: f64, found: &mut Matches) {
         let m = self.manipulator;
         for mode in m.leg_modes(leg) {
@@ -115,6 +118,7 @@ impl Search<'_> {
     }
 
     /// Tries the branches of a leg whose upper section gives τ.
+    #[inline(always)]
     fn match_upper_first(
         &mut self,
         leg: usize,
@@ -155,6 +159,7 @@ impl Search<'_> {
     }
 
     /// Tries the branches of a leg whose lower section gives τ.
+    #[inline(always)]
     fn match_lower_first(
         &mut self,
         leg: usize,
@@ -180,6 +185,7 @@ impl Search<'_> {
 
     /// Solves a leg's lower section, unless it was solved last for the same `v` and τ. Most solutions already have
     /// other actuated joints, and are rejected before the rest is solved.
+    #[inline(always)]
     fn solve_lower(&mut self, leg: usize, v: &Displacement, tau: Option<JointDisplacement>) {
         let same = |lower: &LowerSection| lower.tau == tau && lower.v == *v;
         if !same(&self.lowers[leg]) {
@@ -187,6 +193,7 @@ impl Search<'_> {
         }
     }
 
+    #[inline(always)]
     fn lower_section(
         &self,
         leg: usize,
@@ -235,6 +242,7 @@ impl Search<'_> {
     }
 
     /// Of solutions that are the same near a singularity, keeps the one with the smallest error.
+    #[inline(never)]
     fn keep_distinct(&self, leg: usize, found: &mut Vec<Match>) {
         found.sort_by(|a, b| a.error.total_cmp(&b.error));
         let mut kept = 0;

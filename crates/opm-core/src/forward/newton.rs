@@ -3,12 +3,13 @@
 use super::accept::Place;
 use super::near::{NotFound, Stop};
 use super::{Assembly, NearError};
-use crate::group::LocalTwist;
-use crate::manipulator::{Manipulator, Mode, PoseError, Products, Solution};
+use crate::group::{JointDisplacement, LocalTwist};
+use crate::manipulator::{ChainCoordinate, Manipulator, Mode, PoseError, Section, Solution};
 use crate::mechanism::joint::JointKind;
 use crate::numeric::Quantity;
 use crate::numeric::least_squares::{LeastSquares, MOST};
-use crate::velocity::Jacobians;
+use crate::velocity::{Jacobians, Rows};
+use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
 /// The largest number of steps. Newton's method takes three from a near start, and about six from a good one.
@@ -27,6 +28,11 @@ const ARRIVED: f64 = 1e-11;
 /// The joints have their values to within this, in radians and shares of the size, which is their rounding: no step
 /// is taken.
 const EXACT: f64 = 1e-15;
+
+/// A step with a new Jacobian that leaves this share of the error or less is followed by one with the same Jacobian,
+/// which leaves twice this share of the rest. Two such steps together have third order, and the second one costs a third
+/// of the first: F. A. Potra, V. Pták, "Nondiscrete induction and iterative processes" (1984).
+const KEPT: f64 = 0.1;
 
 /// What is left of a column of the Jacobian counts as zero below this share of the longest. Lengths are over the
 /// size.
@@ -58,7 +64,8 @@ pub struct NearBuffer {
     /// The unit of each component of a step: the size where it is a length, otherwise one.
     units: [f64; MOST],
     system: LeastSquares,
-    products: Products,
+    /// A buffer for joint values.
+    joints: Vec<f64>,
     /// The assembly that was found last.
     pub(super) assembly: Assembly,
 }
@@ -96,7 +103,7 @@ impl Manipulator {
             units: self.units(&jacobians),
             system: LeastSquares::new(actuated + locked, jacobians.joints.ncols()),
             jacobians,
-            products: self.closure.products(),
+            joints: Vec::with_capacity(self.coordinates().len()),
             assembly: Assembly::buffer(self),
         }
     }
@@ -144,7 +151,7 @@ pub(super) struct Newton<'a> {
 impl Newton<'_> {
     /// Starts at a pose, takes steps until the joints have the wanted values, and writes the assembly to the buffer.
     pub fn run(&self, start: &[f64], at: &mut NearBuffer) -> Result<(), NearError> {
-        let reached = self.manipulator.inverse(start, self.mode, &mut at.solution)?.is_some();
+        let reached = self.manipulator.close(start, self.mode, &mut at.solution)?;
         at.pose.clear();
         at.pose.extend_from_slice(start);
         if !reached {
@@ -152,15 +159,20 @@ impl Newton<'_> {
             return Err(at.ended(why, 0, f64::INFINITY).into());
         }
         self.write_error(&at.solution, &at.modulo, &mut at.error);
-        let mut steps = 0;
+        let (mut steps, mut kept) = (0, false);
         while steps < STEPS && most(&at.error) > EXACT {
-            let arrived = most(&at.error) <= ARRIVED;
-            let regular = (arrived && steps > 0) || self.linearise(at);
+            let before = most(&at.error);
+            let arrived = before <= ARRIVED;
+            kept |= arrived && steps > 0;
+            let regular = kept || self.linearise(at);
             match if regular { self.step(at) } else { Err(Stop::Singular) } {
                 Ok(()) => steps += 1,
                 Err(_) if arrived => break,
+                // Another Jacobian may do what the last one does not.
+                Err(_) if kept => {}
                 Err(why) => return Err(at.ended(why, steps, most(&at.error)).into()),
             }
+            kept = !kept && most(&at.error) <= KEPT * before;
         }
         let off = most(&at.error);
         if off.is_nan() || off > ARRIVED {
@@ -180,39 +192,49 @@ impl Newton<'_> {
     /// Writes the actuated joints' wanted values minus those of a solution, in radians and shares of the size.
     fn write_error(&self, solution: &Solution, modulo: &[bool], error: &mut [f64]) {
         let m = self.manipulator;
-        let joints = m.actuated().iter().zip(self.wanted).zip(modulo);
-        for (error, ((&coordinate, wanted), modulo)) in error.iter_mut().zip(joints) {
-            let off = wanted - solution.joints[coordinate];
-            *error = match m.coordinates()[coordinate].quantity {
-                Quantity::Angle if *modulo => off - TAU * (off / TAU).round(),
+        let mut write = |number: usize, coordinate: usize, value: f64| {
+            let off = self.wanted[number] - value;
+            error[number] = match m.coordinates()[coordinate].quantity {
+                Quantity::Angle if modulo[number] => off - TAU * (off / TAU).round(),
                 Quantity::Angle => off,
                 Quantity::Length => off / m.closure.size,
             };
+        };
+        for (leg, compiled) in m.legs.iter().enumerate() {
+            for section in [Section::Lower, Section::Upper] {
+                if !compiled.section(section).driven {
+                    continue;
+                }
+                let coordinates = compiled.section(section).coordinates.iter();
+                let displacements = solution.legs[leg].section(section);
+                for (coordinate, displacement) in coordinates.zip(displacements) {
+                    let Some(ChainCoordinate { number, actuated: Some(actuated), home, limits }) =
+                        coordinate
+                    else {
+                        continue;
+                    };
+                    let moved = match displacement {
+                        JointDisplacement::Direction(_) => {
+                            limits.report_angle(displacement.value())
+                        }
+                        JointDisplacement::Value(value) => *value,
+                    };
+                    write(*actuated, *number, home + moved);
+                }
+            }
+        }
+        for lift in m.lifts() {
+            let ChainCoordinate { number, actuated: Some(actuated), .. } = lift.coordinate else {
+                continue;
+            };
+            write(actuated, number, solution.joints[number]);
         }
     }
 
     /// Decomposes the Jacobian of the actuated joints at the present pose; `false` if it is singular. In rows and
     /// columns, lengths are divided by the size. Locked joints stay where they are.
     fn linearise(&self, at: &mut NearBuffer) -> bool {
-        let m = self.manipulator;
-        let NearBuffer { solution, jacobians, system, units, .. } = at;
-        if !m.differentiate_joints(solution, jacobians) {
-            return false;
-        }
-        let actuated = m.actuated().len();
-        for (row, &coordinate) in m.actuated().iter().enumerate() {
-            let unit = match m.coordinates()[coordinate].quantity {
-                Quantity::Angle => 1.0,
-                Quantity::Length => m.closure.size,
-            };
-            let rates = jacobians.joints.row(coordinate);
-            system.write_row(row, rates.iter().zip(&*units).map(|(rate, by)| rate * by / unit));
-        }
-        for (row, rates) in jacobians.locked.row_iter().enumerate() {
-            let rates = rates.iter().zip(&*units).map(|(rate, by)| rate * by);
-            system.write_row(actuated + row, rates);
-        }
-        system.decompose(SINGULAR)
+        self.manipulator.arch.dispatch(Linearise { manipulator: self.manipulator, at })
     }
 
     /// Takes one step with the last Jacobian, shortened until it reduces the error.
@@ -266,7 +288,7 @@ impl Newton<'_> {
         let rise = m.task().rise(&at.solution.solved.pose) + along;
         m.task().write_pose(&moved_v, &moved_b, rise, &mut at.all);
         m.write_independent(&mut at.all, &mut at.next);
-        match m.inverse(&at.next, self.mode, &mut at.tried).map(|found| found.is_some()) {
+        match m.close(&at.next, self.mode, &mut at.tried) {
             Ok(true) => Ok(()),
             Ok(false) => Err(Stop::OutOfReach(at.tried.unreachable[0])),
             Err(_) => Err(Stop::Stalled),
@@ -280,17 +302,55 @@ impl Newton<'_> {
         let rise = m.task().rise(&at.solution.solved.pose);
         m.task().write_pose(&v, &b, rise, &mut at.all);
         m.write_independent(&mut at.all, &mut at.pose);
-        m.inverse(&at.pose, self.mode, &mut at.solution)?;
+        m.close(&at.pose, self.mode, &mut at.solution)?;
         Ok(())
     }
 
     /// Writes the assembly at the present pose.
     fn assemble(&self, at: &mut NearBuffer) {
         let m = self.manipulator;
-        let NearBuffer { displacements, pose, solution, products, assembly, .. } = at;
+        let NearBuffer { displacements, pose, solution, joints, assembly, .. } = at;
+        m.write_closed(solution);
         let target = solution.displacement(m);
         let place = Place { pose, target: &target, mode: self.mode };
-        m.write_assembly(place, displacements, solution, products, assembly);
+        m.write_assembly(place, displacements, solution, joints, assembly);
+    }
+}
+
+/// [`Newton::linearise`], with the instructions of the processor at hand.
+struct Linearise<'a> {
+    manipulator: &'a Manipulator,
+    at: &'a mut NearBuffer,
+}
+
+impl WithSimd for Linearise<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        let m = self.manipulator;
+        let NearBuffer { solution, jacobians, system, units, .. } = self.at;
+        if !m.differentiate_joints(solution, Rows::Driven, jacobians) {
+            return false;
+        }
+        let (rows, locked_rows) = (m.actuated().len(), jacobians.locked.nrows());
+        let joints = jacobians.joints.as_slice().chunks_exact(m.coordinates().len());
+        let locked = jacobians.locked.as_slice();
+        for ((number, joints), by) in joints.enumerate().zip(units) {
+            let column = system.column_mut(number);
+            for (entry, &coordinate) in column.iter_mut().zip(m.actuated()) {
+                let rate = joints[coordinate] * *by;
+                *entry = match m.coordinates()[coordinate].quantity {
+                    Quantity::Angle => rate,
+                    Quantity::Length => rate / m.closure.size,
+                };
+            }
+            let locked = &locked[number * locked_rows..(number + 1) * locked_rows];
+            for (entry, rate) in column[rows..].iter_mut().zip(locked) {
+                *entry = rate * *by;
+            }
+        }
+        system.decompose(SINGULAR)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::chain::track::Track;
 use crate::chain::{Branch, Chain, ReachDeficit, planar};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, SubspaceKind};
 use crate::manipulator::plan::{Anchor, Plan};
-use crate::manipulator::{CompiledLeg, Manipulator, Products, Section, Solution};
+use crate::manipulator::{CompiledLeg, Manipulator, Section, Solution};
 use crate::numeric::angle::unit;
 use crate::numeric::angle::whole_turns;
 use nalgebra::Complex;
@@ -52,8 +52,8 @@ pub(super) struct Search<'a> {
     pub poses: [Vec<f64>; 2],
     /// A buffer for inverse kinematics.
     pub solution: Solution,
-    /// The legs' products of exponentials for the last candidate.
-    pub products: Products,
+    /// A buffer for joint values.
+    pub tried: Vec<f64>,
     /// The assemblies found so far.
     pub out: Assemblies,
     /// The smallest error of a joint or a leg among the rejected candidates, in radians or shares of the
@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
             matches: (0..manipulator.legs()).map(|_| Matches::new()).collect(),
             poses: Default::default(),
             solution: manipulator.solution(),
-            products: manipulator.closure.products(),
+            tried: Vec::new(),
             out: Assemblies::default(),
             least: None,
             upper_failed: false,

@@ -1,33 +1,25 @@
 //! The closure error of the legs: the products of exponentials of their joints, without any decomposition,
 //! compared with the pose of the platform.
 
+mod abreast;
+
 use crate::decomposition::mobility::frame;
 use crate::group::screw::Screw;
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointKind;
-use crate::numeric::angle::sin_cos;
-use nalgebra::{
-    Isometry3, Matrix6, Point3, Quaternion, Translation3, UnitQuaternion, Vector3, Vector6,
-};
+use abreast::Abreast;
+use nalgebra::{Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
+use pulp::{Arch, Simd, WithSimd};
 
 /// The legs' joints, for products of exponentials.
 #[derive(Clone, Debug)]
 pub struct Closure {
     legs: Vec<Vec<LegJoint>>,
+    abreast: Vec<Abreast>,
     platform: Point3<f64>,
     /// The characteristic length of the mechanism, metres.
     pub size: f64,
-}
-
-/// The products of exponentials of the joint values that were given last: where the first joints of a leg still
-/// have these, their product is not computed again.
-#[derive(Clone, Debug)]
-pub struct Products {
-    joints: Vec<f64>,
-    /// For each joint, the product of the exponentials up to it in its leg.
-    upto: Vec<Isometry3<f64>>,
-    /// A buffer for joint values.
-    tried: Vec<f64>,
+    arch: Arch,
 }
 
 /// One joint and its values at home.
@@ -35,7 +27,6 @@ pub struct Products {
 enum LegJoint {
     Screw {
         screw: Screw,
-        path: Path,
         home: f64,
         actuated: bool,
     },
@@ -56,14 +47,9 @@ impl LegJoint {
     }
 
     /// The displacement `g`, followed towards the platform by that of the joint.
-    #[inline(always)]
     fn after(&self, g: &Isometry3<f64>, values: &[f64]) -> Isometry3<f64> {
         match self {
-            Self::Screw { path: Path::Line(direction), home, .. } => {
-                let moved = g.rotation * (direction * (values[0] - home));
-                Isometry3::from_parts((g.translation.vector + moved).into(), g.rotation)
-            }
-            Self::Screw { path: Path::Helix(helix), home, .. } => g * helix.exp(values[0] - home),
+            Self::Screw { screw, home, .. } => g * screw.exp(values[0] - home),
             Self::Ball { point, home, .. } => {
                 let vector = Vector3::new(values[0], values[1], values[2]) - home;
                 let rotation = UnitQuaternion::from_scaled_axis(vector);
@@ -73,54 +59,9 @@ impl LegJoint {
     }
 }
 
-/// What a joint's screw moves along.
-#[derive(Clone, Debug)]
-enum Path {
-    /// A translation with this velocity.
-    Line(Vector3<f64>),
-    Helix(Helix),
-}
-
-/// A rotation about a line, with or without an advance.
-#[derive(Clone, Debug)]
-struct Helix {
-    /// The axis `a`, a unit vector.
-    axis: Vector3<f64>,
-    /// The velocity `v` at the origin.
-    linear: Vector3<f64>,
-    /// `a × v`.
-    across: Vector3<f64>,
-    /// `a (a · v)`, the advance.
-    advance: Vector3<f64>,
-}
-
-impl Path {
-    fn new(screw: &Screw) -> Self {
-        let Screw { angular: axis, linear } = *screw;
-        if axis == Vector3::zeros() {
-            return Self::Line(linear);
-        }
-        let (across, advance) = (axis.cross(&linear), axis * axis.dot(&linear));
-        Self::Helix(Helix { axis, linear, across, advance })
-    }
-}
-
-impl Helix {
-    /// The displacement by an angle: [`Screw::exp`] for a unit axis.
-    #[inline(always)]
-    fn exp(&self, angle: f64) -> Isometry3<f64> {
-        let (sin, cos) = sin_cos(0.5 * angle);
-        let (sine, versine) = (2.0 * sin * cos, 2.0 * sin * sin);
-        let translation =
-            self.linear * sine + self.across * versine + self.advance * (angle - sine);
-        let rotation = Quaternion::from_parts(cos, self.axis * sin);
-        Isometry3::from_parts(translation.into(), UnitQuaternion::new_unchecked(rotation))
-    }
-}
-
 impl Closure {
     pub fn new(mechanism: &Mechanism) -> Self {
-        let legs = mechanism
+        let legs: Vec<_> = mechanism
             .legs
             .iter()
             .map(|leg| {
@@ -131,89 +72,49 @@ impl Closure {
                         let home = Vector3::from_fn(|i, _| c[i].home);
                         joints.push(LegJoint::Ball { point: joint.point.coords, home, actuated });
                     } else {
-                        joints.extend(joint.screws().into_iter().zip(c).map(|(screw, c)| {
-                            LegJoint::Screw {
+                        joints.extend(
+                            joint.screws().into_iter().zip(c).map(|(screw, c)| LegJoint::Screw {
                                 screw,
-                                path: Path::new(&screw),
                                 home: c.home,
                                 actuated,
-                            }
-                        }));
+                            }),
+                        );
                     }
                 }
                 joints
             })
             .collect();
-        Self { legs, platform: mechanism.platform, size: frame(mechanism).length }
-    }
-
-    /// A buffer for [`Closure::residual`].
-    pub fn products(&self) -> Products {
-        let joints = self.legs.iter().flatten();
-        let values = joints.clone().map(LegJoint::values).sum();
-        Products {
-            // No value is equal to it.
-            joints: vec![f64::NAN; values],
-            upto: vec![Isometry3::identity(); joints.count()],
-            tried: vec![0.0; values],
+        Self {
+            abreast: Abreast::of_legs(&legs),
+            legs,
+            platform: mechanism.platform,
+            size: frame(mechanism).length,
+            arch: Arch::new(),
         }
     }
 
     /// The largest closure error of a leg, with the platform displaced from home by `target`: the angle in
     /// radians plus the distance of the reference point over the size.
-    pub fn residual(
-        &self,
-        joints: &[f64],
-        target: &Isometry3<f64>,
-        products: &mut Products,
-    ) -> f64 {
-        let aim = target * self.platform;
-        let (mut first, mut number) = (0, 0);
-        let mut largest = 0.0;
-        for leg in &self.legs {
-            let mut end = Isometry3::identity();
-            let mut known = true;
-            for joint in leg {
-                let values = &joints[first..first + joint.values()];
-                let before = &mut products.joints[first..first + values.len()];
-                known = known && before == values;
-                if known {
-                    end = products.upto[number];
-                } else {
-                    end = joint.after(&end, values);
-                    products.upto[number] = end;
-                    before.copy_from_slice(values);
-                }
-                first += values.len();
-                number += 1;
-            }
-            largest = f64::max(largest, self.apart(&end, target, &aim));
-        }
-        largest
-    }
-
-    fn apart(&self, end: &Isometry3<f64>, target: &Isometry3<f64>, aim: &Point3<f64>) -> f64 {
-        // The sine of half the angle, twice: acos would lose half of the digits.
-        let rotation = end.rotation.rotation_to(&target.rotation).into_inner();
-        let distance = (end * self.platform - aim).norm();
-        2.0 * rotation.imag().norm() + distance / self.size
+    pub fn residual(&self, joints: &[f64], target: &Isometry3<f64>) -> f64 {
+        self.arch.dispatch(Residual { closure: self, joints, target })
     }
 
     /// Moves the passive joints of every leg so that it closes, with the actuated joints held, by Newton's
     /// method with least squares. Near a serial singularity, joints that were computed from the pose have
-    /// errors of the order of the root of the rounding, which this removes. Takes and returns the residual.
+    /// errors of the order of the root of the rounding, which this removes. Takes and returns the residual; `tried` is a
+    /// buffer.
     pub fn settle(
         &self,
         joints: &mut [f64],
         target: &Isometry3<f64>,
         residual: f64,
-        products: &mut Products,
+        tried: &mut Vec<f64>,
     ) -> f64 {
         /// The number of steps: where the passive joints are singular, each only halves the error.
         const STEPS: usize = 40;
         let mut residual = residual;
-        let mut tried = std::mem::take(&mut products.tried);
-        tried.copy_from_slice(joints);
+        tried.clear();
+        tried.extend_from_slice(joints);
         for _ in 0..STEPS {
             let mut first = 0;
             for leg in &self.legs {
@@ -221,14 +122,13 @@ impl Closure {
                 self.step(leg, &mut tried[first..first + values], target);
                 first += values;
             }
-            let after = self.residual(&tried, target, products);
+            let after = self.residual(tried, target);
             if after.is_nan() || after >= residual {
                 break;
             }
             residual = after;
-            joints.copy_from_slice(&tried);
+            joints.copy_from_slice(tried);
         }
-        products.tried = tried;
         residual
     }
 
@@ -287,5 +187,26 @@ impl Closure {
             }
             at += joint.values();
         }
+    }
+}
+
+/// The closure error, with the instructions of the processor at hand.
+struct Residual<'a> {
+    closure: &'a Closure,
+    joints: &'a [f64],
+    target: &'a Isometry3<f64>,
+}
+
+impl WithSimd for Residual<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { closure: Closure { abreast, platform, size, .. }, joints, target } = self;
+        let mut largest = 0.0;
+        for legs in abreast {
+            largest = f64::max(largest, legs.residual(joints, target, platform, *size));
+        }
+        largest
     }
 }

@@ -113,6 +113,31 @@ impl Manipulator {
         }
     }
 
+    /// Solves the legs and the lifts at a pose in one working mode, without the values of the other joints, which
+    /// [`Manipulator::write_closed`] writes. Returns whether the pose is in reach.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse`].
+    pub(crate) fn close(
+        &self,
+        pose: &[f64],
+        mode: Mode,
+        out: &mut Solution,
+    ) -> Result<bool, PoseError> {
+        self.check_pose(pose)?;
+        let revolutions = Revolutions::NearHome;
+        if self.dependent.is_some() && !self.displace_dependent(pose, mode, out, revolutions) {
+            return Ok(false);
+        }
+        self.arch.dispatch(Close { manipulator: self, pose, mode, out });
+        Ok(out.unreachable.is_empty())
+    }
+
+    /// Writes the values of all joints after [`Manipulator::close`], angles within half a revolution of home.
+    pub(crate) fn write_closed(&self, out: &mut Solution) {
+        self.arch.dispatch(WriteClosed { manipulator: self, out });
+    }
+
     /// Solves a pose, or returns an error if it is not valid.
     #[inline]
     fn solve(
@@ -186,12 +211,35 @@ impl Manipulator {
         }
     }
 
-    /// Writes a leg's solution to `out`, with angles within π of home. Values that `out` holds already, for the same
-    /// lower section and τ, are not computed again.
-    pub(crate) fn write_leg(&self, number: usize, solution: &LegSolution, out: &mut Solution) {
-        let mut angles = Angles::new(AngleOf::Leg(number));
-        out.legs[number] = *solution;
-        self.write(number, out, Revolutions::NearHome, &mut angles);
+    /// Solves every leg at a pose. Where coordinates are dependent, `out` has all of them already.
+    #[inline(always)]
+    fn close_legs(&self, pose: &[f64], mode: Mode, out: &mut Solution, revolutions: Revolutions) {
+        let task = &self.task;
+        if self.dependent.is_none() {
+            out.solved.pose.copy_from_slice(pose);
+            (out.solved.v, out.solved.b) = task.sections(pose);
+        }
+        out.unreachable.clear();
+        out.within_limits = true;
+        let Solution { solved, taus, legs, unreachable, .. } = &mut *out;
+        let rise = task.rise(&solved.pose);
+        for (number, (leg, found)) in self.legs.iter().zip(legs).enumerate() {
+            let branches = self.modes.branches(mode, number);
+            let near = revolutions.near(taus[number], 0.0);
+            let pose = [&solved.v, &solved.b];
+            if let Err((section, deficit)) = leg.solve_in(task, pose, rise, branches, near, found) {
+                unreachable.push(Unreachable { leg: number, section, deficit });
+            }
+        }
+    }
+
+    /// Writes the joints of all legs, whose solutions `out` holds, with angles within π of home.
+    #[inline(always)]
+    pub(crate) fn write_legs(&self, out: &mut Solution) {
+        let mut angles = Angles::new(AngleOf::Leg(0));
+        for number in 0..self.legs.len() {
+            self.write(number, out, Revolutions::NearHome, &mut angles);
+        }
         angles.answer(|of, angle| self.take(of, angle, out, Revolutions::NearHome));
     }
 
@@ -308,23 +356,7 @@ impl WithSimd for Solve<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, pose, mode, out, revolutions } = self;
-        let task = &manipulator.task;
-        if manipulator.dependent.is_none() {
-            out.solved.pose.copy_from_slice(pose);
-            (out.solved.v, out.solved.b) = task.sections(pose);
-        }
-        out.unreachable.clear();
-        out.within_limits = true;
-        let Solution { solved, taus, legs, unreachable, .. } = &mut *out;
-        let rise = task.rise(&solved.pose);
-        for (number, (leg, found)) in manipulator.legs.iter().zip(legs).enumerate() {
-            let branches = manipulator.modes.branches(mode, number);
-            let near = revolutions.near(taus[number], 0.0);
-            let pose = [&solved.v, &solved.b];
-            if let Err((section, deficit)) = leg.solve_in(task, pose, rise, branches, near, found) {
-                unreachable.push(Unreachable { leg: number, section, deficit });
-            }
-        }
+        manipulator.close_legs(pose, mode, out, revolutions);
         let mut angles = Angles::new(AngleOf::Leg(0));
         for number in 0..manipulator.legs.len() {
             if out.unreachable.iter().all(|missed| missed.leg != number) {
@@ -332,9 +364,45 @@ impl WithSimd for Solve<'_> {
             }
         }
         angles.answer(|of, angle| manipulator.take(of, angle, out, revolutions));
-        if task.height.is_some() {
+        if manipulator.task.height.is_some() {
             manipulator.write_lifts(out);
         }
+    }
+}
+
+/// The legs and the lifts at a pose, with the instructions of the processor at hand.
+struct Close<'a> {
+    manipulator: &'a Manipulator,
+    pose: &'a [f64],
+    mode: Mode,
+    out: &'a mut Solution,
+}
+
+impl WithSimd for Close<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, pose, mode, out } = self;
+        manipulator.close_legs(pose, mode, out, Revolutions::NearHome);
+        if manipulator.task.height.is_some() {
+            manipulator.write_lifts(out);
+        }
+    }
+}
+
+/// The joints of legs that are closed, with the instructions of the processor at hand.
+struct WriteClosed<'a> {
+    manipulator: &'a Manipulator,
+    out: &'a mut Solution,
+}
+
+impl WithSimd for WriteClosed<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.manipulator.write_legs(self.out);
     }
 }
 

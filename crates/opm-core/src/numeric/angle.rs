@@ -98,24 +98,31 @@ pub(crate) fn atan2_of_each<const N: usize>(y: &[f64; N], x: &[f64; N]) -> [f64;
 
 /// The sines and the cosines of three angles, computed together.
 #[inline(always)]
-pub(crate) fn sin_cos_of_each(angles: [f64; 3]) -> [(f64, f64); 3] {
-    let [a, b, c] = angles;
-    if a.abs().max(b.abs()).max(c.abs()) > MOST_REDUCED {
-        return large_sin_cos_of_each(angles);
-    }
+pub(crate) fn sin_cos_of_each([a, b, c]: [f64; 3]) -> [(f64, f64); 3] {
     // As many as fit into a vector.
-    let angles = [a, b, c, 0.0];
+    let [sines, cosines] = sin_cos_of_all(&[a, b, c, 0.0]);
+    [(sines[0], cosines[0]), (sines[1], cosines[1]), (sines[2], cosines[2])]
+}
+
+/// The sines of four angles, and their cosines.
+#[inline(always)]
+pub(crate) fn sin_cos_of_all(angles: &[f64; 4]) -> [[f64; 4]; 2] {
+    let [a, b, c, d] = angles.map(f64::abs);
+    if a.max(b).max(c.max(d)) > MOST_REDUCED {
+        return large_sin_cos_of_all(angles);
+    }
     let (mut sines, mut cosines) = ([0.0; 4], [0.0; 4]);
     for i in 0..4 {
         (sines[i], cosines[i]) = sin_cos_reduced(angles[i]);
     }
-    [(sines[0], cosines[0]), (sines[1], cosines[1]), (sines[2], cosines[2])]
+    [sines, cosines]
 }
 
 #[cold]
 #[inline(never)]
-fn large_sin_cos_of_each(angles: [f64; 3]) -> [(f64, f64); 3] {
-    angles.map(sin_cos)
+fn large_sin_cos_of_all(angles: &[f64; 4]) -> [[f64; 4]; 2] {
+    let each = angles.map(sin_cos);
+    [each.map(|(sin, _)| sin), each.map(|(_, cos)| cos)]
 }
 
 /// The sine and the cosine of an angle.

@@ -24,24 +24,26 @@ impl LeastSquares {
         Self { rows, columns, entries, upper: [[0.0; MOST]; MOST], order: [0; MOST] }
     }
 
-    /// Writes a row of the matrix.
-    #[inline]
-    pub fn write_row(&mut self, row: usize, values: impl Iterator<Item = f64>) {
-        let entries = self.entries.iter_mut().skip(row).step_by(self.rows);
-        entries.zip(values).for_each(|(entry, value)| *entry = value);
+    /// The entries of a column of the matrix, to be written.
+    #[inline(always)]
+    pub fn column_mut(&mut self, column: usize) -> &mut [f64] {
+        &mut self.entries[column * self.rows..(column + 1) * self.rows]
     }
 
     /// Decomposes the matrix whose rows were written. Returns `false` if a column is a combination of the others: what
     /// is left of it is not longer than `tolerance` times the longest column.
+    #[inline(always)]
     pub fn decompose(&mut self, tolerance: f64) -> bool {
         self.order = std::array::from_fn(|j| j);
         let mut longest = 0.0;
         for k in 0..self.columns {
-            let square = |j: usize| dot(self.column(j), self.column(j));
-            let (pivot, square) = (k..self.columns).map(|j| (j, square(j))).fold(
-                (k, f64::NEG_INFINITY),
-                |most, next| if next.1 > most.1 { next } else { most },
-            );
+            let (mut pivot, mut square) = (k, f64::NEG_INFINITY);
+            for j in k..self.columns {
+                let next = dot(self.column(j), self.column(j));
+                if next > square {
+                    (pivot, square) = (j, next);
+                }
+            }
             self.swap(k, pivot);
             let length = square.sqrt();
             if k == 0 {
@@ -53,7 +55,10 @@ impl LeastSquares {
             self.upper[k][k] = length;
             let (done, rest) = self.entries.split_at_mut((k + 1) * self.rows);
             let unit = &mut done[k * self.rows..];
-            unit.iter_mut().for_each(|x| *x /= length);
+            let inverse = length.recip();
+            for x in &mut *unit {
+                *x *= inverse;
+            }
             for (column, j) in rest.chunks_exact_mut(self.rows).zip(k + 1..) {
                 self.upper[k][j] = dot(unit, column);
                 subtract(column, self.upper[k][j], unit);
@@ -97,12 +102,20 @@ impl LeastSquares {
     }
 }
 
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let mut sum = 0.0;
+    for (a, b) in a.iter().zip(b) {
+        sum += a * b;
+    }
+    sum
 }
 
+#[inline(always)]
 fn subtract(from: &mut [f64], share: f64, of: &[f64]) {
-    from.iter_mut().zip(of).for_each(|(x, y)| *x -= share * y);
+    for (x, y) in from.iter_mut().zip(of) {
+        *x -= share * y;
+    }
 }
 
 #[cfg(test)]
@@ -162,8 +175,8 @@ mod tests {
 
     fn of(matrix: &DMatrix<f64>) -> LeastSquares {
         let mut system = LeastSquares::new(matrix.nrows(), matrix.ncols());
-        for (number, row) in matrix.row_iter().enumerate() {
-            system.write_row(number, row.iter().copied());
+        for (number, column) in matrix.column_iter().enumerate() {
+            system.column_mut(number).copy_from_slice(column.as_slice());
         }
         system
     }

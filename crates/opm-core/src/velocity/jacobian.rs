@@ -159,6 +159,14 @@ impl Basis {
     }
 }
 
+/// The joints whose rates are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rows {
+    All,
+    /// Those of actuated and of locked joints. Other rows have no meaning, nor have the differentials of the legs.
+    Driven,
+}
+
 /// Twists of the lower section after its displacement `v`.
 struct Moved {
     /// The unit twist of the intersection motion.
@@ -248,7 +256,7 @@ impl Manipulator {
         if !at.unreachable.is_empty() {
             return Err(VelocityError::OutOfReach);
         }
-        let regular = self.differentiate_joints(at, out);
+        let regular = self.differentiate_joints(at, Rows::All, out);
         self.pose_columns(at, out);
         self.platform_columns(at, out);
         self.independent_columns(out);
@@ -257,7 +265,13 @@ impl Manipulator {
 
     /// Computes the rates of the joints alone, at a pose that is in reach: all but [`Jacobians::pose`] and
     /// [`Jacobians::platform`]. Returns `false` if some joints have no rates.
-    pub(crate) fn differentiate_joints(&self, at: &Solution, out: &mut Jacobians) -> bool {
+    #[inline(always)]
+    pub(crate) fn differentiate_joints(
+        &self,
+        at: &Solution,
+        rows: Rows,
+        out: &mut Jacobians,
+    ) -> bool {
         out.singular.clear();
         out.v = at.solved.v;
         let task = self.task();
@@ -265,19 +279,21 @@ impl Manipulator {
         let lower = out.basis.lower.map(|twist| at.solved.v.adjoint(&twist));
         let moved = Moved { along, lower };
         for number in 0..self.legs.len() {
-            let differential = self.leg_differential(at, number);
+            let differential = self.differential_for(rows, at, number);
             let leg = &self.legs[number];
             if let Some(lean) = &leg.lean {
                 let displacements = at.legs[number].section(lean.section);
                 out.leans[number] = lean.moved_screw(leg, displacements);
             }
             let tau_rates = if self.note_singular(number, &differential, &mut out.singular) {
-                self.leg_rows(number, &differential, at.legs[number].tau, &moved, out)
+                self.leg_rows(number, rows, (&differential, at.legs[number].tau), &moved, out)
             } else {
                 self.clear_rows(number, out);
                 [0.0; 6]
             };
-            out.legs[number] = differential;
+            if rows == Rows::All || leg.lean.is_some() {
+                out.legs[number] = differential;
+            }
             out.taus[number] = at.legs[number].tau;
             if let Some(lift) = &leg.lift {
                 // The height has the last column. It does not move the imaginary joint.
@@ -350,12 +366,12 @@ impl Manipulator {
 
     /// Computes the rows of a leg, and returns the rates along the intersection motion for each component of the section
     /// twist.
-    #[inline]
+    #[inline(always)]
     fn leg_rows(
         &self,
         number: usize,
-        LegDifferential { lower, upper }: &LegDifferential,
-        tau: JointDisplacement,
+        wanted: Rows,
+        (LegDifferential { lower, upper }, tau): (&LegDifferential, JointDisplacement),
         moved: &Moved,
         out: &mut Jacobians,
     ) -> [f64; 6] {
@@ -418,6 +434,9 @@ impl Manipulator {
             };
             for (coordinate, joint) in compiled.coordinates.iter().zip(0..) {
                 let Some(coordinate) = coordinate else { continue };
+                if wanted == Rows::Driven && coordinate.actuated.is_none() {
+                    continue;
+                }
                 let row = coordinate.number;
                 let by_along = if section == leg.split_section {
                     0.0

@@ -26,6 +26,13 @@ pub(crate) struct Differential {
 }
 
 impl Differential {
+    /// The differential of a section whose rates are not asked for.
+    pub const UNUSED: Self = {
+        let zeros = [LocalTwist::new(0.0, 0.0, 0.0); 3];
+        let screws = Screws { kind: SubspaceKind::Identity, moved: zeros };
+        Self { screws, crosses: zeros, reciprocal: zeros, measure: 1.0, ball: None }
+    };
+
     /// The differential of a section, whose joints have these displacements. For a spherical joint, `vector`
     /// gives its rotation vector from home in base coordinates, by the number of its first coordinate; full
     /// revolutions count. `length` is the characteristic length, metres.
