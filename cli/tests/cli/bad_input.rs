@@ -401,7 +401,7 @@ fn headings_of_columns_name_units() {
         ("xi [grad]", "xi is an angle, expected rad, deg, not \"grad\""),
         ("t [ms]", "expected t or t [s]"),
     ] {
-        let file = folder.write("wrong.csv", &format!("{heading}\n1\n"));
+        let file = folder.write("wrong.csv", format!("{heading}\n1\n"));
         opm(&["ik", PLANO, "--poses", &file]).fails_with_one_line(1, &["wrong.csv:1: ", words]);
     }
     // So may those of a motion.
