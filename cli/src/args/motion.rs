@@ -68,9 +68,9 @@ pub struct LinkageArgs {
 /// working mode stays the same, and angles are continuous.
 ///
 /// Where the mechanism cannot follow, the answer says when, which leg or joint, and by how much: out of
-/// reach, past the limit of a joint (passive joints too), above its max_rate or max_acceleration, through a singularity. Violations between two
-/// samples are found too, unless one comes and goes more than once there. The rest of the motion is
-/// recorded; with --strict the exit status is then 1.
+/// reach, past the limit of a joint (passive joints too), above its max_rate or max_acceleration, through a
+/// singularity. Violations between two samples are found too, unless one comes and goes more than once
+/// there. The rest of the motion is recorded; with --strict the exit status is then 1.
 ///
 /// --time-optimal keeps the sequence of poses and replaces the times: the platform starts and ends at rest, and moves
 /// as fast as the limits of rates and accelerations in the mechanism file let it. Every actuated joint needs a
@@ -91,8 +91,8 @@ Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o joints.csv --rates
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
-  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --time-optimal \\
-    --set max_acceleration.S=2
+  opm trajectory translational-helical-3dof --motion translational-helical-sinusoids \\
+    --time-optimal --set max_acceleration.S=2
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
     /// The mechanism.

@@ -431,7 +431,7 @@ fn wrong_usage_names_the_flag() {
         (&cloud, &["-o", &svg, "--panels", "pose"], &["--panels", "pose", "workspace"]),
         (&cloud, &["-o", &svg, "--slice", "x=0"], &["--slice", "x is an axis"]),
         (&cloud, &["-o", &svg, "--slice", "q=0"], &["--slice", "\"q\"", "xi"]),
-        (&cloud, &["-o", &svg, "--slice", "xi=3"], &["--slice", "xi = 3", "grid"]),
+        (&cloud, &["-o", &svg, "--slice", "xi=3"], &["--slice", "xi = 171.9 deg", "grid"]),
         (&cloud, &["-o", &svg, "--slice", "xi=3mm"], &["--slice", "xi is an angle"]),
         (&cloud, &["-o", &svg, "--slice", "xi=0,xi=1,psi=0,psi=0.3"], &["--slice", "xi and psi"]),
         (&cloud, &["-o", &svg, "--size", "200x100"], &["--size", "200x100", "need at least"]),
