@@ -89,6 +89,31 @@ x = [0, 1, 0]
 xi = 0.5
 """
 
+# Lines and arcs, with every optional key.
+EVERY_MOVE = """
+format = 1
+name = "every-move"
+units = { length = "mm", angle = "deg" }
+rate = 100
+mode = "home"
+feed = 100
+acceleration = 1000
+blend = 1
+start = { x = -10, xi = 1 }
+
+[[moves]]
+to = { x = 10 }
+feed = 50
+
+[[moves]]
+to = { x = 10, y = 20, psi = 2 }
+via = { x = 20, y = 10 }
+blend = 2
+
+[[moves]]
+to = { x = -10 }
+"""
+
 # What opm refuses and a schema cannot say. Such a file is accepted by the schema.
 UNSAYABLE = [
     # values of numbers
@@ -110,6 +135,13 @@ UNSAYABLE = [
     "`pitch` is given for . legs, expected it for exactly one",
     "gives the direction alpha \\+ beta = ",
     "expected a later time",
+    "move . does not move the position",
+    "move . has its start, `via` and `to` on one line",
+    "and the blends at its ends need",
+    "is given for the last move",
+    "`feed` is missing, expected a speed, here or for all moves",
+    "expected (a speed|an acceleration) along the path above 0",
+    "is below 0, expected the distance from a corner",
     "values?, expected . as `t` has",
     # geometry
     "home is out of this leg's reach by",
@@ -173,7 +205,7 @@ def problems(opm, tmp_path):
 def blocks():
     """The complete files in docs/format.md, with their kinds."""
     for block in re.findall(r"^```toml\n(.*?)^```", FORMAT.read_text(encoding="utf-8"), re.M | re.S):
-        yield ("motion" if re.search(r"^\[(coordinates|points)\]", block, re.M) else "mechanism", block)
+        yield ("motion" if re.search(r"^\[(coordinates|points|\[moves\])\]", block, re.M) else "mechanism", block)
 
 
 def fragments():
@@ -196,14 +228,14 @@ def documents():
     yield from (("motion", path.read_text(encoding="utf-8")) for path in MOTIONS)
     yield from blocks()
     yield from (("mechanism", text) for text in fragments())
-    yield from [("mechanism", EVERY_KEY), ("motion", EVERY_MOTION), ("motion", EVERY_POINT)]
+    yield from [("mechanism", EVERY_KEY), ("motion", EVERY_MOTION), ("motion", EVERY_POINT), ("motion", EVERY_MOVE)]
 
 
 def test_what_is_shipped_and_explained_is_valid(schema, problems):
     found = list(documents())
     explained = FORMAT.read_text(encoding="utf-8").count("```toml")
     assert explained >= 6
-    assert len(found) == len(MECHANISMS) + len(MOTIONS) + explained + 3
+    assert len(found) == len(MECHANISMS) + len(MOTIONS) + explained + 4
     for kind, text in found:
         errors = [error.message for error in schema[kind].iter_errors(tomllib.loads(text))]
         assert errors == [], text

@@ -542,3 +542,82 @@ fn a_time_optimal_motion_is_a_motion() {
     assert_eq!(without.code, Some(1));
     assert!(without.stderr.contains("no max_acceleration of S1, S2, S3"), "{}", without.stderr);
 }
+
+/// The rows of the CSV of a motion: numbers by column.
+fn table(motion: &str, more: &[&str]) -> BTreeMap<String, Vec<f64>> {
+    let run = trajectory(PLANO, motion, &[&["-o", "-", "--rates"], more].concat());
+    let mut lines = run.text().lines().map(|line| line.split(','));
+    let names = lines.next().unwrap().map(str::to_owned);
+    let mut columns: Vec<(String, Vec<f64>)> = names.map(|name| (name, vec![])).collect();
+    for line in lines {
+        for ((_, column), cell) in columns.iter_mut().zip(line) {
+            column.push(cell.parse().unwrap());
+        }
+    }
+    columns.into_iter().collect()
+}
+
+const SQUARE: &str = "rate = 1000\nfeed = 100\nacceleration = 2000\nstart = { x = -20, y = -20 }\n\
+    [[moves]]\nto = { x = 20, xi = 5 }\n[[moves]]\nto = { x = 20, y = 20 }\nvia = { x = 40, y = 0 }\n\
+    [[moves]]\nto = { x = -20 }\n";
+
+/// A line, a half circle that touches it at neither end, and a line: with a halt at each corner it takes the lengths over
+/// the feed rate and what each start and halt costs; with blends it never halts, and the feed rate holds between them.
+#[test]
+fn lines_and_arcs_have_a_feed_rate() {
+    let folder = Folder::new();
+    let halting = folder.write("halting.toml", format!("{HEAD}{SQUARE}"));
+    let found = json(PLANO, &halting, &[]);
+    // 40 mm, half a circle of 20 mm, 40 mm at 100 mm/s; 100 mm/s over 2000 mm/s² three times.
+    let radius = 20.0;
+    let duration = (80.0 + PI * radius) / 100.0 + 3.0 * 0.05;
+    assert!((number(&found["duration"]) - duration).abs() < 1e-12, "{found}");
+    let columns = table(&halting, &[]);
+    let speed = |i: usize| columns["d.x"][i].hypot(columns["d.y"][i]);
+    let count = columns["t"].len();
+    assert!((0..count).all(|i| speed(i) < 0.1 + 1e-12));
+    assert!((0..count).filter(|&i| speed(i) > 0.1 - 1e-12).count() > count / 2);
+    for i in 0..count {
+        let [x, y] = [columns["x"][i], columns["y"][i]];
+        if x > 0.02 + 1e-12 {
+            assert!(((x - 0.02).hypot(y) - 0.02).abs() < 1e-12, "{x} {y}");
+        }
+    }
+    let round = folder.write("round.toml", format!("{HEAD}blend = 5\n{SQUARE}"));
+    let columns = table(&round, &[]);
+    let speed = |i: usize| columns["d.x"][i].hypot(columns["d.y"][i]);
+    let count = columns["t"].len();
+    let slowest = (60..count - 60).map(speed).fold(f64::MAX, f64::min);
+    assert!(slowest > 0.03, "{slowest}");
+    let jump =
+        (1..count).map(|i| (columns["d.y"][i] - columns["d.y"][i - 1]).abs()).fold(0.0, f64::max);
+    assert!(jump < 0.01, "{jump}");
+}
+
+#[test]
+fn wrong_moves_are_named_by_line_and_column() {
+    let folder = Folder::new();
+    for (from, to, words) in [
+        (
+            "via = { x = 40, y = 0 }",
+            "via = { x = 20, y = 0 }",
+            "9:1: move 2 has its start, `via` and `to` on one line",
+        ),
+        ("feed = 100\n", "", "`feed` is missing"),
+        ("feed = 100", "feed = 0", "5:8: `feed` is 0, expected a speed along the path above 0"),
+        ("acceleration = 2000\n", "", "`acceleration` is missing"),
+        ("to = { x = -20 }", "to = { xi = 3 }", "move 3 does not move the position"),
+        ("to = { x = -20 }", "to = { x = -20 }\nblend = 1", "`blend` is given for the last move"),
+        ("feed = 100", "blend = 30\nfeed = 100", "move 2 is 62.8319 mm long"),
+        (
+            "via = { x = 40, y = 0 }",
+            "via = { x = 40, xi = 0 }",
+            "`xi` is an angle, expected positions only",
+        ),
+        ("rate = 1000", "rate = 1000\nduration = 3", "`duration` is given beside `moves`"),
+    ] {
+        let text = format!("{HEAD}{SQUARE}").replacen(from, to, 1);
+        let file = folder.write("wrong.toml", text);
+        trajectory(PLANO, &file, &[]).fails(1, &["wrong.toml:", words]);
+    }
+}

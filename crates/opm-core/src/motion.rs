@@ -1,12 +1,13 @@
 //! Motions of the platform: its pose as a twice differentiable function of time.
 //!
-//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids, or points that cubic splines
-//! join) or from a table of poses ([`table`]: cubic splines). Either way it is a formula in time with exact
+//! A motion comes from a motion file ([`mod@file`]: constants and sums of sinusoids, points that cubic splines join, or
+//! lines and arcs with feed rates) or from a table of poses ([`table`]: cubic splines). Either way it is a formula in time with exact
 //! derivatives, which can be evaluated at any time: nothing is sampled in advance.
 
 pub mod examples;
 #[cfg(feature = "files")]
 pub mod file;
+mod moves;
 mod points;
 #[cfg(feature = "schema")]
 mod schema;
@@ -16,6 +17,7 @@ mod time_optimal;
 mod timing;
 
 use crate::manipulator::Mode;
+pub use moves::Moves;
 pub use spline::{Ends, Spline, SplineError};
 use std::f64::consts::TAU;
 pub use time_optimal::TimingError;
@@ -48,6 +50,8 @@ pub enum Path {
     Harmonics(Vec<Harmonics>),
     /// Every coordinate is a cubic spline; all of them have the same knots.
     Spline(Spline),
+    /// Straight lines and arcs; the parameter is their length, and not time.
+    Moves(Moves),
     /// Another path, with a timing of its own.
     Timed(TimedPath),
 }
@@ -66,6 +70,7 @@ impl Path {
                 }
             }
             Self::Spline(spline) => spline.at(t, out),
+            Self::Moves(moves) => moves.at(t, out),
             Self::Timed(timed) => timed.at(t, out),
         }
     }
@@ -75,6 +80,7 @@ impl Path {
         match self {
             Self::Harmonics(coordinates) => coordinates.len(),
             Self::Spline(spline) => spline.column_count(),
+            Self::Moves(moves) => moves.coordinate_count(),
             Self::Timed(timed) => timed.path.coordinate_count(),
         }
     }
@@ -82,7 +88,8 @@ impl Path {
     /// The times at which a derivative may jump, in order.
     fn knots(&self) -> &[f64] {
         match self {
-            Self::Harmonics(_) => &[],
+            // The timing of moves has knots where they meet.
+            Self::Harmonics(_) | Self::Moves(_) => &[],
             Self::Spline(spline) => spline.times(),
             Self::Timed(timed) => timed.timing.times(),
         }

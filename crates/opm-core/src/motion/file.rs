@@ -38,22 +38,63 @@
 //! xi = 5                                     # a number: constant
 //! ```
 //!
+//! Or it may have straight lines and circular arcs in `[[moves]]`, with a feed rate: see `docs/format.md`.
+//!
+//! ```toml
+//! format = 1
+//! name = "slot"
+//! units = { length = "mm", angle = "deg" }
+//! rate = 100
+//! feed = 100                                 # mm/s along the path
+//! acceleration = 1000                        # mm/s² along the path
+//! blend = 5                                  # mm before and behind a corner
+//! start = { x = -20 }                        # the others at home
+//!
+//! [[moves]]
+//! to = { x = 20 }
+//!
+//! [[moves]]
+//! to = { x = 20, y = 40 }
+//! via = { x = 40, y = 20 }                   # an arc
+//! ```
+//!
 //! Amplitudes and offsets are in the file's unit for the coordinate, phases in its unit for angles.
 //! Frequencies are in hertz and times in seconds, whatever the units are. `phase` and `offset`
 //! default to zero. An unknown key is a problem, and its message suggests the nearest known key.
 
+use super::moves::{Move, MoveProblem, Moves};
 use super::points::through;
 #[cfg(feature = "schema")]
 pub use super::schema::schema;
-use super::{Ends, Harmonics, Path, PlatformMotion, Sinusoid};
+use super::{Ends, Harmonics, Path, PlatformMotion, Sinusoid, TimedPath};
 use crate::manipulator::{Manipulator, Mode};
 use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, all, document, head};
 use crate::numeric::Quantity;
 use crate::task::TaskCoordinate;
 
 /// The keys of a motion file.
-pub(super) const KEYS: &[&str] =
-    &["format", "name", "units", "duration", "rate", "mode", "coordinates", "ends", "points"];
+pub(super) const KEYS: &[&str] = &[
+    "format",
+    "name",
+    "units",
+    "duration",
+    "rate",
+    "mode",
+    "coordinates",
+    "ends",
+    "points",
+    "feed",
+    "acceleration",
+    "blend",
+    "start",
+    "moves",
+];
+/// The keys that `[coordinates]`, `[points]` and `[[moves]]` have beside them.
+pub(super) const OF_COORDINATES: &[&str] = &["duration", "coordinates"];
+pub(super) const OF_POINTS: &[&str] = &["ends", "points"];
+pub(super) const OF_MOVES: &[&str] = &["feed", "acceleration", "blend", "start", "moves"];
+/// The keys of a move.
+pub(super) const MOVE_KEYS: &[&str] = &["to", "via", "feed", "blend"];
 /// The keys of a sinusoid.
 pub(super) const SINUSOID_KEYS: &[&str] = &["amplitude", "frequency", "phase", "offset"];
 
@@ -80,38 +121,43 @@ fn read_document(root: &Table<'_>, manipulator: &Manipulator) -> Option<Platform
     };
     let rate = positive("rate", "a number of samples per second");
     let mode = root.get("mode").and_then(|value| read_mode(&value, manipulator));
-    let motion = match root.get("points") {
-        Some(points) => {
-            for key in ["duration", "coordinates"] {
-                if let Some(value) = root.get(key) {
-                    value.report("is given beside `points`, expected one or the other");
-                }
-            }
-            let ends = match root.get("ends") {
-                Some(value) => value.word(&Ends::NAMES),
-                None => Some(Ends::default()),
-            };
-            read_points(&points, name, ends, manipulator)
+    let refuse = |keys: &[&[&str]], given: &str| {
+        for value in keys.iter().copied().flatten().filter_map(|key| root.get(key)) {
+            value.report(format!("is given beside `{given}`, expected one or the other"));
         }
-        None => {
-            if let Some(value) = root.get("ends") {
-                value.report("is given without `points`, expected them: sinusoids have no ends");
-            }
-            let duration = positive("duration", "a number of seconds");
-            let expected = "a table [coordinates] of the coordinates that move, or [points]";
-            let coordinates = root
-                .require("coordinates", expected)
-                .and_then(|value| value.open_table())
-                .map(|table| read_coordinates(&table, manipulator));
-            duration.zip(coordinates).map(|(duration, coordinates)| PlatformMotion {
-                name: name.to_owned(),
-                start: 0.0,
-                duration,
-                rate: None,
-                mode: None,
-                path: Path::Harmonics(coordinates),
-            })
+    };
+    let motion = if let Some(moves) = root.get("moves") {
+        refuse(&[OF_COORDINATES, OF_POINTS], "moves");
+        read_moves(root, &moves, name, manipulator)
+    } else if let Some(points) = root.get("points") {
+        refuse(&[OF_COORDINATES, OF_MOVES], "points");
+        let ends = match root.get("ends") {
+            Some(value) => value.word(&Ends::NAMES),
+            None => Some(Ends::default()),
+        };
+        read_points(&points, name, ends, manipulator)
+    } else {
+        if let Some(value) = root.get("ends") {
+            value.report("is given without `points`, expected them: sinusoids have no ends");
         }
+        for value in OF_MOVES.iter().filter_map(|key| root.get(key)) {
+            value.report("is given without `[[moves]]`, expected them");
+        }
+        let duration = positive("duration", "a number of seconds");
+        let expected =
+            "a table [coordinates] of the coordinates that move, or [points], or [[moves]]";
+        let coordinates = root
+            .require("coordinates", expected)
+            .and_then(|value| value.open_table())
+            .map(|table| read_coordinates(&table, manipulator));
+        duration.zip(coordinates).map(|(duration, coordinates)| PlatformMotion {
+            name: name.to_owned(),
+            start: 0.0,
+            duration,
+            rate: None,
+            mode: None,
+            path: Path::Harmonics(coordinates),
+        })
     };
     Some(PlatformMotion { rate: Some(rate?), mode, ..motion? })
 }
@@ -185,6 +231,148 @@ fn read_points(
     let values = all(manipulator.task_coordinates().iter().map(column));
     let motion = through(name, times?, values?, ends?, manipulator);
     motion.map_err(|error| table.reader.report(table.location_of("t"), error.to_string())).ok()
+}
+
+/// The motion along lines and arcs.
+fn read_moves(
+    root: &Table<'_>,
+    value: &Value<'_>,
+    name: &str,
+    manipulator: &Manipulator,
+) -> Option<PlatformMotion> {
+    let coordinates = manipulator.task_coordinates();
+    let lengths = coordinates.iter().enumerate().filter(|(_, c)| c.quantity == Quantity::Length);
+    let positions: Vec<usize> = lengths.map(|(number, _)| number).collect();
+    if positions.is_empty() {
+        value.report("are along positions, which this mechanism does not have, expected [points]");
+        return None;
+    }
+    let positive = |value: Value<'_>, what: &str| {
+        let number = value.length()?;
+        if number > 0.0 {
+            return Some(number);
+        }
+        value.report(format!("is {number}, expected {what} above 0"));
+        None
+    };
+    let blend = |value: Value<'_>| {
+        let number = value.length()?;
+        if number >= 0.0 {
+            return Some(number);
+        }
+        value.report("is below 0, expected the distance from a corner within which it is rounded");
+        None
+    };
+    let speed = "a speed along the path";
+    let acceleration = root
+        .require(
+            "acceleration",
+            "the acceleration along the path, in the unit of lengths per second squared",
+        )
+        .and_then(|value| positive(value, "an acceleration along the path"));
+    let common_feed = root.get("feed").map(|value| positive(value, speed));
+    let common_blend = root.get("blend").map_or(Some(0.0), blend);
+    let home = manipulator.home_pose();
+    let start = match root.get("start") {
+        Some(value) => read_pose(&value, &home, manipulator),
+        None => Some(home),
+    };
+    let items = value.items("an array of tables [[moves]]")?;
+    let mut at = start.clone();
+    let mut moves = Vec::with_capacity(items.len());
+    for (number, item) in items.iter().enumerate() {
+        let table = item.table(MOVE_KEYS);
+        let read = table.as_ref().and_then(|table| {
+            let to = table.require("to", "a table of coordinates, the end of the move");
+            let to = to.and_then(|value| read_pose(&value, at.as_ref()?, manipulator));
+            let via = match table.get("via") {
+                Some(value) => {
+                    let via = read_pose(&value, at.as_ref()?, manipulator);
+                    Some(refuse_angles(&value, manipulator).and(via)?)
+                }
+                None => None,
+            };
+            let feed = match table.get("feed") {
+                Some(value) => positive(value, speed),
+                None => common_feed.unwrap_or_else(|| {
+                    table.require("feed", "a speed, here or for all moves beside `rate`");
+                    None
+                }),
+            };
+            let last = number + 1 == items.len();
+            let blend = match table.get("blend") {
+                Some(value) if last => {
+                    value.report("is given for the last move, which has no corner at its end");
+                    None
+                }
+                Some(value) => blend(value),
+                None => common_blend.map(|blend| if last { 0.0 } else { blend }),
+            };
+            Some(Move { to: to?, via, feed: feed?, blend: blend? })
+        });
+        at = read.as_ref().map(|read| read.to.clone());
+        moves.push(read);
+    }
+    let moves = all(moves.into_iter())?;
+    if moves.is_empty() {
+        value.report("is empty, expected one move or more");
+        return None;
+    }
+    let units = root.reader.units();
+    let shown = |length: f64| units.show(length, Quantity::Length).to_string();
+    let (path, stops) = Moves::new(&start?, &moves, &positions)
+        .map_err(|(number, problem)| {
+            let problem = match problem {
+                MoveProblem::Still => {
+                    "does not move the position, expected one that changes: a feed rate is along a path"
+                        .to_owned()
+                }
+                MoveProblem::Straight => {
+                    "has its start, `via` and `to` on one line, expected three places of an arc".to_owned()
+                }
+                MoveProblem::Overlap { needed, length } => format!(
+                    "is {} long, and the blends at its ends need {}, expected less",
+                    shown(length),
+                    shown(needed)
+                ),
+            };
+            root.reader.report(items[number].at, format!("move {} {problem}", number + 1));
+        })
+        .ok()?;
+    let timing = path
+        .timing(&moves, &stops, acceleration?)
+        .map_err(|number| {
+            let problem = format!("move {} is too short for its feed rate", number + 1);
+            root.reader.report(items[number].at, problem);
+        })
+        .ok()?;
+    let duration = timing.end();
+    let path = Path::Timed(TimedPath { path: Box::new(Path::Moves(path)), timing });
+    let name = name.to_owned();
+    Some(PlatformMotion { name, start: 0.0, duration, rate: None, mode: None, path })
+}
+
+/// A pose that has these values in place of some of another.
+fn read_pose(value: &Value<'_>, other: &[f64], manipulator: &Manipulator) -> Option<Vec<f64>> {
+    let table = value.open_table()?;
+    allow_coordinates(&table, &[], manipulator);
+    let read = |(c, &other): (&TaskCoordinate, &f64)| match table.get(c.name) {
+        Some(value) => value.quantity(c.quantity),
+        None => Some(other),
+    };
+    all(manipulator.task_coordinates().iter().zip(other).map(read))
+}
+
+/// Reports angles in the place on an arc, which are not used.
+fn refuse_angles(value: &Value<'_>, manipulator: &Manipulator) -> Option<()> {
+    let table = value.open_table()?;
+    let angles = manipulator.task_coordinates().iter().filter(|c| c.quantity == Quantity::Angle);
+    let given: Vec<_> = angles.filter_map(|c| table.get(c.name)).collect();
+    for angle in &given {
+        angle
+            .report("is an angle, expected positions only: angles change evenly from start to end");
+    }
+    given.is_empty().then_some(())
 }
 
 /// A value for each of `count` times; a number alone is the same at all.

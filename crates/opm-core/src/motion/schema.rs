@@ -1,7 +1,7 @@
 //! The JSON schema of motion files.
 
 use super::Ends;
-use super::file::{KEYS, SINUSOID_KEYS};
+use super::file::{KEYS, MOVE_KEYS, OF_COORDINATES, OF_MOVES, OF_POINTS, SINUSOID_KEYS};
 use crate::mechanism::file::LARGEST;
 use crate::mechanism::file::schema::{HEAD, Properties, closed, document, head, number, text};
 use crate::numeric::Quantity;
@@ -25,9 +25,19 @@ pub fn schema() -> String {
             "properties": properties,
             "required": required,
             "additionalProperties": false,
-            "if": { "required": ["points"] },
-            "then": { "properties": without(&["duration", "coordinates"]) },
-            "else": { "required": ["duration", "coordinates"], "properties": without(&["ends"]) },
+            "if": { "required": ["moves"] },
+            "then": {
+                "required": ["acceleration"],
+                "properties": without(&[OF_COORDINATES, OF_POINTS].concat()),
+            },
+            "else": {
+                "if": { "required": ["points"] },
+                "then": { "properties": without(&[OF_COORDINATES, OF_MOVES].concat()) },
+                "else": {
+                    "required": OF_COORDINATES,
+                    "properties": without(&[OF_POINTS, OF_MOVES].concat()),
+                },
+            },
         }),
     )
 }
@@ -76,8 +86,53 @@ fn meaning(key: &str) -> Value {
                                each coordinate that moves a value for each time. The others stay at home.";
             closed(description, columns, &["t"])
         }
+        "feed" => positive(
+            "The speed of the position along every move that has none of its own, in units.length per second.",
+        ),
+        "acceleration" => {
+            positive("The acceleration along the moves, in units.length per second squared.")
+        }
+        "blend" => blend(
+            "The distance before and behind every corner within which it is rounded, in units.length; 0 if it is not given: the motion halts at corners.",
+        ),
+        "start" => {
+            pose("The pose at the start; coordinates that are not given are at home.", |_| true)
+        }
+        "moves" => {
+            let keys = MOVE_KEYS.iter().map(|&key| {
+                let value = match key {
+                    "to" => pose("The pose at the end of the move; coordinates that are not given stay.", |_| true),
+                    "via" => pose("A position on the way: the move is the arc through it.", |kind| kind.quantity() == Quantity::Length),
+                    "feed" => positive("The speed along this move, in units.length per second."),
+                    _ => blend("The distance from the corner at the end of this move within which it is rounded."),
+                };
+                (key.to_owned(), value)
+            });
+            json!({
+                "description": "Straight lines and circular arcs, one after the other, in place of duration and \
+                                coordinates.",
+                "type": "array",
+                "items": closed("One move.", keys.collect(), &["to"]),
+                "minItems": 1,
+            })
+        }
         _ => Value::Bool(true),
     }
+}
+
+fn blend(description: &str) -> Value {
+    json!({ "description": description, "type": "number", "minimum": 0 })
+}
+
+/// Some coordinates of a pose.
+fn pose(description: &str, of: impl Fn(&CoordinateKind) -> bool) -> Value {
+    let coordinates = CoordinateKind::ALL.into_iter().filter(of);
+    let value = |kind: CoordinateKind| json!({ "description": format!("The task coordinate {}, {}.", kind.name(), unit(kind)), "type": "number" });
+    closed(
+        description,
+        coordinates.map(|kind| (kind.name().to_owned(), value(kind))).collect(),
+        &[],
+    )
 }
 
 /// The values of a coordinate at points: one for each time, or the same at all.

@@ -181,8 +181,9 @@ fn recorded<'a>(
     let MotionRequest { manipulator, motion, mode, rate, .. } = *request;
     let [mechanism_file, motion_file] = files;
     let timing = match motion.path {
-        MotionPath::Timed(_) => "time-optimal",
-        MotionPath::Harmonics(_) | MotionPath::Spline(_) => "as given",
+        // Lines and arcs have feed rates.
+        MotionPath::Timed(timed) if !matches!(*timed.path, MotionPath::Moves(_)) => "time-optimal",
+        _ => "as given",
     };
     opm_mcap::Trajectory {
         pose: task_coordinates(manipulator.task_coordinates(), Role::Task),
