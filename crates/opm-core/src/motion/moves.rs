@@ -242,10 +242,13 @@ impl Arc {
     fn through([a, via, b]: [&[f64]; 3], positions: &[usize]) -> Result<(Self, f64), MoveProblem> {
         let (p, q) = (difference(via, a), difference(b, a));
         let [pp, pq, qq] = [dot(&p, &p), dot(&p, &q), dot(&q, &q)];
-        let determinant = pp * qq - pq * pq;
-        if determinant <= STRAIGHT * STRAIGHT * pp * qq {
+        // What of the way to the second place is beside the way to the third.
+        let beside: Vec<f64> = p.iter().zip(&q).map(|(p, q)| p - pq / qq * q).collect();
+        let off = norm(&beside);
+        if off.is_nan() || off <= STRAIGHT * pp.sqrt() {
             return Err(MoveProblem::Straight);
         }
+        let determinant = qq * off * off;
         // The centre is as far from the start as from the others: a + x p + y q, with its products with p and q known.
         let [x, y] = [0.5 * qq * (pp - pq) / determinant, 0.5 * pp * (qq - pq) / determinant];
         let centre: Vec<f64> = (0..a.len()).map(|k| a[k] + x * p[k] + y * q[k]).collect();
