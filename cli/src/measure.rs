@@ -76,7 +76,7 @@ fn table(
     output: &Output,
 ) -> Result<(), Failure> {
     let (progress, pool) = (interruptible()?, threads(args.threads)?);
-    let silent = Output { format: output.format, quiet: true };
+    let silent = output.silent();
     let goal = Goal { tolerance: args.tolerance, budget: args.budget };
     runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
         let manipulator = changed.compile()?;

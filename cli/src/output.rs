@@ -9,6 +9,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 impl Output {
+    /// The same without progress, notes and warnings: those of every run would hide a table of runs.
+    pub fn silent(&self) -> Self {
+        Self { format: self.format, quiet: true }
+    }
+
     /// Prints a result in the selected format.
     pub fn print(&self, json: &impl Serialize, text: impl Display) -> Result<(), Failure> {
         match self.format {

@@ -398,6 +398,7 @@ def legs_of_families_together(document):
     if "slider_leg" in document:
         first, *others = document["slider_leg"]
         yield "a distance is negative", {**document, "slider_leg": [{**first, "h": -1}, *others]}
+        yield "a length is zero", {**document, "slider_leg": [{**first, "a1": 0}, *others]}
     for key in ["leg", "slider_leg"]:
         if key in document:
             yield "legs are called the same", {**document, key: [{**leg, "name": "leg"} for leg in document[key]]}

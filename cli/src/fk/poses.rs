@@ -163,7 +163,7 @@ impl Request<'_> {
         header
     }
 
-    /// Writes the row of an assembly, or of none.
+    /// Writes the row of an assembly. Where there is none, the cells of its pose are empty.
     fn write(
         &self,
         writer: &mut csv::Writer<&mut dyn Write>,

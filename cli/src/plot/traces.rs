@@ -110,9 +110,7 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
             let quantity = known.or_else(|| quantity(find("quantities").as_deref()));
             let role = find("roles");
             let is = |known: Role| role.as_deref() == Some(known.name());
-            let driven = source.input().map(|_| Group::Joints);
-            let group = driven
-                .or(group)
+            let group = group
                 .or_else(|| is(Role::Actuated).then_some(Group::Actuated))
                 .or_else(|| is(Role::Passive).then_some(Group::Passive));
             (name, quantity, group.unwrap_or(Group::Joints))
@@ -130,7 +128,7 @@ fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
     }
 }
 
-/// The properties of a joint coordinate. In a linkage, all joints belong to one group.
+/// The properties of a joint coordinate.
 fn joint(source: &Source<'_>, name: &str) -> (Option<Quantity>, Option<Group>) {
     let Some(mechanism) = &source.mechanism else { return (None, None) };
     let legs = mechanism.file.mechanism.legs.iter();
@@ -141,8 +139,7 @@ fn joint(source: &Source<'_>, name: &str) -> (Option<Quantity>, Option<Group>) {
         Some((coordinate.quantity, group))
     });
     let Some((quantity, group)) = found else { return (None, None) };
-    match mechanism.kind {
-        Kind::Linkage(_) => (Some(quantity), Some(Group::Joints)),
-        Kind::Manipulator(_) | Kind::Other => (Some(quantity), Some(group)),
-    }
+    // Over its input, a linkage has no joints that are less of interest than others.
+    let group = if source.input().is_some() { Group::Joints } else { group };
+    (Some(quantity), Some(group))
 }

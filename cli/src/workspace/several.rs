@@ -23,8 +23,7 @@ pub fn vary(
     output: &Output,
 ) -> Result<(), Failure> {
     let (progress, pool) = (interruptible()?, threads(args.threads)?);
-    // Bars and notes of every run would hide the table.
-    let silent = Output { format: output.format, quiet: true };
+    let silent = output.silent();
     let work = Work { output: &silent, pool: &pool, progress: &progress };
     runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
         let manipulator = Arc::new(changed.compile()?);
@@ -49,7 +48,7 @@ pub fn all_modes(args: &WorkspaceArgs, loaded: &Loaded, output: &Output) -> Resu
             fitted.grid().axes().to_vec()
         }
     };
-    let silent = Output { format: output.format, quiet: true };
+    let silent = output.silent();
     let work = Work { output: &silent, pool: &pool, progress: &progress };
     let mut runs = Runs::new("mode", "mode");
     for mode in manipulator.modes() {

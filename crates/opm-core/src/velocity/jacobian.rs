@@ -263,8 +263,8 @@ impl Manipulator {
         Ok(regular)
     }
 
-    /// Computes the rates of the joints alone, at a pose that is in reach: all but [`Jacobians::pose`] and
-    /// [`Jacobians::platform`]. Returns `false` if some joints have no rates.
+    /// Computes the rates of the joints alone, at a pose that is in reach. [`Jacobians::pose`] and
+    /// [`Jacobians::platform`] are not computed. Returns `false` if some joints have no rates.
     #[inline(always)]
     pub(crate) fn differentiate_joints(
         &self,

@@ -78,7 +78,7 @@ impl SectionPoses for OfSheet<'_> {
     }
 }
 
-/// The first poses of rows: they share all but the second coordinate.
+/// The first poses of rows, which differ in the second coordinate alone.
 pub struct FirstOfRows<'a> {
     pub first: f64,
     pub second: &'a Column,
