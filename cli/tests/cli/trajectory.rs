@@ -538,6 +538,12 @@ fn a_time_optimal_motion_is_a_motion() {
     trajectory(HELICAL, &motion, &[&optimal[..], &["-o", &table, "--rates"]].concat()).text();
     assert_eq!(folder.read("fast.csv").lines().count(), 1 + 72);
 
+    // However the line is given.
+    let moves = "rate = 100\nfeed = 50\nacceleration = 900\nstart = { x = -100 }\n[[moves]]\nto = { x = 100 }\n";
+    let given = folder.write("given.toml", format!("{HEAD}{moves}"));
+    let found = json(HELICAL, &given, &optimal);
+    assert!((number(&found["duration"]) - expected).abs() < 3e-4, "{}", found["duration"]);
+
     let without = trajectory(HELICAL, &motion, &["--time-optimal"]);
     assert_eq!(without.code, Some(1));
     assert!(without.stderr.contains("no max_acceleration of S1, S2, S3"), "{}", without.stderr);
@@ -561,26 +567,25 @@ const SQUARE: &str = "rate = 1000\nfeed = 100\nacceleration = 2000\nstart = { x 
     [[moves]]\nto = { x = 20, xi = 5 }\n[[moves]]\nto = { x = 20, y = 20 }\nvia = { x = 40, y = 0 }\n\
     [[moves]]\nto = { x = -20 }\n";
 
-/// A line, a half circle that touches it at neither end, and a line: with a halt at each corner it takes the lengths over
-/// the feed rate and what each start and halt costs; with blends it never halts, and the feed rate holds between them.
+/// A line, a half circle that it touches, and another line: it halts where `xi` stops to turn, and takes the lengths over
+/// the feed rate and what starts and halts cost; with blends it never halts, and the feed rate holds between them.
 #[test]
 fn lines_and_arcs_have_a_feed_rate() {
     let folder = Folder::new();
     let halting = folder.write("halting.toml", format!("{HEAD}{SQUARE}"));
     let found = json(PLANO, &halting, &[]);
-    // 40 mm, half a circle of 20 mm, 40 mm at 100 mm/s; 100 mm/s over 2000 mm/s² three times.
+    // 40 mm, half a circle of 20 mm, 40 mm at 100 mm/s; 100 mm/s over 2000 mm/s², for the start and one halt.
     let radius = 20.0;
-    let duration = (80.0 + PI * radius) / 100.0 + 3.0 * 0.05;
+    let duration = (80.0 + PI * radius) / 100.0 + 2.0 * 0.05;
     assert!((number(&found["duration"]) - duration).abs() < 1e-12, "{found}");
     let columns = table(&halting, &[]);
     let speed = |i: usize| columns["d.x"][i].hypot(columns["d.y"][i]);
     let count = columns["t"].len();
     assert!((0..count).all(|i| speed(i) < 0.1 + 1e-12));
     assert!((0..count).filter(|&i| speed(i) > 0.1 - 1e-12).count() > count / 2);
-    for i in 0..count {
-        let [x, y] = [columns["x"][i], columns["y"][i]];
-        if x > 0.02 + 1e-12 {
-            assert!(((x - 0.02).hypot(y) - 0.02).abs() < 1e-12, "{x} {y}");
+    for (x, y) in columns["x"].iter().zip(&columns["y"]) {
+        if *x > 0.02 + 1e-12 {
+            assert!(((x - 0.02).hypot(*y) - 0.02).abs() < 1e-12, "{x} {y}");
         }
     }
     let round = folder.write("round.toml", format!("{HEAD}blend = 5\n{SQUARE}"));
@@ -601,14 +606,14 @@ fn wrong_moves_are_named_by_line_and_column() {
         (
             "via = { x = 40, y = 0 }",
             "via = { x = 20, y = 0 }",
-            "9:1: move 2 has its start, `via` and `to` on one line",
+            "10:1: move 2: start, `via` and `to` are on one line",
         ),
         ("feed = 100\n", "", "`feed` is missing"),
         ("feed = 100", "feed = 0", "5:8: `feed` is 0, expected a speed along the path above 0"),
         ("acceleration = 2000\n", "", "`acceleration` is missing"),
-        ("to = { x = -20 }", "to = { xi = 3 }", "move 3 does not move the position"),
+        ("to = { x = -20 }", "to = { xi = 3 }", "move 3: the position does not change"),
         ("to = { x = -20 }", "to = { x = -20 }\nblend = 1", "`blend` is given for the last move"),
-        ("feed = 100", "blend = 30\nfeed = 100", "move 2 is 62.8319 mm long"),
+        ("feed = 100", "blend = 35\nfeed = 100", "move 2: it is 62.8319 mm long"),
         (
             "via = { x = 40, y = 0 }",
             "via = { x = 40, xi = 0 }",

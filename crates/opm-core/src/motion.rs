@@ -17,7 +17,7 @@ mod time_optimal;
 mod timing;
 
 use crate::manipulator::Mode;
-pub use moves::Moves;
+pub use moves::{Move, MoveProblem, Moves, MovesError};
 pub use spline::{Ends, Spline, SplineError};
 use std::f64::consts::TAU;
 pub use time_optimal::TimingError;

@@ -62,11 +62,10 @@
 //! Frequencies are in hertz and times in seconds, whatever the units are. `phase` and `offset`
 //! default to zero. An unknown key is a problem, and its message suggests the nearest known key.
 
-use super::moves::{Move, MoveProblem, Moves};
 use super::points::through;
 #[cfg(feature = "schema")]
 pub use super::schema::schema;
-use super::{Ends, Harmonics, Path, PlatformMotion, Sinusoid, TimedPath};
+use super::{Ends, Harmonics, Move, MoveProblem, Path, PlatformMotion, Sinusoid};
 use crate::manipulator::{Manipulator, Mode};
 use crate::mechanism::file::{FileErrors, LARGEST, Table, Value, all, document, head};
 use crate::numeric::Quantity;
@@ -241,18 +240,16 @@ fn read_moves(
     manipulator: &Manipulator,
 ) -> Option<PlatformMotion> {
     let coordinates = manipulator.task_coordinates();
-    let lengths = coordinates.iter().enumerate().filter(|(_, c)| c.quantity == Quantity::Length);
-    let positions: Vec<usize> = lengths.map(|(number, _)| number).collect();
-    if positions.is_empty() {
+    if coordinates.iter().all(|coordinate| coordinate.quantity == Quantity::Angle) {
         value.report("are along positions, which this mechanism does not have, expected [points]");
         return None;
     }
     let positive = |value: Value<'_>, what: &str| {
-        let number = value.length()?;
-        if number > 0.0 {
-            return Some(number);
+        let number = value.number()?;
+        if number > 0.0 && number <= LARGEST {
+            return value.length();
         }
-        value.report(format!("is {number}, expected {what} above 0"));
+        value.report(format!("is {number}, expected {what} above 0 and up to {LARGEST:e}"));
         None
     };
     let blend = |value: Value<'_>| {
@@ -320,36 +317,21 @@ fn read_moves(
     }
     let units = root.reader.units();
     let shown = |length: f64| units.show(length, Quantity::Length).to_string();
-    let (path, stops) = Moves::new(&start?, &moves, &positions)
-        .map_err(|(number, problem)| {
-            let problem = match problem {
-                MoveProblem::Still => {
-                    "does not move the position, expected one that changes: a feed rate is along a path"
-                        .to_owned()
-                }
-                MoveProblem::Straight => {
-                    "has its start, `via` and `to` on one line, expected three places of an arc".to_owned()
-                }
+    let motion = PlatformMotion::along(name, &start?, &moves, acceleration?, manipulator);
+    motion
+        .map_err(|error| {
+            let problem = match error.problem {
                 MoveProblem::Overlap { needed, length } => format!(
-                    "is {} long, and the blends at its ends need {}, expected less",
+                    "it is {} long, and the blends at its ends need {}, expected less",
                     shown(length),
                     shown(needed)
                 ),
+                problem => problem.to_string(),
             };
-            root.reader.report(items[number].at, format!("move {} {problem}", number + 1));
+            root.reader
+                .report(items[error.number].at, format!("move {}: {problem}", error.number + 1));
         })
-        .ok()?;
-    let timing = path
-        .timing(&moves, &stops, acceleration?)
-        .map_err(|number| {
-            let problem = format!("move {} is too short for its feed rate", number + 1);
-            root.reader.report(items[number].at, problem);
-        })
-        .ok()?;
-    let duration = timing.end();
-    let path = Path::Timed(TimedPath { path: Box::new(Path::Moves(path)), timing });
-    let name = name.to_owned();
-    Some(PlatformMotion { name, start: 0.0, duration, rate: None, mode: None, path })
+        .ok()
 }
 
 /// A pose that has these values in place of some of another.

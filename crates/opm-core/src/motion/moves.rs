@@ -5,7 +5,9 @@
 //! constant rates. A blend replaces what is within a distance of a corner by polynomials of the fifth order, one for each
 //! coordinate. They take value and two derivatives from both sides, so velocity and acceleration are continuous.
 
-use super::{Instant, Timing};
+use super::{Instant, Path, PlatformMotion, TimedPath, Timing};
+use crate::manipulator::Manipulator;
+use crate::numeric::Quantity;
 use std::f64::consts::TAU;
 
 /// Where derivatives jump by more than this, in shares of the speed, or in radians over the shorter move, there is a corner.
@@ -14,28 +16,62 @@ const SMOOTH: f64 = 1e-6;
 /// Three points are on a line if the sine of the angle between them is below this.
 const STRAIGHT: f64 = 1e-9;
 
-/// One move: where it ends, and how.
-#[derive(Clone, Debug)]
-pub(super) struct Move {
-    /// The pose at its end: all task coordinates.
+/// One move of [`PlatformMotion::along`]: where it ends, and how it goes there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Move {
+    /// The pose at its end: all task coordinates, metres and radians.
     pub to: Vec<f64>,
     /// A pose on the arc; only its positions count. `None` for a straight line.
     pub via: Option<Vec<f64>>,
     /// The speed of the position, metres per second.
     pub feed: f64,
-    /// The distance from the corner at its end within which the path is rounded, metres.
+    /// The distance from the corner at its end within which the path is rounded, metres. That of the last move is not used.
     pub blend: f64,
 }
 
-/// Why moves are not a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum MoveProblem {
+/// Why moves do not make a motion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("move {}: {problem}", .number + 1)]
+pub struct MovesError {
+    /// The number of the move, from zero. If there are no moves, or the start is wrong, this is zero.
+    pub number: usize,
+    /// What is wrong with it.
+    pub problem: MoveProblem,
+}
+
+/// What is wrong with a move.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum MoveProblem {
+    /// There is no move, or the mechanism has no coordinates that are lengths.
+    #[error("expected one move or more, of a mechanism with task coordinates that are lengths")]
+    Nothing,
+    /// A pose has another number of coordinates than the mechanism, or a number is not finite, or feed rate, acceleration or
+    /// blend are not above zero.
+    #[error(
+        "expected {expected} finite coordinates of each pose, a feed rate and an acceleration above zero, and a blend of zero or \
+         more"
+    )]
+    Numbers {
+        /// The number of task coordinates.
+        expected: usize,
+    },
     /// The position does not change.
+    #[error("the position does not change, expected one that does: a feed rate is along a path")]
     Still,
     /// Start, `via` and end of an arc are on a line.
+    #[error("start, `via` and `to` are on one line, expected three places of an arc")]
     Straight,
-    /// The blends at both ends need more than its length, metres.
-    Overlap { needed: f64, length: f64 },
+    /// The blends at both ends need more than its length.
+    #[error("it is {length} m long, and the blends at its ends need {needed} m, expected less")]
+    Overlap {
+        /// What the blends at both ends need, metres.
+        needed: f64,
+        /// How long the move is, metres.
+        length: f64,
+    },
+    /// Its time is zero in floating point.
+    #[error("it is too short for its feed rate, expected a time above zero")]
+    Short,
 }
 
 /// A path of lines and arcs. The parameter is the length of the path without its blends, from zero on.
@@ -78,25 +114,94 @@ struct Blend {
     coefficients: Vec<[f64; 6]>,
 }
 
+impl PlatformMotion {
+    /// The motion from rest at a pose to rest along `moves`, with their feed rates and at most this `acceleration` along the
+    /// path, metres per second squared.
+    ///
+    /// The position, which is the task coordinates that are lengths, goes along straight lines and arcs; the other
+    /// coordinates change evenly along each of them. At a corner without a blend the motion halts.
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    /// use opm_core::motion::{Instant, Move, PlatformMotion};
+    ///
+    /// // 40 mm along x at 100 mm/s, reached within 5 ms.
+    /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+    /// let start = manipulator.home_pose();
+    /// let mut to = start.clone();
+    /// to[0] += 0.04;
+    /// let line = Move { to, via: None, feed: 0.1, blend: 0.0 };
+    /// let motion = PlatformMotion::along("line", &start, &[line], 20.0, &manipulator)?;
+    /// assert!((motion.duration - 0.405).abs() < 1e-12);
+    ///
+    /// let mut instant = Instant::new(start.len());
+    /// motion.at(0.2025, &mut instant);
+    /// assert!((instant.pose[0] - start[0] - 0.02).abs() < 1e-12);
+    /// assert!((instant.velocity[0] - 0.1).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MovesError`] has the number of the move and what is wrong with it.
+    pub fn along(
+        name: &str,
+        start: &[f64],
+        moves: &[Move],
+        acceleration: f64,
+        manipulator: &Manipulator,
+    ) -> Result<Self, MovesError> {
+        let coordinates = manipulator.task_coordinates();
+        let numbered = coordinates.iter().enumerate();
+        let positions: Vec<usize> = numbered
+            .filter(|(_, coordinate)| coordinate.quantity == Quantity::Length)
+            .map(|(number, _)| number)
+            .collect();
+        if moves.is_empty() || positions.is_empty() {
+            return Err(MovesError { number: 0, problem: MoveProblem::Nothing });
+        }
+        let is_pose =
+            |pose: &[f64]| pose.len() == coordinates.len() && pose.iter().all(|c| c.is_finite());
+        let is_speed = |number: f64| number > 0.0 && number.is_finite();
+        let is_wrong = |given: &Move| {
+            let poses = is_pose(&given.to) && given.via.as_deref().is_none_or(is_pose);
+            !(poses && is_speed(given.feed) && given.blend >= 0.0 && given.blend.is_finite())
+        };
+        let wrong = match is_pose(start) && is_speed(acceleration) {
+            true => moves.iter().position(is_wrong),
+            false => Some(0),
+        };
+        if let Some(number) = wrong {
+            let problem = MoveProblem::Numbers { expected: coordinates.len() };
+            return Err(MovesError { number, problem });
+        }
+        let (path, stops) = Moves::new(start, moves, &positions)?;
+        let timing = path.timing(moves, &stops, acceleration)?;
+        let (name, duration) = (name.to_owned(), timing.end());
+        let path = Path::Timed(TimedPath { path: Box::new(Path::Moves(path)), timing });
+        Ok(Self { name, start: 0.0, duration, rate: None, mode: None, path })
+    }
+}
+
 impl Moves {
     /// The path from a pose along moves, and the parameters of its corners that are not rounded. `positions` are the numbers
-    /// of the coordinates that are lengths. An error has the number of the move.
-    pub(super) fn new(
+    /// of the coordinates that are lengths.
+    fn new(
         start: &[f64],
         moves: &[Move],
         positions: &[usize],
-    ) -> Result<(Self, Vec<f64>), (usize, MoveProblem)> {
+    ) -> Result<(Self, Vec<f64>), MovesError> {
         let mut segments: Vec<Segment> = Vec::with_capacity(moves.len());
         let mut at = 0.0;
         for (number, next) in moves.iter().enumerate() {
             let from = if number == 0 { start } else { &moves[number - 1].to };
             let segment = Segment::new(at, from, next, positions);
-            let segment = segment.map_err(|problem| (number, problem))?;
+            let segment = segment.map_err(|problem| MovesError { number, problem })?;
             let blends = if number == 0 { 0.0 } else { moves[number - 1].blend } + next.blend;
             // The last move has no corner at its end.
             let needed = if number + 1 == moves.len() { blends - next.blend } else { blends };
             if needed > segment.length {
-                return Err((number, MoveProblem::Overlap { needed, length: segment.length }));
+                let problem = MoveProblem::Overlap { needed, length: segment.length };
+                return Err(MovesError { number, problem });
             }
             at += segment.length;
             segments.push(segment);
@@ -139,13 +244,13 @@ impl Moves {
     }
 
     /// The timing from rest to rest that goes along each move with its feed rate, with this largest acceleration along the path,
-    /// and with a halt at each of `stops`. `Err` has the number of a move that is too short for that in floating point.
-    pub(super) fn timing(
+    /// and with a halt at each of `stops`. `Err` if a move is too short for that in floating point.
+    fn timing(
         &self,
         moves: &[Move],
         stops: &[f64],
         acceleration: f64,
-    ) -> Result<Timing, usize> {
+    ) -> Result<Timing, MovesError> {
         let squares: Vec<f64> = moves.iter().map(|given| given.feed * given.feed).collect();
         let n = self.segments.len();
         // The squares of the rates where moves meet, that can be reached from both sides.
@@ -184,7 +289,8 @@ impl Moves {
             add(end, to);
         }
         Timing::new(knots.clone(), &rates, 0.0).map_err(|knot| {
-            self.segments.partition_point(|segment| segment.start <= knots[knot]).max(1) - 1
+            let before = self.segments.partition_point(|segment| segment.start <= knots[knot]);
+            MovesError { number: before.max(1) - 1, problem: MoveProblem::Short }
         })
     }
 }
@@ -385,8 +491,8 @@ mod tests {
                     let share = f64::from(i) / 12.0;
                     path.at(share * path.length(), &mut out);
                     let expected = on(270.0 * side * share, 0.6 * share);
-                    for k in 0..3 {
-                        assert!((out.pose[k] - expected[k]).abs() < 1e-14, "{side} {via} {i} {k}");
+                    for (value, expected) in out.pose.iter().zip(&expected) {
+                        assert!((value - expected).abs() < 1e-14, "{side} {via} {i}");
                     }
                     assert!((out.velocity[0].hypot(out.velocity[1]) - 1.0).abs() < 1e-14);
                     let turn = out.acceleration[0].hypot(out.acceleration[1]);
@@ -396,7 +502,7 @@ mod tests {
         }
         let straight = Move { via: Some(vec![0.1, 0.1, 0.0]), ..line([0.3, 0.3, 0.0], 0.0) };
         let refused = Moves::new(&[0.0; 3], &[straight], &POSITIONS).unwrap_err();
-        assert_eq!(refused, (0, MoveProblem::Straight));
+        assert_eq!(refused, MovesError { number: 0, problem: MoveProblem::Straight });
     }
 
     /// Round a corner, and from a line into an arc that it does not touch, the path stays C²: derivatives are those of
@@ -445,8 +551,10 @@ mod tests {
         // Each of four moves is a trapezoid: feed over acceleration is lost at each.
         assert!((timing.end() - (path.length() / 0.2 + 4.0 * 0.2)).abs() < 1e-12);
         let overlap = Moves::new(&[0.0; 3], &round(0.06), &POSITIONS).unwrap_err();
-        let MoveProblem::Overlap { needed, length } = overlap.1 else { panic!("{overlap:?}") };
-        assert!(overlap.0 == 1 && needed == 0.12 && (length - 0.1).abs() < 1e-15);
+        let MoveProblem::Overlap { needed, length } = overlap.problem else {
+            panic!("{overlap:?}")
+        };
+        assert!(overlap.number == 1 && needed == 0.12 && (length - 0.1).abs() < 1e-15);
     }
 
     /// Between moves of different feed rates the speed changes with the acceleration, on the faster side.

@@ -180,7 +180,7 @@ fn recorded<'a>(
 ) -> opm_mcap::Trajectory<'a> {
     let MotionRequest { manipulator, motion, mode, rate, .. } = *request;
     let [mechanism_file, motion_file] = files;
-    let timing = match motion.path {
+    let timing = match &motion.path {
         // Lines and arcs have feed rates.
         MotionPath::Timed(timed) if !matches!(*timed.path, MotionPath::Moves(_)) => "time-optimal",
         _ => "as given",
