@@ -10,7 +10,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 MECHANISM = "bennett-double-spherical-6r"
-START, ROUND = 1_000_000_000, 10_000_000_000  # nanoseconds
+START, ROUND = 1, 10_000_000_000  # nanoseconds
 
 
 def run(opm, *arguments, mechanism=MECHANISM):

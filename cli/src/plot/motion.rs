@@ -199,7 +199,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Ends an instant. What had values before and has none now has a gap. So have the measures where
-    /// the joints pause: out of reach, `/condition` goes on, but there is no posture to measure.
+    /// the joints are unknown: out of reach, `/condition` goes on, but there is no posture to measure.
     fn finish(&mut self) {
         let Some(time) = self.now.take() else { return };
         let place = self.place(self.seconds(time));
@@ -207,7 +207,9 @@ impl<'a> Motion<'a> {
         let follows = std::mem::replace(&mut self.follows, true);
         self.judge(place, follows);
         let of = |kind| (0..TOPICS.len()).filter(move |&n| TOPICS[n].kind == kind);
-        let posture = of(TopicKind::Joints).any(|topic| self.current[topic].is_some());
+        let known = |values: &Vec<f64>| !values.iter().all(|value| value.is_nan());
+        let posture =
+            of(TopicKind::Joints).any(|topic| self.current[topic].as_ref().is_some_and(known));
         for (topic, traces) in self.traces.iter_mut().enumerate() {
             let values = self.current[topic].take();
             let values = values.filter(|_| TOPICS[topic].kind != TopicKind::Condition || posture);

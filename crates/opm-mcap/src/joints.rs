@@ -51,6 +51,24 @@ impl JointsTopic {
             let (values, columns) = (values.len(), self.joints);
             return Err(RecordError::Row { values, columns });
         }
+        self.write_all(log, time, values.iter().copied())
+    }
+
+    /// Writes NaN for each joint.
+    pub fn write_unknown<W: Sink>(
+        &mut self,
+        log: &mut Log<W>,
+        time: u64,
+    ) -> Result<(), RecordError> {
+        self.write_all(log, time, std::iter::repeat_n(f64::NAN, self.joints))
+    }
+
+    fn write_all<W: Sink>(
+        &mut self,
+        log: &mut Log<W>,
+        time: u64,
+        values: impl Iterator<Item = f64>,
+    ) -> Result<(), RecordError> {
         self.message.clear();
         for (number, value) in (1..).zip(values) {
             varint(&mut self.message, number << 3 | DOUBLE);

@@ -99,8 +99,31 @@ pub(crate) fn check(bodies: &[Body]) -> Result<(), RecordError> {
     Ok(())
 }
 
+/// Whether the bodies follow the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum State {
+    /// They are where the motion wants them.
+    Moves,
+    /// The motion is out of reach, and they stay where they were.
+    Stuck,
+}
+
+/// The colour that bodies turn to while they are stuck, and its share.
+const STUCK: ([f64; 3], f64) = ([0.86, 0.15, 0.15], 0.7);
+
+impl State {
+    fn tint(self, color: [f64; 4]) -> [f64; 4] {
+        let (to, share) = match self {
+            Self::Moves => return color,
+            Self::Stuck => STUCK,
+        };
+        let [r, g, b] = std::array::from_fn(|i| color[i] + share * (to[i] - color[i]));
+        [r, g, b, color[3]]
+    }
+}
+
 /// The scene: an entity a body, fixed to the body's frame.
-pub(crate) fn update(bodies: &[Body], time: Timestamp) -> SceneUpdate {
+pub(crate) fn update(bodies: &[Body], state: State, time: Timestamp) -> SceneUpdate {
     let entities = bodies.iter().map(|body| {
         let note = |(key, value): &(String, String)| KeyValuePair {
             key: key.clone(),
@@ -115,7 +138,7 @@ pub(crate) fn update(bodies: &[Body], time: Timestamp) -> SceneUpdate {
             ..SceneEntity::default()
         };
         for solid in &body.solids {
-            let color = color(solid.color);
+            let color = color(state.tint(solid.color));
             match solid.shape {
                 Shape::Cylinder { from, to, radius } => {
                     let (axis, length) = direction(from, to);

@@ -7,15 +7,16 @@
 //! | `/joints`, `/velocities`, `/accelerations` | `opm.Joints` and so on: one double for each joint coordinate |
 //! | `/imaginary_joints`, `/imaginary_velocities` | one double for each imaginary joint |
 //! | `/condition` | `opm.Condition`: condition number, singularity measures, and `valid`, 1 or 0 |
-//! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know this schema; at most 200 a second |
-//! | `/tf` | `foxglove.FrameTransforms`: where every body is; at most 200 a second |
-//! | `/scene` | one `foxglove.SceneUpdate`: what the bodies look like, each in its own frame |
+//! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know this schema; at most 60 a second |
+//! | `/tf` | `foxglove.FrameTransforms`: where every body is; at most 60 a second |
+//! | `/scene` | `foxglove.SceneUpdate`: what the bodies look like, each in its own frame; red while they are stuck |
 //! | `/bodies/NAME` | one `foxglove.PointCloud` for each body, for viewers without scenes: its surface |
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
 //!
 //! Units are metres, radians and seconds. A topic without values is left out. Time starts at [`START`]; no
-//! clock is read. Where the mechanism cannot follow the motion, joints and dependent coordinates pause, while `/pose` and
-//! `/condition` go on (`valid` is 0, the condition number infinite, and the measures are NaN).
+//! clock is read. Every topic of doubles has every sample. Out of reach, `/pose` goes on, `valid` is 0, the condition number
+//! infinite, and everything else NaN, so that curves break; the bodies stay where they were, and turn red. Rates that a
+//! singularity leaves unknown are NaN, too.
 //!
 //! These are the metadata records:
 //!
@@ -80,8 +81,7 @@ use foxglove::messages::{
 
 use crate::joints::{JointsTopic, fields};
 use crate::log::{CHUNK_BYTES, Log, Topic};
-use crate::scene::{Body, check, surface, update};
-use crate::workspace::START;
+use crate::scene::{Body, State, check, surface, update};
 use crate::{Metadata, PartialFile, RecordError, Sink};
 
 /// The topic of the joints.
@@ -115,9 +115,12 @@ pub const VIOLATIONS_TOPIC: &str = "/violations";
 /// The beginning of the topics of the bodies' clouds.
 pub const BODIES_TOPIC: &str = "/bodies/";
 
-/// The shortest time between messages on `/tf` and `/joint_states`, nanoseconds. Screens show a third as many
-/// pictures. The other topics have the values of all samples.
-pub const PICTURE_PERIOD: u64 = 5_000_000;
+/// The time at which a motion starts, nanoseconds: as good as zero, which viewers take for a time that is not set.
+pub const START: u64 = 1;
+
+/// The shortest time between messages on `/tf` and `/joint_states`, nanoseconds: viewers warn of more than 60 a second. The
+/// topics of doubles have the values of all samples.
+pub const PICTURE_PERIOD: u64 = 16_666_667;
 
 /// The field of `/condition` that says whether the pose is in reach and within all limits.
 pub const VALID: &str = "valid";
@@ -238,6 +241,13 @@ pub struct Frame {
     pub rotation: [f64; 4],
 }
 
+/// The bodies that the scene shows.
+struct Shown {
+    topic: Topic,
+    bodies: Vec<Body>,
+    state: State,
+}
+
 /// Writes a recording of a motion. Any error is final. The [module](self) has an example.
 pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     log: Log<W>,
@@ -253,6 +263,7 @@ pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     condition: Option<JointsTopic>,
     states: Option<(Topic, JointStates)>,
     frames: Option<(Topic, FrameTransforms)>,
+    scene: Option<Shown>,
     violations: Topic,
     /// The measures and `valid`, as they are written.
     judged: Vec<f64>,
@@ -341,6 +352,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let violations = log.topic::<foxglove::messages::Log>(VIOLATIONS_TOPIC)?;
         let mut recorder = Self {
             frames: None,
+            scene: None,
             log,
             pose,
             pose_velocities,
@@ -365,10 +377,11 @@ impl<W: Sink> TrajectoryRecorder<W> {
         Ok(recorder)
     }
 
-    /// Writes the shapes of the bodies, once.
+    /// Writes the shapes of the bodies.
     fn show(&mut self, bodies: &[Body]) -> Result<(), RecordError> {
-        let mut scene = self.log.topic::<foxglove::messages::SceneUpdate>(SCENE_TOPIC)?;
-        put(&mut self.log, &mut self.message, &mut scene, START, &update(bodies, stamp(START)))?;
+        let topic = self.log.topic::<foxglove::messages::SceneUpdate>(SCENE_TOPIC)?;
+        self.scene = Some(Shown { topic, bodies: bodies.to_vec(), state: State::Moves });
+        self.draw(START)?;
         for body in bodies {
             let name = format!("{BODIES_TOPIC}{}", body.frame);
             let mut topic = self.log.topic::<foxglove::messages::PointCloud>(&name)?;
@@ -388,6 +401,24 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let topic = self.log.topic::<FrameTransforms>(FRAMES_TOPIC)?;
         self.frames = Some((topic, FrameTransforms { transforms }));
         Ok(())
+    }
+
+    /// Writes the scene in its present state.
+    fn draw(&mut self, time: u64) -> Result<(), RecordError> {
+        let Some(Shown { topic, bodies, state }) = &mut self.scene else { return Ok(()) };
+        let scene = update(bodies, *state, stamp(time));
+        put(&mut self.log, &mut self.message, topic, time, &scene)
+    }
+
+    /// Writes the scene anew where the bodies get stuck, or move again.
+    fn draw_change(&mut self, time: u64, now: State) -> Result<(), RecordError> {
+        match &mut self.scene {
+            Some(shown) if shown.state != now => {
+                shown.state = now;
+                self.draw(time)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Whether an instant `time` nanoseconds after the start will be on `/tf` and `/joint_states`.
@@ -412,33 +443,40 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let shows = self.shows(time);
         let next = time.saturating_add(PICTURE_PERIOD);
         let time = self.advance(time)?;
+        let state = if sample.posture.is_some() { State::Moves } else { State::Stuck };
+        self.draw_change(time, state)?;
         let log = &mut self.log;
-        let mut write = |topic: &mut Option<JointsTopic>, values: &[f64]| match topic {
+        let write = |log: &mut Log<W>, topic: &mut Option<JointsTopic>, values: &[f64]| match topic
+        {
             Some(topic) => topic.write(log, time, values),
             None if values.is_empty() => Ok(()),
             None => Err(RecordError::Row { values: values.len(), columns: 0 }),
         };
-        write(&mut self.pose, sample.pose)?;
-        write(&mut self.pose_velocities, sample.pose_velocities)?;
+        write(log, &mut self.pose, sample.pose)?;
+        write(log, &mut self.pose_velocities, sample.pose_velocities)?;
         if self.condition.is_some() {
             self.judged.clear();
             self.judged.extend_from_slice(sample.measures);
             self.judged.push(f64::from(u8::from(sample.valid)));
-            write(&mut self.condition, &self.judged)?;
+            write(log, &mut self.condition, &self.judged)?;
         }
-        let Some(posture) = sample.posture else { return Ok(()) };
-        write(&mut self.dependent, posture.dependent)?;
-        write(&mut self.joints, posture.joints)?;
-        write(&mut self.imaginary, posture.imaginary)?;
-        if let Some(rates) = posture.rates {
-            write(&mut self.dependent_velocities, rates.dependent)?;
-            write(&mut self.velocities, rates.velocities)?;
-            write(&mut self.imaginary_velocities, rates.imaginary)?;
-            write(&mut self.accelerations, rates.accelerations)?;
+        let posture = sample.posture;
+        let rates = posture.and_then(|posture| posture.rates);
+        for (topic, values) in [
+            (&mut self.dependent, posture.map(|posture| posture.dependent)),
+            (&mut self.joints, posture.map(|posture| posture.joints)),
+            (&mut self.imaginary, posture.map(|posture| posture.imaginary)),
+            (&mut self.dependent_velocities, rates.map(|rates| rates.dependent)),
+            (&mut self.velocities, rates.map(|rates| rates.velocities)),
+            (&mut self.imaginary_velocities, rates.map(|rates| rates.imaginary)),
+            (&mut self.accelerations, rates.map(|rates| rates.accelerations)),
+        ] {
+            match values {
+                Some(values) => write(log, topic, values)?,
+                None => topic.iter_mut().try_for_each(|topic| topic.write_unknown(log, time))?,
+            }
         }
-        if !shows {
-            return Ok(());
-        }
+        let Some(posture) = posture.filter(|_| shows) else { return Ok(()) };
         self.picture = next;
         if let Some((topic, states)) = &mut self.states {
             states.timestamp = Some(stamp(time));
