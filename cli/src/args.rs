@@ -9,7 +9,7 @@ mod workspace;
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
-pub use recording::{InspectArgs, PlotArgs};
+pub use recording::{InspectArgs, LayoutArgs, PlotArgs};
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
 use crate::change::Change;
@@ -58,6 +58,7 @@ Examples:
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds
+  opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
   opm help format                                      how to write a mechanism file";
 
 /// Options of every subcommand.
@@ -94,6 +95,7 @@ pub enum Command {
     Merge(MergeArgs),
     Plot(PlotArgs),
     Inspect(InspectArgs),
+    Layout(LayoutArgs),
     Examples(ExamplesArgs),
     Schema(SchemaArgs),
     Format(FormatArgs),

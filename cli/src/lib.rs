@@ -13,6 +13,7 @@ mod fk;
 mod format;
 mod ik;
 mod inspect;
+mod layout;
 mod lines;
 mod linkage;
 mod load;
@@ -70,6 +71,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Merge(command) => merge::run(command, output),
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
+        Command::Layout(command) => layout::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),
         Command::Format(_) => format::run(output),

@@ -4,6 +4,7 @@ mod summary;
 
 use crate::args::{Format, Output, TableUnits, TrajectoryArgs};
 use crate::failure::Failure;
+use crate::layout;
 use crate::load;
 use crate::motion;
 use crate::output::is_stdout;
@@ -164,6 +165,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     })?;
     if let Some(path) = target.path() {
         output.note(format_args!("{}: {} samples", path.display(), count(summary.samples)));
+        layout::advise(path, output);
     }
     let violations = summary.violation_count;
     if violations > 0 && !args.strict {

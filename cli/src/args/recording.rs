@@ -82,3 +82,27 @@ pub struct InspectArgs {
     #[arg(value_name = "FILE.mcap", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
 }
+
+/// Lay a recording out for a viewer: Foxglove, Lichtblick or Rerun
+///
+/// Of a workspace, the overview is beside the slice at the playhead. Of a motion, the mechanism and the log of
+/// violations are beside a plot for each role and unit of the values, and one of the condition number. The camera sees
+/// everything.
+///
+/// In Foxglove or Lichtblick: open the recording, then choose "Import from file" in the menu of layouts and take the
+/// .json file. Rerun: `pip install rerun-sdk`, then run the .py file; with the name of an .rrd file as its
+/// argument, it writes that instead of opening a window.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm layout cloud.mcap -o layout.json
+  opm layout play.mcap -o show.py
+  python show.py")]
+pub struct LayoutArgs {
+    /// Recording (MCAP) of a workspace or a motion
+    #[arg(value_name = "FILE.mcap", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Output file; its ending selects the viewer. Without it, a layout for Foxglove goes to standard output
+    #[arg(short, long, value_name = "OUT.json|OUT.py", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}

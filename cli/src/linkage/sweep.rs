@@ -3,6 +3,7 @@
 use super::report::Run;
 use crate::args::{Format, LinkageArgs, Output};
 use crate::failure::Failure;
+use crate::layout;
 use crate::text::count;
 use csv::WriterBuilder;
 use opm_core::linkage::Position;
@@ -122,6 +123,7 @@ impl Sweep<'_> {
                 path.display(),
                 count(summary.positions)
             ));
+            layout::advise(path, output);
         }
         let beyond = summary.positions - summary.within_limits;
         if beyond > 0 {

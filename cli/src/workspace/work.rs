@@ -4,6 +4,7 @@ use super::advice;
 use super::report::Effort;
 use crate::args::Output;
 use crate::failure::Failure;
+use crate::layout;
 use crate::progress::watch;
 use crate::text::count;
 use opm_core::mechanism::file::FileUnits;
@@ -119,6 +120,7 @@ impl Work<'_> {
         let path = self.watch("recording", poses, job)?;
         let points = count(findings.analysis.count.reachable);
         self.output.note(format_args!("{}: {points} points", path.display()));
+        layout::advise(&path, self.output);
         Ok(())
     }
 

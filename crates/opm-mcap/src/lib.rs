@@ -55,6 +55,7 @@
 //! | [`cloud`] | the layout of the points of a cloud, and how they are packed |
 //! | [`scene`] | bodies made of simple solids |
 //! | [`joints`] | messages that consist of named numbers |
+//! | [`layout`] | what a viewer shows of a recording |
 //!
 //! [`read`] reads every kind. Recordings go to a [`Sink`], usually a [`PartialFile`].
 //!
@@ -74,6 +75,7 @@ mod error;
 mod file;
 mod flat;
 pub mod joints;
+pub mod layout;
 mod log;
 mod reader;
 pub mod scene;
@@ -87,6 +89,7 @@ pub use decode::{Cloud, Column};
 pub use error::{ReadError, RecordError};
 pub use file::{PartialFile, Sink};
 pub use flat::Flat;
+pub use layout::{Layout, LayoutError};
 #[doc(hidden)]
 pub use log::COMPRESSION_LEVEL;
 pub use log::Metadata;

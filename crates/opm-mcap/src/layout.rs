@@ -1,0 +1,157 @@
+//! Layouts: what a viewer shows of a recording, from where, and beside what.
+//!
+//! Without one, a viewer shows an empty grid at first. [`Layout::of`] reads a recording: how large it is, which topics it
+//! has, which values belong together. [`Layout::foxglove`] gives a layout file for Foxglove and Lichtblick,
+//! [`Layout::rerun`] a Python script for Rerun.
+//!
+//! ```no_run
+//! use opm_mcap::Layout;
+//! use std::path::Path;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let layout = Layout::of(Path::new("play.mcap"))?;
+//! std::fs::write("layout.json", layout.foxglove())?;
+//! std::fs::write("show.py", layout.rerun("play.mcap"))?;
+//! # Ok(())
+//! # }
+//! ```
+
+mod extent;
+mod foxglove;
+mod plots;
+mod rerun;
+
+use crate::reader::{Recording, read};
+use crate::trajectory::{BODIES_TOPIC, VIOLATIONS_TOPIC};
+use crate::workspace::{BOUNDARY_TOPIC, OVERVIEW_TOPIC, SLICES_TOPIC};
+use crate::{Message, Metadata, ReadError};
+use extent::{Extent, Frames};
+use plots::{Flats, Plot};
+use std::path::Path;
+
+/// Why there is no layout for a recording.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LayoutError {
+    /// The recording cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The recording has nothing that a viewer shows.
+    #[error("it holds {found}, expected a workspace or a motion, as opm records them")]
+    Nothing {
+        /// Its topics.
+        found: String,
+    },
+}
+
+/// What a viewer shows of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    title: String,
+    /// The views in space, side by side.
+    views: Vec<View>,
+    plots: Vec<Plot>,
+    /// Whether there is a log of violations.
+    violations: bool,
+}
+
+/// A view in space.
+#[derive(Debug, Clone, PartialEq)]
+struct View {
+    title: String,
+    /// The frame that it is drawn in.
+    frame: String,
+    extent: Extent,
+    /// The topics of the recording that are shown and those that are not, with the size of points, pixels.
+    shown: Vec<(String, u32)>,
+    hidden: Vec<String>,
+}
+
+/// The size of points of an overview, of a slice, and of what has none, pixels.
+const OVERVIEW_POINTS: u32 = 3;
+const SLICE_POINTS: u32 = 5;
+const NO_POINTS: u32 = 0;
+
+impl Layout {
+    /// Reads a recording, and lays out what is in it.
+    ///
+    /// # Errors
+    /// [`LayoutError::Read`]: it cannot be read; [`LayoutError::Nothing`]: it is neither of a workspace nor of a motion.
+    pub fn of(path: &Path) -> Result<Self, LayoutError> {
+        let (mut frames, mut flats) = (Frames::default(), Flats::default());
+        let mut frame_id = None;
+        let recording = read(path, |message: &Message<'_>| -> Result<(), ReadError> {
+            if matches!(message.topic, OVERVIEW_TOPIC | SLICES_TOPIC) {
+                if let Some(cloud) = message.cloud()? {
+                    frame_id.get_or_insert(cloud.frame_id);
+                }
+                return Ok(());
+            }
+            frames.add(message)?;
+            flats.add(message);
+            Ok(())
+        })?;
+        let plots = flats.plots(&recording);
+        let views = match frame_id {
+            Some(frame) => workspace(&recording, &frame),
+            None => frames.extent().map_or_else(Vec::new, |extent| motion(&recording, extent)),
+        };
+        if views.is_empty() && plots.is_empty() {
+            let mut names: Vec<&str> = recording.topics.iter().map(|topic| &*topic.name).collect();
+            names.truncate(8);
+            let found = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+            return Err(LayoutError::Nothing { found });
+        }
+        let run = recording.metadata("run");
+        let word = |key: &str| run.and_then(|run: &Metadata| run.get(key)).cloned();
+        let parts = [word("mechanism"), word("kind").or_else(|| word("motion"))];
+        let title = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
+        let violations = recording.topic(VIOLATIONS_TOPIC).is_some();
+        Ok(Self { title, views, plots, violations })
+    }
+}
+
+/// A workspace: the overview beside the slice.
+fn workspace(recording: &Recording, frame: &str) -> Vec<View> {
+    let range = |name: &str| {
+        let found = recording.extents.iter().find(|extent| extent.field == name);
+        found.map_or([0.0; 2], |extent| [extent.min, extent.max])
+    };
+    let [x, y, z] = ["x", "y", "z"].map(range);
+    let extent = Extent { low: [x[0], y[0], z[0]], high: [x[1], y[1], z[1]] };
+    let boundary = || recording.topic(BOUNDARY_TOPIC).map(|topic| topic.name.clone());
+    let view = |title: &str, topic: &str, size, hidden: &str| View {
+        title: title.to_owned(),
+        frame: frame.to_owned(),
+        extent,
+        shown: [(topic.to_owned(), size)]
+            .into_iter()
+            .chain(boundary().map(|name| (name, NO_POINTS)))
+            .collect(),
+        hidden: vec![hidden.to_owned()],
+    };
+    let overview = View {
+        shown: vec![(OVERVIEW_TOPIC.to_owned(), OVERVIEW_POINTS)],
+        hidden: [Some(SLICES_TOPIC.to_owned()), boundary()].into_iter().flatten().collect(),
+        ..view("Overview", OVERVIEW_TOPIC, OVERVIEW_POINTS, SLICES_TOPIC)
+    };
+    let slices = recording.topic(SLICES_TOPIC).is_some_and(|topic| topic.messages > 1);
+    if slices {
+        vec![overview, view("Slice", SLICES_TOPIC, SLICE_POINTS, OVERVIEW_TOPIC)]
+    } else {
+        vec![view("Workspace", OVERVIEW_TOPIC, OVERVIEW_POINTS, SLICES_TOPIC)]
+    }
+}
+
+/// A motion: the mechanism.
+fn motion(recording: &Recording, (frame, extent): (String, Extent)) -> Vec<View> {
+    let scene = recording.topic(crate::trajectory::SCENE_TOPIC);
+    let bodies = recording.topics.iter().filter(|topic| topic.name.starts_with(BODIES_TOPIC));
+    vec![View {
+        title: "Mechanism".to_owned(),
+        frame,
+        extent,
+        shown: scene.iter().map(|topic| (topic.name.clone(), NO_POINTS)).collect(),
+        hidden: bodies.map(|topic| topic.name.clone()).collect(),
+    }]
+}

@@ -1,0 +1,143 @@
+//! The Python script that shows a recording in Rerun.
+
+use super::plots::{Plot, columns};
+use super::{Layout, View};
+use crate::trajectory::{BODIES_TOPIC, FRAMES_TOPIC, SCENE_TOPIC, VIOLATIONS_TOPIC};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// The place of the camera from the middle, in radii of what is shown.
+const FROM: [f64; 3] = [1.3, -1.3, 0.9];
+
+/// The beginning of every script.
+const HEAD: &str = r#"
+import sys
+from pathlib import Path
+
+import rerun as rr
+import rerun.blueprint as rrb
+from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
+
+
+def curves(title, topic, schema, names):
+    """A plot of some fields of the messages of a topic."""
+
+    def line(field, name):
+        source = ComponentSourceKind.SourceComponent
+        value = VisualizerComponentMapping(
+            "Scalars:scalars", source, source_component=f"{schema}:message", selector=f".{field}"
+        )
+        return rr.SeriesLines(names=name).visualizer(mappings=[value])
+
+    lines = [line(field, name) for field, name in names.items()]
+    return rrb.TimeSeriesView(name=title, origin="/", contents=topic, overrides={topic: lines})
+
+
+def space(title, topics, eye, target):
+    """A view in space."""
+    return rrb.Spatial3DView(
+        name=title, origin="/", contents=topics, eye_controls=rrb.EyeControls3D(position=eye, look_target=target)
+    )
+
+
+"#;
+
+/// The end of every script.
+const TAIL: &str = r#"
+blueprint = rrb.Blueprint(
+    shown,
+    rrb.BlueprintPanel(state="collapsed"),
+    rrb.SelectionPanel(state="collapsed"),
+    rrb.TimePanel(state="collapsed", timeline="message_log_time"),
+)
+rr.init(name)
+if len(sys.argv) > 1:
+    rr.save(sys.argv[1], default_blueprint=blueprint)
+else:
+    rr.spawn(default_blueprint=blueprint)
+rr.log_file_from_path(recording)
+"#;
+
+impl Layout {
+    /// The text of a Python script that shows the recording in Rerun, for the package `rerun-sdk`. `recording` is its name,
+    /// from the folder of the script. With an argument, the script saves what is shown as a file (`.rrd`) instead.
+    pub fn rerun(&self, recording: &str) -> String {
+        let mut text = String::from("# Shows a recording of opm in Rerun: pip install rerun-sdk\n");
+        text += HEAD;
+        let mut line = |text_: std::fmt::Arguments<'_>| {
+            let _ = writeln!(text, "{text_}");
+        };
+        // Rerun's names have few kinds of characters.
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let name: String = self.title.chars().map(plain).collect();
+        line(format_args!("name = {}", python(&json!(name))));
+        line(format_args!("recording = Path(__file__).parent / {}", python(&json!(recording))));
+        let views: Vec<String> = self.views.iter().map(space).collect();
+        let columns = columns(&self.plots).map(|plots| {
+            let plots: Vec<String> = plots.iter().map(curves).collect();
+            format!(
+                "rrb.Vertical({})",
+                indented(&plots).replace('\n', "\n    ").replace("    )", ")")
+            )
+        });
+        let columns: Vec<String> = columns.collect();
+        line(format_args!("views = [{}]", indented(&views)));
+        line(format_args!("columns = [{}]", indented(&columns)));
+        if self.violations {
+            line(format_args!(
+                "log = rrb.TextLogView(name=\"Violations\", origin=\"{VIOLATIONS_TOPIC}\")"
+            ));
+            line(format_args!(
+                "left = rrb.Vertical(*views, log, row_shares=[*(6 for _ in views), 1])"
+            ));
+        } else {
+            line(format_args!("left = rrb.Horizontal(*views)"));
+        }
+        line(format_args!(
+            "shown = rrb.Horizontal(left, *columns, column_shares=[3, *(2 / len(columns) for _ in columns)])"
+        ));
+        text + TAIL
+    }
+}
+
+fn space(view: &View) -> String {
+    let View { title, extent, shown, .. } = view;
+    let (target, radius) = (extent.centre(), extent.radius());
+    let eye: Vec<f64> = (0..3).map(|i| target[i] + FROM[i] * radius).collect();
+    // Rerun shows no scenes; the clouds of the bodies have the same shapes.
+    let topics = shown.iter().flat_map(|(topic, _)| match &**topic {
+        SCENE_TOPIC => vec![format!("{BODIES_TOPIC}**"), FRAMES_TOPIC.to_owned()],
+        other => vec![other.to_owned()],
+    });
+    let topics: Vec<String> = topics.collect();
+    let arguments = [json!(title), json!(topics), json!(eye), json!(target)];
+    format!("space({})", arguments.map(|argument| python(&argument)).join(", "))
+}
+
+fn curves(plot: &Plot) -> String {
+    let Plot { title, topic, schema, curves, .. } = plot;
+    let names: serde_json::Map<String, Value> =
+        curves.iter().map(|(field, name)| (field.clone(), json!(name))).collect();
+    let arguments = [json!(title), json!(topic), json!(schema), Value::Object(names)];
+    format!("curves({})", arguments.map(|argument| python(&argument)).join(", "))
+}
+
+/// A value as Python writes it: texts and numbers are those of JSON.
+fn python(value: &Value) -> String {
+    let joined = |items: Vec<String>| items.join(", ");
+    match value {
+        Value::Array(items) => format!("[{}]", joined(items.iter().map(python).collect())),
+        Value::Object(items) => {
+            let item =
+                |(key, value): (&String, &Value)| format!("{}: {}", json!(key), python(value));
+            format!("{{{}}}", joined(items.iter().map(item).collect()))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// Items of a list, one in a line.
+fn indented(items: &[String]) -> String {
+    let lines: String = items.iter().map(|item| format!("\n    {item},")).collect();
+    if lines.is_empty() { lines } else { lines + "\n" }
+}
