@@ -128,8 +128,9 @@ pub fn modes(given: &str, manipulator: &Manipulator) -> Result<Modes, Failure> {
 }
 
 /// The values of every point that the flags request.
-pub fn points(CloudArgs { output: _, axes, color, scalars }: &CloudArgs) -> PointOptions {
-    PointOptions { axes: axes.clone(), scalars: scalars.clone(), color: color.clone() }
+pub fn points(CloudArgs { output: _, axes, color, scalars, scale }: &CloudArgs) -> PointOptions {
+    let scale = scale.unwrap_or_default();
+    PointOptions { axes: axes.clone(), scalars: scalars.clone(), color: color.clone(), scale }
 }
 
 /// The requested part of a sweep, and its output file.

@@ -17,7 +17,7 @@ import numpy as np
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-OVERVIEW, SLICES = "/workspace/cloud", "/workspace/slices"
+OVERVIEW, SLICES, AXES = "/workspace/cloud", "/workspace/slices", "/workspace/axes"
 START, SLICE_STEP = 1_000_000_000, 100_000_000  # nanoseconds
 MAX_OVERVIEW_POINTS, MAX_MESSAGE_POINTS = 2_000_000, 4_000_000
 COLORS = ["red", "green", "blue", "alpha"]
@@ -77,6 +77,36 @@ def check_cloud(topic, message, cloud, scalars):
     return array
 
 
+def scales(clouds):
+    """The factors of the axes."""
+    return dict(zip("xyz", map(float, clouds["scale"].split(","))))
+
+
+def unscaled(array, clouds):
+    """The points with the values of their axes, before these were scaled."""
+    array = array.copy()
+    for axis, factor in scales(clouds).items():
+        array[axis] = array[axis].astype(float) / factor
+    return array
+
+
+def check_box(scene, clouds):
+    """Checks the labels of the box round the points, and returns its ends."""
+    (entity,) = scene.entities
+    (edges,) = entity.lines
+    require(len(edges.points) == 24, f"{len(edges.points)} ends of edges")
+    ends = []
+    texts = [text.text for text in entity.texts]
+    for (axis, factor), name, unit in zip(scales(clouds).items(), clouds["axes"].split(","), clouds["units"].split(",")):
+        values = [getattr(point, axis) / factor for point in edges.points]
+        ends.append([min(values), max(values)])
+        labels = [text for text in texts if text.startswith(f"{name} = ") and text.endswith(f" {unit}")]
+        told = sorted(float(label.removeprefix(f"{name} = ").removesuffix(f" {unit}")) for label in labels if unit)
+        expected = sorted(set(ends[-1])) if unit else []
+        require(np.allclose(told, expected, rtol=6e-3, atol=1e-9), f"labels {told} of {name}, expected {expected}")
+    return ends
+
+
 def check_colors(array, clouds):
     """Checks that larger values are lighter, and that the range covers the whole colour map."""
     axes = dict(zip(clouds["axes"].split(","), "xyz"))
@@ -116,11 +146,14 @@ def check(path, expected=None):
         attachments = list(reader.iter_attachments())
         require(len(attachments) == 1 and attachments[0].data, "no mechanism file is attached")
 
-        overview, slices, times = [], [], []
+        overview, slices, times, boxes = [], [], [], []
         for schema, channel, message, cloud in reader.iter_decoded_messages(log_time_order=False):
+            if channel.topic == AXES:
+                boxes.append(check_box(cloud, clouds))
+                continue
             require(schema.name == "foxglove.PointCloud", f"{channel.topic}: {schema.name}")
             require(channel.topic in (OVERVIEW, SLICES), f"topic {channel.topic}")
-            array = check_cloud(channel.topic, message, cloud, scalars)
+            array = unscaled(check_cloud(channel.topic, message, cloud, scalars), clouds)
             require(not times or times[-1] <= message.log_time, "log_time goes back")
             times.append(message.log_time)
             if channel.topic == OVERVIEW:
@@ -136,9 +169,20 @@ def check(path, expected=None):
     require(all(len(array) <= MAX_MESSAGE_POINTS for _, array in slices), "a message is too large")
     everything = np.concatenate([array for _, array in slices] or [overview[0][:0]])
     require(len(everything) == int(clouds["points"]), f"{len(everything)} points in the slices")
+    if len(overview[0]):
+        found = [[float(overview[0][axis].min()), float(overview[0][axis].max())] for axis in "xyz"]
+        require(len(boxes) == 1, f"{len(boxes)} boxes")
+        near = np.allclose(boxes[0], found, rtol=RELATIVE, atol=ABSOLUTE)
+        require(near, f"the box {boxes[0]}, expected {found}")
+    else:
+        require(not boxes, "a box round nothing")
     every = int(clouds["overview_every"])
     require(len(overview[0]) == int(clouds["overview_points"]), "the overview's points")
-    require((overview[0] == everything[::every]).all(), f"the overview is not every {every}th point")
+    chosen = everything[::every].copy()
+    if int(clouds["slices"]) > 1:
+        for color in COLORS[:3]:  # half grey
+            chosen[color] = chosen[color] // 2 + 56
+    require((overview[0] == chosen).all(), f"the overview is not every {every}th point")
     check_colors(everything, clouds)
     if expected:
         check_points(everything, expected)

@@ -59,7 +59,7 @@ def shown(recorded):
     clouds = {
         topic: np.stack([points(message)[axis] for axis in "xyz"], axis=-1)
         for topic, messages in recorded.topics.items()
-        if topic.startswith(("/workspace/", "/bodies/"))
+        if topic.startswith(("/workspace/", "/bodies/")) and topic != "/workspace/boundary_points"
         for _, message in messages
         if message.DESCRIPTOR.name == "PointCloud"
     }
@@ -143,7 +143,7 @@ def test_a_script_shows_the_recording_in_rerun(opm, recordings, name):
     views = [tuple(map(ast.literal_eval, call.args)) for call in calls if call.func.id == "space"]
     assert len(views) == (2 if name == "workspace" else 1)
     for _, topics, _, _ in views:
-        assert all(topic in recorded.topics or topic == "/bodies/**" for topic in topics)
+        assert all(topic in recorded.topics or topic in ("/bodies/**", "/box/**") for topic in topics)
     pytest.importorskip("rerun", reason="rerun-sdk is not installed")
     saved = path.with_suffix(".rrd")
     subprocess.run([sys.executable, script, saved], check=True)

@@ -4,7 +4,7 @@ use super::MechanismArgs;
 use crate::pose::{GridAxis, Number, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use opm_study::WorkspaceKind;
+use opm_study::{AxisScale, WorkspaceKind};
 use opm_workspace::{InscribedShape, MOST_THREADS, Shard};
 use std::path::PathBuf;
 
@@ -153,6 +153,16 @@ pub struct CloudArgs {
     /// Values stored with every point, with names as for --color
     #[arg(long, value_name = "A,B,...", requires = "output", value_delimiter = ',')]
     pub scalars: Option<Vec<String>>,
+    /// Scale of the cloud's axes in a recording: `comparable` multiplies those of another unit than the first by
+    /// 1, 2 or 5 times a power of ten, `none` keeps metres and radians
+    #[arg(long, requires = "output", value_parser = scale(), value_name = "SCALE")]
+    pub scale: Option<AxisScale>,
+}
+
+/// Parses a scale of axes.
+fn scale() -> impl TypedValueParser<Value = AxisScale> {
+    let names = PossibleValuesParser::new(AxisScale::NAMED.map(|named| named.0));
+    names.map(|name| AxisScale::from_name(&name).unwrap_or_default())
 }
 
 /// Join the shards of a sweep into the result of a single run

@@ -46,10 +46,10 @@ pub struct Coordinate {
 }
 
 /// The source of the value of a point's coordinate.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// A field of the cloud.
-    Field(String),
+    /// A field of the cloud, whose values were multiplied by this.
+    Field(String, f64),
     /// The number of the slice, divided by this.
     Slice(u64),
 }
@@ -67,11 +67,14 @@ impl Layout {
             none if none.is_empty() => POSITION_FIELDS.map(str::to_owned).into(),
             names => names,
         };
+        let factors: Vec<f64> = list("scale").iter().filter_map(|text| text.parse().ok()).collect();
+        let factor = |i: usize| factors.get(i).copied().filter(|f| *f > 0.0).unwrap_or(1.0);
         let field = |name: &str| {
             let axis = names.iter().position(|axis| axis == name);
-            let axis = axis.and_then(|i| POSITION_FIELDS.get(i));
+            let axis = axis.and_then(|i| Some((*POSITION_FIELDS.get(i)?, factor(i))));
             let scalar = scalars.iter().find(|scalar| *scalar == name);
-            axis.map(|field| (*field).to_owned()).or_else(|| scalar.cloned())
+            let scalar = scalar.map(|scalar| (&**scalar, 1.0));
+            axis.or(scalar).map(|(field, factor)| Place::Field(field.to_owned(), factor))
         };
         let axis = |name: &str| axis(name, run.get(&format!("grid.{name}"))?);
         let mut layout = Self {
@@ -103,11 +106,11 @@ impl Layout {
                 layout.add_axis(c.quantity, axis, c.home);
                 // The slices of the first axes of the upper section may have been recorded as one.
                 let place = if i < grid.lower() {
-                    field(c.name).map(Place::Field)
+                    field(c.name)
                 } else {
                     let slice = (product >= together).then(|| Place::Slice(product / together));
                     product *= axis.count;
-                    slice.or_else(|| field(c.name).map(Place::Field))
+                    slice.or_else(|| field(c.name))
                 };
                 let Some(place) = place else {
                     if axis.count > 1 {
@@ -125,8 +128,8 @@ impl Layout {
             }
         }
         // The axes are the platform's reference point; for an unknown mechanism, they keep their names.
-        for (name, field) in names.iter().zip(POSITION_FIELDS).filter(|(name, _)| *name != NO_AXIS)
-        {
+        let shown = names.iter().zip(POSITION_FIELDS).enumerate();
+        for (i, (name, field)) in shown.filter(|(_, (name, _))| *name != NO_AXIS) {
             if layout.find(name).is_none() {
                 layout.coordinates.push(Coordinate {
                     name: name.clone(),
@@ -136,7 +139,7 @@ impl Layout {
                     },
                     home: None,
                     axis: axis(name),
-                    place: Place::Field(field.to_owned()),
+                    place: Place::Field(field.to_owned(), factor(i)),
                 });
             }
         }
@@ -155,7 +158,7 @@ impl Layout {
         manipulator: &Manipulator,
         names: impl Iterator<Item = &'a str>,
         axis: impl Fn(&str) -> Option<Axis>,
-        field: impl Fn(&str) -> Option<String>,
+        place: impl Fn(&str) -> Option<Place>,
     ) {
         let known = self.kind.sections().coordinates(manipulator);
         for c in &known {
@@ -167,13 +170,13 @@ impl Layout {
             let (Some(c), Some(axis)) = (known.iter().find(|c| c.name == name), axis(name)) else {
                 continue;
             };
-            match field(name) {
-                Some(field) => self.coordinates.push(Coordinate {
+            match place(name) {
+                Some(place) => self.coordinates.push(Coordinate {
                     name: name.to_owned(),
                     quantity: Some(c.quantity),
                     home: Some(c.home),
                     axis: Some(axis),
-                    place: Place::Field(field),
+                    place,
                 }),
                 None if axis.count > 1 => self.lost.push(name.to_owned()),
                 None => {}

@@ -188,11 +188,13 @@ impl<'a> Slices<'a> {
             return Content::Cells(cells, paint);
         }
         let range = |seen: &Seen| {
-            let field = match &self.layout.coordinates[seen.number].place {
-                Place::Field(field) => extents.iter().find(|extent| extent.field == *field),
-                Place::Slice(_) => None,
+            let (field, scale) = match &self.layout.coordinates[seen.number].place {
+                Place::Field(field, scale) => (Some(field), *scale),
+                Place::Slice(_) => (None, 1.0),
             };
-            field.map_or([0.0, 1.0], |e| [e.min / seen.factor, e.max / seen.factor])
+            let found = field.and_then(|field| extents.iter().find(|e| e.field == *field));
+            let value = |value: f64| value / scale / seen.factor;
+            found.map_or([0.0, 1.0], |e| [value(e.min), value(e.max)])
         };
         Content::Cloud(Cloud::new(range(a), range(b)))
     }
@@ -267,9 +269,9 @@ impl<'a> Slices<'a> {
         let axis = coordinate.axis.as_ref()?;
         match &coordinate.place {
             Place::Slice(divisor) => Some(Numbers::All(slice / divisor % axis.count)),
-            Place::Field(field) => {
+            Place::Field(field, scale) => {
                 let column = cloud.column(field)?;
-                Some(Numbers::Each(column.map(|value| nearest(axis, value)).collect()))
+                Some(Numbers::Each(column.map(|value| nearest(axis, value / scale)).collect()))
             }
         }
     }
@@ -281,7 +283,9 @@ impl<'a> Slices<'a> {
                 let axis = coordinate.axis.as_ref()?;
                 Some(Values::All(axis.value(slice / divisor % axis.count)))
             }
-            Place::Field(field) => Some(Values::Each(cloud.column(field)?.collect())),
+            Place::Field(field, scale) => {
+                Some(Values::Each(cloud.column(field)?.map(|value| value / scale).collect()))
+            }
         }
     }
 

@@ -123,7 +123,8 @@ fn boundaries_are_recorded_with_their_slices() {
         assert_eq!(lines.len(), rings.len());
         for (line, ring) in lines.iter().zip(&rings) {
             let at = slice["at"]["phi"].as_f64().unwrap();
-            let expected: Vec<[f64; 3]> = ring.iter().map(|&[x, y]| [at, y, x]).collect();
+            // The box is 4 rad long and 0.8 m wide: a metre is drawn as five.
+            let expected: Vec<_> = ring.iter().map(|&[x, y]| [at, 5.0 * y, 5.0 * x]).collect();
             let found: Vec<[f64; 3]> = line.points.iter().map(|p| [p.x, p.y, p.z]).collect();
             // JSON numbers may be rounded when read.
             let near = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-12);

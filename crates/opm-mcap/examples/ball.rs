@@ -38,6 +38,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 color: "distance".into(),
                 color_range: [0.0, radius as f64 * SPACING],
                 frame_id: "base".into(),
+                scale: [1.0; 3],
+                units: ["m", "m", "rad"],
             },
             mechanism_name: "ball.toml",
             mechanism: b"name = \"ball\"\n",

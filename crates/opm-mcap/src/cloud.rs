@@ -18,6 +18,8 @@ pub(crate) const DATA_KEY: u8 = 6 << 3 | 2;
 const STAMP_BYTES: usize = 32;
 /// The number of colours in the table: as many as bytes can tell apart along this colour map.
 const SHADES: usize = 256;
+/// A grey that is faint on dark and on light backgrounds.
+const GREY: u8 = 112;
 
 /// The values of a point of a cloud.
 ///
@@ -33,6 +35,8 @@ const SHADES: usize = 256;
 ///     color: "condition".into(),
 ///     color_range: [1.0, 20.0],
 ///     frame_id: "base".into(),
+///     scale: [1.0; 3],
+///     units: ["m", "m", "rad"],
 /// };
 /// assert_eq!(layout.columns(), ["x", "y", "xi", "S1", "condition"]);
 /// assert_eq!(layout.stride(), 4 * 4 + 4); // four float32 and four bytes of colour
@@ -49,6 +53,11 @@ pub struct CloudLayout {
     pub color_range: [f64; 2],
     /// The name of the frame that the points are in.
     pub frame_id: String,
+    /// What the values of each axis are multiplied by to be x, y and z: lengths beside angles may differ much. Without
+    /// scales, ones. Rows have the values themselves.
+    pub scale: [f64; 3],
+    /// The SI unit of each axis; empty for an axis without values.
+    pub units: [&'static str; 3],
 }
 
 impl CloudLayout {
@@ -85,6 +94,9 @@ impl CloudLayout {
         if !(low.is_finite() && high.is_finite() && low <= high) {
             return wrong(format!("colour range {low} to {high}, expected finite and ascending"));
         }
+        if !self.scale.iter().all(|factor| *factor > 0.0 && factor.is_finite()) {
+            return wrong(format!("scale {:?}, expected numbers above 0", self.scale));
+        }
         if self.frame_id.is_empty() {
             return wrong("the frame has no name".into());
         }
@@ -120,6 +132,8 @@ impl CloudLayout {
 ///     color: "z".into(),
 ///     color_range: [0.0, 1.0],
 ///     frame_id: "base".into(),
+///     scale: [1.0; 3],
+///     units: ["m", "m", "rad"],
 /// };
 /// let packer = Packer::new(&layout)?;
 /// let (mut points, mut line) = (vec![], vec![]);
@@ -139,6 +153,8 @@ pub struct Packer {
     color_column: usize,
     color_low: f64,
     color_scale: f64,
+    /// What each of the floats is multiplied by.
+    factors: Vec<f64>,
     shades: Vec<[u8; 4]>,
 }
 
@@ -153,8 +169,11 @@ impl Packer {
         let color_column =
             columns.iter().position(|name| *name == layout.color).unwrap_or(columns.len() - 1);
         let [low, high] = layout.color_range;
+        let mut factors = vec![1.0; 3 + layout.scalars.len()];
+        factors[..3].copy_from_slice(&layout.scale);
         Ok(Self {
             columns,
+            factors,
             floats: 3 + layout.scalars.len(),
             stride: layout.stride(),
             color_column,
@@ -191,8 +210,9 @@ impl Packer {
         let packed = points[first..].chunks_exact_mut(self.stride);
         for (row, point) in rows.chunks_exact(columns).zip(packed) {
             let (packed, rgba) = point.split_at_mut(4 * self.floats);
-            for (value, bytes) in row.iter().zip(packed.as_chunks_mut().0) {
-                let value = *value as f32;
+            let floats = row.iter().zip(&self.factors).zip(packed.as_chunks_mut().0);
+            for ((value, factor), bytes) in floats {
+                let value = (value * factor) as f32;
                 finite &= value.is_finite();
                 *bytes = value.to_le_bytes();
             }
@@ -231,10 +251,11 @@ impl Packer {
             there += more;
         }
         let Some(column) = column else { return Ok(()) };
+        let factor = self.factors.get(column).copied().unwrap_or(1.0);
         let mut finite = true;
         let packed = points[start..].chunks_exact_mut(self.stride);
         for (&value, point) in values.iter().zip(packed) {
-            let single = value as f32;
+            let single = (value * factor) as f32;
             finite &= single.is_finite();
             let (floats, rgba) = point.split_at_mut(4 * self.floats);
             if let Some(bytes) = floats.as_chunks_mut().0.get_mut(column) {
@@ -332,6 +353,28 @@ impl CloudEncoder {
         self.buffer.extend_from_slice(points);
     }
 
+    /// The range of x, y and z of the points; `None` without any.
+    pub fn bounds(&self) -> Option<[[f64; 2]; 3]> {
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for point in self.buffer[self.head_room..].chunks_exact(self.packer.stride) {
+            for ([low, high], bytes) in bounds.iter_mut().zip(point.as_chunks().0) {
+                let value = f64::from(f32::from_le_bytes(*bytes));
+                (*low, *high) = (low.min(value), high.max(value));
+            }
+        }
+        (self.len() > 0).then_some(bounds)
+    }
+
+    /// Moves the colours of the points half of the way to grey.
+    pub fn fade(&mut self) {
+        for point in self.buffer[self.head_room..].chunks_exact_mut(self.packer.stride) {
+            let (_, rgba) = point.split_at_mut(4 * self.packer.floats);
+            for color in &mut rgba[..3] {
+                *color = (*color / 2) + (GREY / 2);
+            }
+        }
+    }
+
     /// The cloud as an encoded message stamped with `time`, in nanoseconds.
     pub fn message(&mut self, time: Timestamp) -> Result<&[u8], RecordError> {
         self.template.timestamp = Some(time);
@@ -378,6 +421,8 @@ pub(crate) fn encode_colored(
         color: POSITION_FIELDS[0].into(),
         color_range: [0.0, 0.0],
         frame_id: frame_id.into(),
+        scale: [1.0; 3],
+        units: [""; 3],
     };
     let mut data = Vec::with_capacity(points.len() * plain.stride());
     for ColoredPoint { at, rgba } in points {
@@ -427,6 +472,8 @@ mod tests {
                 color: color.into(),
                 color_range: [0.0, 5.0],
                 frame_id: "base".into(),
+                scale: [1.0, 1.0, 0.2],
+                units: ["m", "m", "rad"],
             };
             let packer = Packer::new(&layout).unwrap();
             let row: Vec<f64> = (0..packer.columns()).map(|i| 0.3 + i as f64).collect();

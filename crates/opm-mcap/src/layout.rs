@@ -22,8 +22,11 @@ mod plots;
 mod rerun;
 
 use crate::reader::{Recording, read};
+use crate::scene::end_labels;
 use crate::trajectory::{BODIES_TOPIC, VIOLATIONS_TOPIC};
-use crate::workspace::{BOUNDARY_TOPIC, OVERVIEW_TOPIC, SLICES_TOPIC};
+use crate::workspace::{
+    AXES_TOPIC, BOUNDARY_POINTS_TOPIC, BOUNDARY_TOPIC, OVERVIEW_TOPIC, SLICES_TOPIC,
+};
 use crate::{Message, Metadata, ReadError};
 use extent::{Extent, Frames};
 use plots::{Flats, Plot};
@@ -65,6 +68,8 @@ struct View {
     /// The topics of the recording that are shown and those that are not, with the size of points, pixels.
     shown: Vec<(String, u32)>,
     hidden: Vec<String>,
+    /// The values at the ends of its axes, with their places, where the axes are those of a cloud.
+    labels: Vec<([f64; 3], String)>,
 }
 
 /// The size of points of an overview, of a slice, and of what has none, pixels.
@@ -119,28 +124,50 @@ fn workspace(recording: &Recording, frame: &str) -> Vec<View> {
     };
     let [x, y, z] = ["x", "y", "z"].map(range);
     let extent = Extent { low: [x[0], y[0], z[0]], high: [x[1], y[1], z[1]] };
-    let boundary = || recording.topic(BOUNDARY_TOPIC).map(|topic| topic.name.clone());
-    let view = |title: &str, topic: &str, size, hidden: &str| View {
-        title: title.to_owned(),
-        frame: frame.to_owned(),
-        extent,
-        shown: [(topic.to_owned(), size)]
-            .into_iter()
-            .chain(boundary().map(|name| (name, NO_POINTS)))
-            .collect(),
-        hidden: vec![hidden.to_owned()],
+    let labels = labels(recording, &extent);
+    // In a view, and in none.
+    let boundary = recording.topic(BOUNDARY_TOPIC).map(|topic| topic.name.clone());
+    let dots = recording.topic(BOUNDARY_POINTS_TOPIC).map(|topic| topic.name.clone());
+    let axes = recording.topic(AXES_TOPIC).map(|topic| topic.name.clone());
+    let view = |title: &str, topic: &str, size, hidden: &str, with_boundary: bool| {
+        let lines = boundary.iter().cloned();
+        let (on, off) =
+            if with_boundary { (lines.collect(), vec![]) } else { (vec![], lines.collect()) };
+        let shown = [(topic.to_owned(), size)].into_iter();
+        View {
+            title: title.to_owned(),
+            frame: frame.to_owned(),
+            extent,
+            shown: shown
+                .chain(axes.iter().cloned().chain(on).map(|name| (name, NO_POINTS)))
+                .collect(),
+            hidden: [hidden.to_owned()].into_iter().chain(off).chain(dots.clone()).collect(),
+            labels: labels.clone(),
+        }
     };
-    let overview = View {
-        shown: vec![(OVERVIEW_TOPIC.to_owned(), OVERVIEW_POINTS)],
-        hidden: [Some(SLICES_TOPIC.to_owned()), boundary()].into_iter().flatten().collect(),
-        ..view("Overview", OVERVIEW_TOPIC, OVERVIEW_POINTS, SLICES_TOPIC)
-    };
-    let slices = recording.topic(SLICES_TOPIC).is_some_and(|topic| topic.messages > 1);
-    if slices {
-        vec![overview, view("Slice", SLICES_TOPIC, SLICE_POINTS, OVERVIEW_TOPIC)]
-    } else {
-        vec![view("Workspace", OVERVIEW_TOPIC, OVERVIEW_POINTS, SLICES_TOPIC)]
+    match recording.topic(SLICES_TOPIC) {
+        Some(slices) if slices.messages > 1 => vec![
+            view("Overview", OVERVIEW_TOPIC, OVERVIEW_POINTS, SLICES_TOPIC, false),
+            view("Slice", SLICES_TOPIC, SLICE_POINTS, OVERVIEW_TOPIC, true),
+        ],
+        _ => vec![view("Workspace", OVERVIEW_TOPIC, OVERVIEW_POINTS, SLICES_TOPIC, true)],
     }
+}
+
+/// The values at the ends of the axes of a cloud, before these were scaled.
+fn labels(recording: &Recording, extent: &Extent) -> Vec<([f64; 3], String)> {
+    let clouds = recording.metadata("clouds");
+    let list = |key: &str| -> Vec<&str> {
+        let text = clouds.and_then(|clouds| clouds.get(key));
+        text.map(|text| text.split(',').collect()).unwrap_or_default()
+    };
+    let (names, units, scales) = (list("axes"), list("units"), list("scale"));
+    let bounds = std::array::from_fn(|i| [extent.low[i], extent.high[i]]);
+    end_labels(bounds, |i| {
+        let scale = scales.get(i).and_then(|text| text.parse().ok()).filter(|scale| *scale > 0.0);
+        let text = |texts: &[&'_ str]| texts.get(i).copied().unwrap_or_default().to_owned();
+        (text(&names), text(&units), scale.unwrap_or(1.0))
+    })
 }
 
 /// A motion: the mechanism.
@@ -153,5 +180,6 @@ fn motion(recording: &Recording, (frame, extent): (String, Extent)) -> Vec<View>
         extent,
         shown: scene.iter().map(|topic| (topic.name.clone(), NO_POINTS)).collect(),
         hidden: bodies.map(|topic| topic.name.clone()).collect(),
+        labels: Vec::new(),
     }]
 }

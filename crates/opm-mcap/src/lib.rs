@@ -17,6 +17,8 @@
 //!     color: "xi".into(),
 //!     color_range: [0.0, 0.5],
 //!     frame_id: "base".into(),
+//!     scale: [1.0; 3],
+//!     units: ["m", "m", "rad"],
 //! };
 //! let workspace = Workspace {
 //!     layout,

@@ -14,6 +14,7 @@ use crate::cloud::COLOR_FIELDS;
 use crate::decode::Cloud;
 use crate::flat::Flat;
 use crate::shard::{self, RUNS_SCHEMA};
+use crate::workspace::BOUNDARY_POINTS_TOPIC;
 use crate::{Metadata, ReadError};
 
 /// The longest record or chunk that is read. Those of recordings are a quarter of it; a longer one in a
@@ -299,7 +300,10 @@ impl Contents {
         let message = Message { topic: &topic, schema: &schema.name, time, data, flat };
         if let Some(cloud) = message.cloud()? {
             *channel.points.get_or_insert(0) += cloud.len() as u64;
-            self.extend(&cloud);
+            // A boundary is between points of the grid, and has no values of its own.
+            if &*topic != BOUNDARY_POINTS_TOPIC {
+                self.extend(&cloud);
+            }
         }
         visit(&message)
     }

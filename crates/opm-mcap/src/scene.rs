@@ -4,11 +4,11 @@
 use foxglove::messages::line_primitive::Type as LineType;
 use foxglove::messages::{
     Color, CubePrimitive, CylinderPrimitive, KeyValuePair, LinePrimitive, Point3, Pose, Quaternion,
-    SceneEntity, SceneUpdate, SpherePrimitive, Timestamp, Vector3,
+    SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp, Vector3,
 };
 
-use crate::RecordError;
 use crate::cloud::{ColoredPoint, encode_colored};
+use crate::{CloudLayout, RecordError};
 
 /// A body of a mechanism, drawn in its own frame.
 ///
@@ -175,8 +175,10 @@ pub type ClosedLine = Vec<[f64; 3]>;
 
 /// The width of a line, in pixels of a screen.
 const LINE_PIXELS: f64 = 2.5;
-/// The colour of lines: it is seen on the dark background of viewers, and on every colour of points.
-const LINE_COLOR: [f64; 4] = [1.0, 1.0, 1.0, 1.0];
+/// The colour of lines: it is seen on dark and light backgrounds, and on every colour of points.
+const LINE_COLOR: [f64; 4] = [0.9, 0.1, 0.4, 1.0];
+/// Points on each side of a ring, so that they look like a line.
+const DOTS: usize = 12;
 
 /// The boundary of a set, which replaces the one before.
 pub(crate) fn lines(frame_id: &str, time: Timestamp, rings: &[ClosedLine]) -> SceneUpdate {
@@ -198,6 +200,118 @@ pub(crate) fn lines(frame_id: &str, time: Timestamp, rings: &[ClosedLine]) -> Sc
         ..SceneEntity::default()
     };
     SceneUpdate { deletions: Vec::new(), entities: vec![entity] }
+}
+
+/// The boundary of a set as points, for viewers that show points only: an encoded `foxglove.PointCloud`.
+pub(crate) fn dots(
+    frame_id: &str,
+    time: Timestamp,
+    rings: &[ClosedLine],
+) -> Result<Vec<u8>, RecordError> {
+    let rgba = LINE_COLOR.map(|c| (c * 255.0).round() as u8);
+    let mut points = Vec::new();
+    for ring in rings {
+        for (from, to) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            points.extend((0..DOTS).map(|i| {
+                let share = i as f64 / DOTS as f64;
+                let at = std::array::from_fn(|k| from[k] + share * (to[k] - from[k]));
+                ColoredPoint { at, rgba }
+            }));
+        }
+    }
+    encode_colored(frame_id, time, &points)
+}
+
+/// The colour of the box round points and of its labels, and the height of these, pixels.
+const BOX_COLOR: [f64; 4] = [0.55, 0.55, 0.55, 1.0];
+const LABEL_PIXELS: f64 = 14.0;
+
+/// A box round points, with the values of the axes at its ends: those before they were scaled.
+pub(crate) fn labelled_box(
+    layout: &CloudLayout,
+    bounds: [[f64; 2]; 3],
+    time: Timestamp,
+) -> SceneUpdate {
+    let corner = |bits: usize| -> [f64; 3] { std::array::from_fn(|i| bounds[i][bits >> i & 1]) };
+    // Of the edges along an axis, each starts where that axis is at its low end.
+    let edges = (0..3).flat_map(|i| {
+        let starts = (0..8).filter(move |bits| bits >> i & 1 == 0);
+        starts.flat_map(move |bits| [bits, bits | 1 << i])
+    });
+    let edges = LinePrimitive {
+        r#type: LineType::LineList as i32,
+        pose: Some(along([0.0; 3], [0.0, 0.0, 1.0])),
+        thickness: 1.0,
+        scale_invariant: true,
+        points: edges.map(corner).map(|[x, y, z]| Point3 { x, y, z }).collect(),
+        color: color(BOX_COLOR),
+        colors: vec![],
+        indices: vec![],
+    };
+    let labels = end_labels(bounds, |i| {
+        (layout.axes[i].clone(), layout.units[i].to_owned(), layout.scale[i])
+    });
+    let labels = labels.into_iter().map(|(at, text)| TextPrimitive {
+        pose: Some(along(at, [0.0, 0.0, 1.0])),
+        billboard: true,
+        font_size: LABEL_PIXELS,
+        scale_invariant: true,
+        color: color(BOX_COLOR),
+        text,
+    });
+    let entity = SceneEntity {
+        timestamp: Some(time),
+        frame_id: layout.frame_id.clone(),
+        id: "axes".to_owned(),
+        lines: vec![edges],
+        texts: labels.collect(),
+        ..SceneEntity::default()
+    };
+    SceneUpdate { deletions: Vec::new(), entities: vec![entity] }
+}
+
+/// The distance of labels from the box, as a share of its extent.
+const BESIDE: f64 = 0.12;
+
+/// The values at the ends of the axes with their places: x in front of the box, y to its right, z to its left.
+/// `axis` gives the name, the unit, and what the values were multiplied by; an axis without a unit has no labels.
+pub(crate) fn end_labels(
+    bounds: [[f64; 2]; 3],
+    axis: impl Fn(usize) -> (String, String, f64),
+) -> Vec<([f64; 3], String)> {
+    // For each axis, whether the other two are at their high ends, and which of them moves the labels away from the box.
+    const EDGES: [([usize; 3], usize); 3] = [([0, 0, 0], 1), ([1, 0, 0], 0), ([0, 0, 0], 0)];
+    let mut labels = Vec::new();
+    for (i, (at, away)) in EDGES.into_iter().enumerate() {
+        let (name, unit, scale) = axis(i);
+        let ends = match bounds[i] {
+            _ if unit.is_empty() => continue,
+            [low, high] if low < high => vec![low, high],
+            [low, _] => vec![low],
+        };
+        for end in ends {
+            let mut place: [f64; 3] = std::array::from_fn(|k| bounds[k][at[k]]);
+            place[i] = end;
+            let [low, high] = bounds[away];
+            let outward = if at[away] == 1 { 1.0 } else { -1.0 };
+            place[away] += outward * BESIDE * (high - low);
+            labels.push((place, format!("{name} = {} {unit}", short(end / scale))));
+        }
+    }
+    labels
+}
+
+/// A value with three digits.
+fn short(value: f64) -> String {
+    let digits = 2.0 - value.abs().log10().floor();
+    if !(0.0..=6.0).contains(&digits) {
+        return if value == 0.0 { "0".to_owned() } else { format!("{value:.2e}") };
+    }
+    let text = format!("{value:.*}", digits as usize);
+    if !text.contains('.') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A body's surface as an encoded `foxglove.PointCloud`.

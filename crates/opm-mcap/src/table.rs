@@ -39,6 +39,8 @@ pub enum TableFormat {
 ///     color: "xi".into(),
 ///     color_range: [0.0, 1.0],
 ///     frame_id: "base".into(),
+///     scale: [1.0; 3],
+///     units: ["m", "m", "rad"],
 /// };
 /// let file = PartialFile::create(&path)?;
 /// let (points, run) = (1, Metadata::new());

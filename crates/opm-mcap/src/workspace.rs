@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `/workspace/cloud` | one: every k-th point, at most [`MAX_OVERVIEW_POINTS`], at the start |
 //! | `/workspace/slices` | one for each slice, [`SLICE_STEP`] apart; together they hold every point |
+//! | `/workspace/axes` | one `foxglove.SceneUpdate`: a box round the points, with the values at its ends |
 //! | `/workspace/boundary` | `foxglove.SceneUpdate`, if the boundary is known: its closed lines, with their slice |
+//! | `/workspace/boundary_points` | `foxglove.PointCloud`: the same lines as points, for viewers without scenes |
 //!
 //! A viewer shows the newest message of a topic. So the overview, which comes first, is always in view, and
-//! moving the playhead walks through the slices. A slice without points has an empty message: otherwise the
+//! moving the playhead walks through the slices. Beside slices, its colours are faint. A slice without points has an empty message: otherwise the
 //! slice before it would stay in view. A slice with more points than [`MAX_MESSAGE_POINTS`] continues in
 //! further messages, each [`PART_STEP`] after the one before.
 //!
@@ -24,15 +26,19 @@ use foxglove::messages::{PointCloud, SceneUpdate, Timestamp};
 
 use crate::cloud::CloudEncoder;
 use crate::log::{Log, Topic};
-use crate::scene::{ClosedLine, lines};
+use crate::scene::{ClosedLine, dots, labelled_box, lines};
 use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
 
 /// The topic of the overview.
 pub const OVERVIEW_TOPIC: &str = "/workspace/cloud";
 /// The topic of the slices.
 pub const SLICES_TOPIC: &str = "/workspace/slices";
+/// The topic of the labelled box round the points.
+pub const AXES_TOPIC: &str = "/workspace/axes";
 /// The topic of the boundary.
 pub const BOUNDARY_TOPIC: &str = "/workspace/boundary";
+/// The topic of the boundary as points.
+pub const BOUNDARY_POINTS_TOPIC: &str = "/workspace/boundary_points";
 /// The time of the first message, nanoseconds: one second, since viewers take zero for a time that is not set.
 pub const START: u64 = 1_000_000_000;
 /// The time between slices, nanoseconds.
@@ -112,6 +118,7 @@ impl Plan {
 /// Boundaries that are still to be written.
 struct Boundary {
     topic: Topic,
+    points: Topic,
     left: std::vec::IntoIter<(u64, Vec<ClosedLine>)>,
 }
 
@@ -136,7 +143,7 @@ pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     plan: Plan,
     overview: Topic,
     slices: Topic,
-    frame_id: String,
+    layout: CloudLayout,
     boundary: Option<Boundary>,
     /// `None` while the overview is being gathered.
     open: Option<Open>,
@@ -173,9 +180,9 @@ impl<W: Sink> WorkspaceRecorder<W> {
         log.metadata("clouds", &describe(layout, &plan))?;
         let overview = log.topic::<PointCloud>(OVERVIEW_TOPIC)?;
         let slices = log.topic::<PointCloud>(SLICES_TOPIC)?;
-        let frame_id = layout.frame_id.clone();
+        let layout = layout.clone();
         let (boundary, open) = (None, None);
-        Ok(Self { log, encoder, plan, overview, slices, frame_id, boundary, open, pushed: 0 })
+        Ok(Self { log, encoder, plan, overview, slices, layout, boundary, open, pushed: 0 })
     }
 
     /// The k of the overview, to which points number 0, k, 2k, ... belong.
@@ -272,7 +279,8 @@ impl<W: Sink> WorkspaceRecorder<W> {
             first = slice + 1;
         }
         let topic = self.log.topic::<SceneUpdate>(BOUNDARY_TOPIC)?;
-        self.boundary = Some(Boundary { topic, left: lines.into_iter() });
+        let points = self.log.topic::<PointCloud>(BOUNDARY_POINTS_TOPIC)?;
+        self.boundary = Some(Boundary { topic, points, left: lines.into_iter() });
         Ok(())
     }
 
@@ -366,6 +374,18 @@ impl<W: Sink> WorkspaceRecorder<W> {
         if found != expected {
             return Err(RecordError::Count { what: "overview", found, expected });
         }
+        if let Some(bounds) = self.encoder.bounds() {
+            let mut topic = self.log.topic::<SceneUpdate>(AXES_TOPIC)?;
+            let mut message = Vec::new();
+            labelled_box(&self.layout, bounds, stamp(START)?)
+                .encode(&mut message)
+                .map_err(|reason| RecordError::Layout(format!("the axes: {reason}")))?;
+            self.log.message(&mut topic, START, &message)?;
+        }
+        if self.plan.slices > 1 {
+            // Otherwise it hides the slice, which has the same colours.
+            self.encoder.fade();
+        }
         self.log.message(&mut self.overview, START, self.encoder.message(stamp(START)?)?)?;
         self.encoder.clear();
         Ok(*self.open.insert(Open { slice: 0, parts: 0 }))
@@ -389,10 +409,12 @@ impl<W: Sink> WorkspaceRecorder<W> {
         let Some(boundary) = &mut self.boundary else { return Ok(()) };
         let Some(rings) = boundary.at(slice) else { return Ok(()) };
         let mut message = Vec::new();
-        lines(&self.frame_id, stamp(time)?, &rings)
+        lines(&self.layout.frame_id, stamp(time)?, &rings)
             .encode(&mut message)
             .map_err(|reason| RecordError::Layout(format!("the boundary: {reason}")))?;
-        self.log.message(&mut boundary.topic, time, &message)
+        self.log.message(&mut boundary.topic, time, &message)?;
+        let points = dots(&self.layout.frame_id, stamp(time)?, &rings)?;
+        self.log.message(&mut boundary.points, time, &points)
     }
 
     /// Writes the gathered points as the open slice's next message.
@@ -430,6 +452,8 @@ fn describe(layout: &CloudLayout, plan: &Plan) -> Metadata {
     let [low, high] = layout.color_range;
     [
         ("axes", layout.axes.join(",")),
+        ("units", layout.units.join(",")),
+        ("scale", layout.scale.map(|factor| factor.to_string()).join(",")),
         ("scalars", layout.scalars.join(",")),
         ("color", layout.color.clone()),
         ("color_map", "viridis".into()),

@@ -5,7 +5,9 @@ mod common;
 use common::{Seen, bare_layout, clouds, file, layout, record, recorded, row, rows, workspace};
 use foxglove::Decode;
 use foxglove::messages::{LinePrimitive, SceneUpdate};
-use opm_mcap::workspace::{BOUNDARY_TOPIC, MAX_MESSAGE_POINTS, OVERVIEW_TOPIC, PART_STEP};
+use opm_mcap::workspace::{
+    AXES_TOPIC, BOUNDARY_TOPIC, MAX_MESSAGE_POINTS, OVERVIEW_TOPIC, PART_STEP,
+};
 use opm_mcap::workspace::{SLICE_STEP, SLICES_TOPIC, START, slice_at};
 use opm_mcap::{ReadError, RecordError, WorkspaceRecorder};
 use std::io::Cursor;
@@ -35,7 +37,11 @@ fn everything_comes_back() {
     let schema = "foxglove.PointCloud";
     assert_eq!(
         topics,
-        [(OVERVIEW_TOPIC, schema, 1, Some(15)), (SLICES_TOPIC, schema, 7, Some(15))]
+        [
+            (AXES_TOPIC, "foxglove.SceneUpdate", 1, None),
+            (OVERVIEW_TOPIC, schema, 1, Some(15)),
+            (SLICES_TOPIC, schema, 7, Some(15)),
+        ]
     );
     let [attachment] = &recording.attachments[..] else { panic!("one attachment") };
     assert_eq!((&*attachment.name, &*attachment.media_type), ("test.toml", "application/toml"));
@@ -316,5 +322,58 @@ fn boundaries_are_shown_from_their_slices_on() {
         let sink = Cursor::new(&mut bytes);
         let mut recorder = WorkspaceRecorder::new(sink, &workspace(layout(), 0, 5)).unwrap();
         assert!(matches!(recorder.boundary(wrong), Err(RecordError::Slice { .. })));
+    }
+}
+
+/// An axis in radians is drawn at a fifth; the box round the points says what the values are. Beside slices, the overview
+/// is nearer to grey than they are.
+#[test]
+fn a_box_tells_the_values_of_scaled_axes() {
+    let directory = tempfile::tempdir().unwrap();
+    let layout = opm_mcap::CloudLayout {
+        scale: [1.0, 1.0, 0.2],
+        color: "x".into(),
+        color_range: [-0.1, 0.3],
+        scalars: vec!["theta11".into()],
+        ..layout()
+    };
+    let path = directory.path().join("w.mcap");
+    let mut recorder = WorkspaceRecorder::create(&path, &workspace(layout, 2, 2)).unwrap();
+    let rows = [[-0.1, 0.0, -1.5, 7.0], [0.3, 0.2, 1.25, 8.0]];
+    recorder.overview(&rows.concat()).unwrap();
+    recorder.push(0, &rows[0]).unwrap();
+    recorder.push(1, &rows[1]).unwrap();
+    recorder.finish(&record([])).unwrap();
+    let (mut at, mut colors, mut scenes) = (vec![], vec![], vec![]);
+    let recording = opm_mcap::read(&path, |message| -> Result<(), ReadError> {
+        if let Some(cloud) = message.cloud()? {
+            let column = |name: &str| cloud.column(name).unwrap().collect::<Vec<_>>();
+            at.push((column("z"), column("theta11")));
+            colors.push(["red", "green", "blue"].map(|name| column(name)[0]));
+        } else {
+            scenes.push(SceneUpdate::decode(message.data).unwrap());
+        }
+        Ok(())
+    })
+    .unwrap();
+    let single = |value: f64| f64::from(value as f32);
+    assert_eq!(at[0], ([-1.5 * 0.2, 1.25 * 0.2].map(single).to_vec(), vec![7.0, 8.0]));
+    assert_eq!(recording.metadata("clouds").unwrap()["scale"], "1,1,0.2");
+    let spread = |color: &[f64; 3]| {
+        color.iter().copied().fold(f64::MIN, f64::max)
+            - color.iter().copied().fold(f64::MAX, f64::min)
+    };
+    assert!(spread(&colors[0]) < 0.6 * spread(&colors[1]), "{colors:?}");
+    let [scene] = &scenes[..] else { panic!("{scenes:?}") };
+    let entity = &scene.entities[0];
+    let texts: Vec<&str> = entity.texts.iter().map(|text| &*text.text).collect();
+    let expected =
+        ["x = -0.1 m", "x = 0.3 m", "y = 0 m", "y = 0.2 m", "xi = -1.5 rad", "xi = 1.25 rad"];
+    assert_eq!(texts, expected);
+    assert_eq!(entity.lines[0].points.len(), 24, "twelve edges");
+    for (i, point) in entity.lines[0].points.iter().enumerate() {
+        let is_near = |value: f64, ends: [f64; 2]| ends.iter().any(|e| (e - value).abs() < 1e-6);
+        assert!(is_near(point.x, [-0.1, 0.3]) && is_near(point.y, [0.0, 0.2]), "{i}");
+        assert!(is_near(point.z, [-0.3, 0.25]), "{i}");
     }
 }

@@ -47,6 +47,27 @@ impl NamedColumn {
     }
 }
 
+/// How the axes of a cloud are scaled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AxisScale {
+    /// Axes of another quantity than the first are multiplied, so that the extents are comparable.
+    #[default]
+    Comparable,
+    /// Metres and radians, as they are.
+    None,
+}
+
+impl AxisScale {
+    /// All of them, with their names.
+    pub const NAMED: [(&'static str, Self); 2] =
+        [("comparable", Self::Comparable), ("none", Self::None)];
+
+    /// The scale of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMED.into_iter().find(|named| named.0 == name).map(|named| named.1)
+    }
+}
+
 /// The values of the points that are requested, by name. Defaults suit the workspace.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PointOptions {
@@ -56,6 +77,8 @@ pub struct PointOptions {
     pub scalars: Option<Vec<String>>,
     /// The value that the colour shows.
     pub color: Option<String>,
+    /// How x, y and z are scaled in a recording; tables have the values themselves.
+    pub scale: AxisScale,
 }
 
 /// Requested values, checked: the points of the kind of workspace have them.
@@ -66,6 +89,7 @@ pub struct PointChoice {
     axes: Option<[NamedColumn; 3]>,
     scalars: Option<Vec<NamedColumn>>,
     color: Option<NamedColumn>,
+    scale: AxisScale,
 }
 
 impl PointOptions {
@@ -116,7 +140,7 @@ impl PointOptions {
             [a, b, c] if a != b && b != c && a != c => Some([axis(a)?, axis(b)?, axis(c)?]),
             given => return Err(RequestError::CloudAxes { given: given.to_vec(), kind }),
         };
-        Ok(PointChoice { kind, known, axes, scalars, color })
+        Ok(PointChoice { kind, known, axes, scalars, color, scale: self.scale })
     }
 }
 
@@ -205,6 +229,8 @@ pub struct PointColumns {
     pub color: NamedColumn,
     /// Whether the scalars were requested rather than chosen by default.
     pub(crate) scalars_chosen: bool,
+    /// How the axes are scaled.
+    pub(crate) scale: AxisScale,
 }
 
 /// Stores the value that the colour shows as a number, too, so that pictures of the recording have it.
@@ -223,7 +249,7 @@ fn no_axis() -> NamedColumn {
 impl PointColumns {
     /// The values of poses of a grid; defaults suit the grid.
     pub fn of_poses(choice: PointChoice, grid: &Grid) -> Self {
-        let tallest = tallest(grid);
+        let (tallest, scale) = (tallest(grid), choice.scale);
         let axis = |i: usize| NamedColumn::new(&grid.axes()[i].name, Column::Coordinate(i));
         let asked = choice.color.clone();
         let color = choice.color.unwrap_or_else(|| axis(tallest));
@@ -248,12 +274,12 @@ impl PointColumns {
         let mut scalars = choice.scalars.unwrap_or_default();
         let stored = if scalars_chosen { asked } else { Some(color.clone()) };
         store_color(&axes, &mut scalars, stored);
-        Self { axes, scalars, color, scalars_chosen }
+        Self { axes, scalars, color, scalars_chosen, scale }
     }
 
     /// The values of the points of a set in memory; defaults suit the set.
     pub fn of_set(choice: PointChoice, set: &GridSet) -> Self {
-        let PointChoice { kind, known, .. } = choice;
+        let PointChoice { kind, known, scale, .. } = choice;
         let varying = set.varying();
         let axis = |i: usize| NamedColumn::new(&set.axes()[i].axis.name, Column::Coordinate(i));
         // Varying coordinates come first.
@@ -286,7 +312,7 @@ impl PointColumns {
         });
         let stored = if scalars_chosen { asked } else { Some(color.clone()) };
         store_color(&axes, &mut scalars, stored);
-        Self { axes, scalars, color, scalars_chosen }
+        Self { axes, scalars, color, scalars_chosen, scale }
     }
 
     /// The values of a row: axes, scalars, and the colour if it is not among these.

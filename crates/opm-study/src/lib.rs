@@ -85,7 +85,7 @@ mod tracker;
 mod workspace;
 
 pub use analysis::{Analysis, Shape};
-pub use columns::{Column, NamedColumn, PointChoice, PointColumns, PointOptions};
+pub use columns::{AxisScale, Column, NamedColumn, PointChoice, PointColumns, PointOptions};
 #[cfg(feature = "recording")]
 pub use error::{MissingShards, ShardError, ShardProblem};
 pub use error::{RequestError, RequestOption, SetPart, Spelling, StudyError};

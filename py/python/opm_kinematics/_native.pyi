@@ -1293,6 +1293,7 @@ class Sweep:
         axes: Sequence[str] | None = None,
         scalars: Sequence[str] | None = None,
         color: str | None = None,
+        scale: Literal["comparable", "none"] = "comparable",
     ) -> None:
         """Record the points as ``opm workspace -o`` does, byte for byte.
 
@@ -1312,6 +1313,9 @@ class Sweep:
             the ``share`` of orientations in which they are reached.
         color : str, optional
             The value that the colour shows.
+        scale : {"comparable", "none"}, optional
+            The scale of the cloud's axes in an MCAP file: those of another unit than the first are multiplied by 1, 2 or 5
+            times a power of ten, so that the extents are comparable, or no axis is.
 
         Raises
         ------
@@ -1325,6 +1329,7 @@ class Sweep:
         axes: Sequence[str] | None = None,
         scalars: Sequence[str] | None = None,
         color: str | None = None,
+        scale: Literal["comparable", "none"] = "comparable",
     ) -> None:
         """Like :meth:`write` for a path that ends in ``.mcap``.
 
@@ -1337,6 +1342,8 @@ class Sweep:
         scalars : sequence of str, optional
             As for :meth:`write`.
         color : str, optional
+            As for :meth:`write`.
+        scale : {"comparable", "none"}, optional
             As for :meth:`write`.
         """
 

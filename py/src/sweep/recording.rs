@@ -5,7 +5,7 @@ use crate::arguments;
 use crate::error::{request, study, wrong};
 use crate::interrupt;
 use opm_study::recording::{Attachment, Findings, WorkspaceRecording};
-use opm_study::{Analysis, PointOptions};
+use opm_study::{Analysis, AxisScale, PointOptions};
 use opm_workspace::Progress;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -30,12 +30,15 @@ impl Sweep {
     ///     the ``share`` of orientations in which they are reached.
     /// color : str, optional
     ///     The value that the colour shows.
+    /// scale : {"comparable", "none"}, optional
+    ///     The scale of the cloud's axes in an MCAP file: those of another unit than the first are multiplied by 1, 2 or 5
+    ///     times a power of ten, so that the extents are comparable, or no axis is.
     ///
     /// Raises
     /// ------
     /// OpmError
     ///     A name is unknown, or the file cannot be written.
-    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None, scale = "comparable"))]
     fn write(
         &self,
         py: Python<'_>,
@@ -43,9 +46,13 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::cloud_axes)] axes: Option<Vec<String>>,
         #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
+        scale: &str,
     ) -> PyResult<()> {
         let (of, workspace) = (self.of.get(), &self.workspace);
-        let points = PointOptions { axes: axes.unwrap_or_default(), scalars, color };
+        let scale = AxisScale::from_name(scale).ok_or_else(|| {
+            wrong(format!("scale {scale:?}, expected \"comparable\" or \"none\""))
+        })?;
+        let points = PointOptions { axes: axes.unwrap_or_default(), scalars, color, scale };
         let points = points.choose(workspace.kind(), workspace.manipulator());
         let points = points.map_err(|error| request(&error))?;
         let name = of.file_name();
@@ -74,7 +81,9 @@ impl Sweep {
     ///     As for :meth:`write`.
     /// color : str, optional
     ///     As for :meth:`write`.
-    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None))]
+    /// scale : {"comparable", "none"}, optional
+    ///     As for :meth:`write`.
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None, scale = "comparable"))]
     fn write_mcap(
         &self,
         py: Python<'_>,
@@ -82,11 +91,12 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::cloud_axes)] axes: Option<Vec<String>>,
         #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
+        scale: &str,
     ) -> PyResult<()> {
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
             let path = path.display();
             return Err(wrong(format!("{path}, expected a name that ends in .mcap")));
         }
-        self.write(py, path, axes, scalars, color)
+        self.write(py, path, axes, scalars, color, scale)
     }
 }

@@ -64,7 +64,7 @@ impl Layout {
     }
 
     fn view(&self, view: &View) -> Value {
-        let View { title, frame, extent, shown, hidden } = view;
+        let View { title, frame, extent, shown, hidden, .. } = view;
         let (centre, radius) = (extent.centre(), extent.radius());
         let on = |(name, size): &(String, u32)| {
             let settings = match size {
@@ -173,12 +173,13 @@ fn titled(mut config: Value, title: &str) -> Value {
 }
 
 fn split(direction: &str, first: Value, second: Value, percentage: f64) -> Value {
-    json!({
-        "first": first,
-        "second": second,
-        "direction": direction,
-        "splitPercentage": percentage,
-    })
+    let parts = [
+        ("first", first),
+        ("second", second),
+        ("direction", direction.into()),
+        ("splitPercentage", percentage.into()),
+    ];
+    parts.into_iter().map(|(key, part)| (key.to_owned(), part)).collect()
 }
 
 /// Panels of the same size; `None` without any.

@@ -3,11 +3,12 @@
 use super::plots::{Plot, columns};
 use super::{Layout, View};
 use crate::trajectory::{BODIES_TOPIC, FRAMES_TOPIC, SCENE_TOPIC, VIOLATIONS_TOPIC};
+use crate::workspace::{AXES_TOPIC, BOUNDARY_POINTS_TOPIC, BOUNDARY_TOPIC};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The place of the camera from the middle, in radii of what is shown.
-const FROM: [f64; 3] = [1.3, -1.3, 0.9];
+const FROM: [f64; 3] = [1.7, -1.7, 1.2];
 
 /// The beginning of every script.
 const HEAD: &str = r#"
@@ -17,6 +18,10 @@ from pathlib import Path
 import rerun as rr
 import rerun.blueprint as rrb
 from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
+
+
+BOX = "/box"
+GREY = [140, 140, 140]
 
 
 def curves(title, topic, schema, names):
@@ -56,6 +61,12 @@ if len(sys.argv) > 1:
 else:
     rr.spawn(default_blueprint=blueprint)
 rr.log_file_from_path(recording)
+for frame, low, high, labels in boxes:
+    sizes = [b - a for a, b in zip(low, high)]
+    box = rr.Boxes3D(mins=[low], sizes=[sizes], colors=[GREY], fill_mode="majorwireframe")
+    rr.log(BOX, rr.CoordinateFrame(frame), box, static=True)
+    ends = rr.Points3D(list(labels.values()), labels=list(labels), colors=[GREY], show_labels=True)
+    rr.log(f"{BOX}/ends", rr.CoordinateFrame(frame), ends, static=True)
 "#;
 
 impl Layout {
@@ -83,6 +94,9 @@ impl Layout {
         let columns: Vec<String> = columns.collect();
         line(format_args!("views = [{}]", indented(&views)));
         line(format_args!("columns = [{}]", indented(&columns)));
+        // Every view of a cloud has the same box.
+        let boxes: Vec<String> = self.views.iter().take(1).filter_map(labelled_box).collect();
+        line(format_args!("boxes = [{}]", indented(&boxes)));
         if self.violations {
             line(format_args!(
                 "log = rrb.TextLogView(name=\"Violations\", origin=\"{VIOLATIONS_TOPIC}\")"
@@ -104,14 +118,26 @@ fn space(view: &View) -> String {
     let View { title, extent, shown, .. } = view;
     let (target, radius) = (extent.centre(), extent.radius());
     let eye: Vec<f64> = (0..3).map(|i| target[i] + FROM[i] * radius).collect();
-    // Rerun shows no scenes; the clouds of the bodies have the same shapes.
+    // Rerun shows no scenes; there are clouds of the same shapes.
     let topics = shown.iter().flat_map(|(topic, _)| match &**topic {
         SCENE_TOPIC => vec![format!("{BODIES_TOPIC}**"), FRAMES_TOPIC.to_owned()],
+        BOUNDARY_TOPIC => vec![BOUNDARY_POINTS_TOPIC.to_owned()],
+        AXES_TOPIC => vec!["/box/**".to_owned()],
         other => vec![other.to_owned()],
     });
     let topics: Vec<String> = topics.collect();
     let arguments = [json!(title), json!(topics), json!(eye), json!(target)];
     format!("space({})", arguments.map(|argument| python(&argument)).join(", "))
+}
+
+/// The box of a cloud with the values at the ends of its axes.
+fn labelled_box(view: &View) -> Option<String> {
+    let View { frame, extent, labels, .. } = view;
+    let named: serde_json::Map<String, Value> =
+        labels.iter().map(|(at, text)| (text.clone(), json!(at))).collect();
+    let items = [json!(frame), json!(extent.low), json!(extent.high), Value::Object(named)];
+    let items = items.map(|item| python(&item)).join(", ");
+    (!labels.is_empty()).then(|| format!("({items})"))
 }
 
 fn curves(plot: &Plot) -> String {

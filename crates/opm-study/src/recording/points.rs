@@ -1,9 +1,11 @@
 //! The points of a cloud of poses: rows of values, or packed in the form of recordings.
 
-use crate::columns::{Column, NamedColumn, PointColumns, is_field};
+use super::scale::{Measures, factors};
+use crate::columns::{AxisScale, Column, NamedColumn, PointColumns, is_field};
 use crate::error::StudyError;
 use crate::poses::PoseSource;
 use crate::workspace::Workspace;
+use opm_core::Quantity;
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Solution};
 use opm_core::nalgebra::Point3;
 use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
@@ -30,6 +32,7 @@ impl<'a> Cloud<'a> {
     /// The same with every task coordinate as a value of a point, if no values were requested: rows of
     /// a table have no slices. For mesh tools, x, y and z are the axes.
     pub fn with_every_coordinate(mut self, format: TableFormat) -> Self {
+        self.shown.scale = AxisScale::None;
         if self.shown.scalars_chosen {
             return self;
         }
@@ -70,13 +73,27 @@ impl<'a> Cloud<'a> {
     /// The layout of the points, for a recorder.
     pub fn layout(&self, color_range: [f64; 2]) -> CloudLayout {
         let of_base = matches!(self.shown.axes[0].column, Column::Tip(_));
-        layout(&self.shown, color_range, if of_base { "base" } else { "task" })
+        let frame = if of_base { "base" } else { "task" };
+        layout(&self.shown, color_range, frame, self.measures())
+    }
+
+    /// The quantities and the extents of the axes.
+    fn measures(&self) -> Measures {
+        let grid = &self.workspace.grid;
+        self.shown.axes.each_ref().map(|named| match named.column {
+            Column::Coordinate(i) => {
+                let axis = &grid.axes()[i];
+                Some((grid.coordinates()[i].quantity, axis.max - axis.min))
+            }
+            Column::Tip(_) => Some((Quantity::Length, 0.0)),
+            _ => None,
+        })
     }
 
     /// The position of a pose in the cloud.
     pub fn place(&self, pose: &[f64]) -> [f64; 3] {
         let tip = || tip(self.manipulator(), self.workspace.modes, pose);
-        self.shown.axes.each_ref().map(|named| match named.column {
+        let at = self.shown.axes.each_ref().map(|named| match named.column {
             Column::Coordinate(number) => pose[number],
             Column::Tip(i) => tip()[i],
             Column::Zero => 0.0,
@@ -84,7 +101,9 @@ impl<'a> Cloud<'a> {
             | Column::Actuated(_)
             | Column::InverseCondition
             | Column::Share => unreachable!("axes are task coordinates, or the platform's point"),
-        })
+        });
+        let scale = scale(&self.shown, self.measures());
+        std::array::from_fn(|i| scale[i] * at[i])
     }
 
     /// The values of a row, in the order of [`CloudLayout::columns`].
@@ -139,13 +158,28 @@ fn is_plain(columns: &[Column]) -> bool {
 }
 
 /// The layout of points with these values, for a recorder.
-pub fn layout(shown: &PointColumns, color_range: [f64; 2], frame: &str) -> CloudLayout {
+pub fn layout(
+    shown: &PointColumns,
+    color_range: [f64; 2],
+    frame: &str,
+    measures: Measures,
+) -> CloudLayout {
     CloudLayout {
         axes: shown.axes.each_ref().map(|named| named.name.clone()),
         scalars: shown.scalars.iter().map(|named| named.name.clone()).collect(),
         color: shown.color.name.clone(),
         color_range,
         frame_id: frame.to_owned(),
+        scale: scale(shown, measures),
+        units: measures.map(|measure| measure.map_or("", |(quantity, _)| quantity.unit())),
+    }
+}
+
+/// What the axes are multiplied by.
+pub fn scale(shown: &PointColumns, measures: Measures) -> [f64; 3] {
+    match shown.scale {
+        AxisScale::Comparable => factors(measures),
+        AxisScale::None => [1.0; 3],
     }
 }
 

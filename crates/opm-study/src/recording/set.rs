@@ -1,6 +1,7 @@
 //! The points of a set in memory in the form of recordings, and boundaries as lines in space.
 
-use super::points::layout;
+use super::points::{layout, scale};
+use super::scale::Measures;
 use crate::analysis::Analysis;
 use crate::columns::{Column, PointChoice, PointColumns};
 use crate::error::{RequestError, SetPart, StudyError};
@@ -63,7 +64,24 @@ impl<'a> SetCloud<'a> {
                 [0.0, 0.0]
             }
         };
-        layout(&self.shown, color_range, "task")
+        layout(&self.shown, color_range, "task", self.measures())
+    }
+
+    /// The quantities and the extents of the axes.
+    fn measures(&self) -> Measures {
+        let Workspace { grid, manipulator, kind, .. } = self.workspace;
+        let first = kind.axes(grid).start;
+        self.shown.axes.each_ref().map(|named| match named.column {
+            Column::Coordinate(i) => {
+                let axis = &self.set.axes()[i].axis;
+                Some((grid.coordinates()[first + i].quantity, axis.max - axis.min))
+            }
+            Column::Imaginary(i) => {
+                let [low, high] = self.analysis.count.imaginary[i]?;
+                Some((manipulator.imaginary()[i].quantity, high - low))
+            }
+            _ => None,
+        })
     }
 
     /// The names of the set's axes.
@@ -130,8 +148,9 @@ impl<'a> SetCloud<'a> {
             })
             .collect();
         let coordinates = coordinates?;
+        let scale = scale(&self.shown, self.measures());
         let place = |point: &[f64]| -> [f64; 3] {
-            std::array::from_fn(|i| coordinates[i].map_or(0.0, |number| point[number]))
+            std::array::from_fn(|i| coordinates[i].map_or(0.0, |number| scale[i] * point[number]))
         };
         Some(boundary_lines(self.set, self.analysis.boundary()?, place, |slice| slice))
     }
