@@ -1,11 +1,13 @@
 //! Every argument of the command line; the doc comments are the help.
 
+mod export;
 mod measure;
 mod motion;
 mod pose;
 mod recording;
 mod workspace;
 
+pub use export::{ExportArgs, ExportFormat, MjcfArgs};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
@@ -58,6 +60,7 @@ Examples:
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds
+  opm export mjcf plano-spherical-5dof -o plano.xml    a model for MuJoCo, loops and all
   opm help format                                      how to write a mechanism file";
 
 /// Options of every subcommand.
@@ -94,6 +97,7 @@ pub enum Command {
     Merge(MergeArgs),
     Plot(PlotArgs),
     Inspect(InspectArgs),
+    Export(ExportArgs),
     Examples(ExamplesArgs),
     Schema(SchemaArgs),
     Format(FormatArgs),

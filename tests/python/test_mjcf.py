@@ -1,0 +1,228 @@
+"""`opm export mjcf`, read and simulated by MuJoCo: joints have opm's values, and the loops close and stay closed."""
+
+import csv
+import json
+import random
+import subprocess
+
+import mujoco
+import numpy as np
+import pytest
+from conftest import LINKAGES, REPOSITORY
+
+MECHANISMS = sorted(path.stem for path in (REPOSITORY / "data" / "mechanisms").glob("*.toml"))
+# Rounding of two chains of ten joints, and of the numbers that opm gives, in metres and in parts of a quaternion.
+CLOSED = 1e-12
+# Poses a mechanism, shared among modes that are drawn at random.
+POSES, MODES = 200, 4
+# A servoed motion: what gapes in it, in metres, and how far the platform lags behind.
+GAP, STEPS = 50e-6, 2000
+
+
+def run(opm, *arguments):
+    return subprocess.run([opm, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+def answer(opm, *arguments):
+    return json.loads(run(opm, *arguments, "--format", "json", "--quiet"))
+
+
+def table(text):
+    """The rows of a table, numbers where they are numbers; rows out of reach are left out."""
+    rows = [row for row in csv.DictReader(text.splitlines()) if all(row.values())]
+    text = ("branch", "mode")
+    return [{k: v if k in text else float(v) for k, v in row.items()} for row in rows]
+
+
+class Exported:
+    """A mechanism, its model, and what it is compared with."""
+
+    def __init__(self, opm, folder, name):
+        self.opm, self.folder, self.name = opm, folder, name
+        self.path = folder / f"{name}.xml"
+        run(opm, "export", "mjcf", name, "-o", self.path)
+        self.model = mujoco.MjModel.from_xml_path(str(self.path))
+        self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+        self.data = mujoco.MjData(self.model)
+        self.answer = answer(opm, "decompose", name)
+        self.is_linkage = name in LINKAGES
+        mujoco.mj_forward(self.model, self.data)
+        reach = self.data.xpos[self.model.body("base").id + 1 :]
+        self.size = np.ptp(np.vstack([reach, np.zeros(3)]), axis=0).max()
+
+    def equalities(self, kind):
+        return [i for i in range(self.model.neq) if self.model.eq_type[i] == kind]
+
+    def pose_by(self, joints):
+        """Sets the joints to opm's values, and moves the bodies there."""
+        model, data = self.model, self.data
+        data.qpos[:] = model.qpos0
+        for number in range(model.njnt):
+            joint = model.joint(number)
+            place = joint.qposadr[0]
+            if joint.type[0] == mujoco.mjtJoint.mjJNT_BALL:
+                vector = np.array([joints[f"{joint.name}.{axis}"] for axis in "xyz"])
+                mujoco.mju_axisAngle2Quat(
+                    data.qpos[place : place + 4],
+                    vector / (np.linalg.norm(vector) or 1.0),
+                    np.linalg.norm(vector),
+                )
+            elif joint.name in joints:
+                data.qpos[place] = joints[joint.name]
+        for number in self.equalities(mujoco.mjtEq.mjEQ_JOINT):
+            # The slide of a helical joint: y - y0 = ratio (x - x0), and one of the two is opm's.
+            pair = [model.joint(i) for i in (model.eq_obj1id[number], model.eq_obj2id[number])]
+            ratio = model.eq_data[number][1]
+            slide = next(i for i in range(2) if pair[i].name not in joints)
+            known, unknown = (pair[1 - slide].qposadr[0], pair[slide].qposadr[0])
+            moved = data.qpos[known] - model.qpos0[known]
+            moved *= ratio if slide == 0 else 1 / ratio
+            data.qpos[unknown] = model.qpos0[unknown] + moved
+        mujoco.mj_kinematics(model, data)
+
+    def gaps(self):
+        """How far the ends of the legs are from the platform, in metres and in parts of a quaternion."""
+        data, model = self.data, self.model
+        gaps = []
+        for number in self.equalities(mujoco.mjtEq.mjEQ_WELD):
+            a, b = model.eq_obj1id[number], model.eq_obj2id[number]
+            turned = min(np.abs(data.xquat[a] - sign * data.xquat[b]).max() for sign in (1, -1))
+            gaps.append((np.linalg.norm(data.xpos[a] - data.xpos[b]), turned))
+        assert len(gaps) == len(self.answer["legs"]) - 1
+        return np.max(gaps, axis=0)
+
+    def motion(self, seconds, rate, coordinates, mode="home"):
+        """The rows of a motion, of which `coordinates` gives (amplitude, frequency, phase, offset)."""
+        lines = ["format = 1", 'name = "m"', 'units = { length = "m", angle = "rad" }']
+        lines += [f"duration = {seconds}", f"rate = {rate}", "[coordinates]"]
+        for name, (amplitude, frequency, phase, offset) in coordinates.items():
+            lines.append(
+                f"{name} = {{ amplitude = {amplitude}, frequency = {frequency}, phase = {phase}, offset = {offset} }}"
+            )
+        path = self.folder / "motion.toml"
+        path.write_text("\n".join(lines) + "\n")
+        arguments = ["--motion", path, "--mode", mode, "--quiet", "-o", "-"]
+        return table(run(self.opm, "trajectory", self.name, *arguments))
+
+    def spans(self, angle, length):
+        """How far each task coordinate is moved from home."""
+        for coordinate in self.answer["task_coordinates"]:
+            span = angle if coordinate["unit"] == "rad" else length * self.size
+            yield coordinate["name"], coordinate["home"], span
+
+
+@pytest.fixture(scope="module", params=MECHANISMS)
+def exported(opm, tmp_path_factory, request):
+    return Exported(opm, tmp_path_factory.mktemp("mjcf"), request.param)
+
+
+def test_the_loops_close_at_poses_of_every_mode(exported):
+    generator = random.Random(exported.name)
+    if exported.is_linkage:
+        sweep = run(exported.opm, "linkage", exported.name, "--sweep", "--count", str(POSES))
+        rows = table(sweep)
+    else:
+        names = [exported.model.key(i).name for i in range(exported.model.nkey)]
+        rows = []
+        for key in generator.choices(names, k=MODES):
+            signs = key.removesuffix("_out_of_limits").replace("p", "+").replace("m", "-")
+            moves = {
+                name: (span, generator.uniform(0.1, 0.4), generator.uniform(0, 6.3), home)
+                for name, home, span in exported.spans(angle=0.3, length=0.05)
+            }
+            mode = "home" if key == "home" else signs.replace("_", "")
+            rows += exported.motion(POSES / MODES, 2, moves, mode)
+    assert len(rows) >= POSES
+    worst = np.zeros(2)
+    for row in rows:
+        exported.pose_by(row)
+        worst = np.maximum(worst, exported.gaps())
+    assert worst.max() < CLOSED, worst
+
+
+def test_every_keyframe_closes_and_is_the_mode_of_its_name(exported):
+    model, data = exported.model, exported.data
+    names = [model.key(i).name for i in range(model.nkey)]
+    assert len(set(names)) == model.nkey > 0
+    for number in range(model.nkey):
+        mujoco.mj_resetDataKeyframe(model, data, number)
+        mujoco.mj_kinematics(model, data)
+        assert max(exported.gaps()) < CLOSED
+        if not exported.is_linkage:
+            platform = model.body("platform").id
+            home = model.qpos0.copy()
+            here = data.xpos[platform].copy()
+            data.qpos[:] = home
+            mujoco.mj_kinematics(model, data)
+            assert np.abs(data.xpos[platform] - here).max() < CLOSED
+    if not exported.is_linkage:
+        home = ",".join(f"{name}={value!r}" for name, value, _ in exported.spans(0, 0))
+        expected = answer(exported.opm, "ik", exported.name, "--pose", home, "--all-modes")
+        letters = str.maketrans("+- ", "pm_")
+        assert names == [
+            (solution["mode"].translate(letters) or "home")
+            + ("" if solution["within_limits"] else "_out_of_limits")
+            for solution in expected["solutions"]
+        ]
+
+
+def test_the_platform_is_where_opm_says(exported):
+    if exported.is_linkage:
+        pytest.skip("a linkage has no pose")
+    generator = random.Random(exported.name)
+    for _ in range(3):
+        pose = ",".join(
+            f"{name}={home + generator.uniform(-1, 1) * span!r}"
+            for name, home, span in exported.spans(angle=0.2, length=0.03)
+        )
+        found = answer(exported.opm, "ik", exported.name, "--pose", pose)
+        assert found["reachable"], pose
+        exported.pose_by(found["solutions"][0]["joints"])
+        mujoco.mj_comPos(exported.model, exported.data)
+        mujoco.mj_sensorPos(exported.model, exported.data)
+        place = exported.data.sensor("platform.position").data
+        turned = exported.data.sensor("platform.orientation").data
+        expected = found["transform"]
+        assert np.abs(place - expected["position"]).max() < CLOSED
+        quaternion = np.array(expected["quaternion"])
+        assert min(np.abs(turned - s * quaternion).max() for s in (1, -1)) < CLOSED
+
+
+def test_the_constraints_leave_the_mobility(exported):
+    model, data = exported.model, exported.data
+    mujoco.mj_resetData(model, data)
+    mujoco.mj_forward(model, data)
+    rows = data.efc_J.reshape(-1, model.nv)[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]
+    values = np.linalg.svd(rows, compute_uv=False)
+    rank = int((values > 1e-9 * values[0]).sum())
+    # The values that count are far from those that are rounding.
+    assert values[rank - 1] > 1e-5 * values[0]
+    assert model.nv - rank == exported.answer["mobility"]
+
+
+def test_servos_move_it_and_it_stays_together(exported):
+    model, data = exported.model, exported.data
+    actuated = [model.actuator(i).name for i in range(model.nu)]
+    if exported.is_linkage:
+        joint = model.joint(actuated[0])
+        home, times = float(model.qpos0[joint.qposadr[0]]), np.arange(STEPS + 1) * 1e-3
+        rows = [{actuated[0]: home + 0.1 * (1 - np.cos(np.pi * t))} for t in times]
+    else:
+        # From home and back, at rest at both ends; every other coordinate goes there and back twice.
+        moves = {
+            name: (span, 0.5 + 0.5 * (number % 2), -np.pi / 2, home + span)
+            for number, (name, home, span) in enumerate(exported.spans(angle=0.05, length=0.01))
+        }
+        rows = exported.motion(2, 1000, moves)
+    assert len(rows) == STEPS + 1
+    mujoco.mj_resetData(model, data)
+    worst = np.zeros(2)
+    lag = 0.0
+    for row in rows[:-1]:
+        data.ctrl[:] = [row[name] for name in actuated]
+        mujoco.mj_step(model, data)
+        worst = np.maximum(worst, exported.gaps())
+        reached = [data.joint(name).qpos[0] for name in actuated]
+        lag = max(lag, np.abs(np.array(reached) - data.ctrl).max())
+    print(f"{exported.name}: gap {worst[0]:.1e} m, {worst[1]:.1e}; lag {lag:.1e}")
+    assert worst[0] < GAP, worst
