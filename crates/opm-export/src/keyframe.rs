@@ -38,6 +38,8 @@ pub struct Keyframes {
     pub reached: Vec<Keyframe>,
     /// The names of the modes that do not.
     pub missed: Vec<String>,
+    /// The name of the one that the mechanism is assembled in.
+    pub home: String,
     /// Where they come from.
     pub source: Source,
 }
@@ -64,7 +66,8 @@ impl Keyframes {
         };
         let pose = manipulator.home_pose();
         let mut buffer = manipulator.solution();
-        let mut keyframes = Self { reached: Vec::new(), missed: Vec::new(), source };
+        let home = name(&manipulator.format_mode(manipulator.home_mode()));
+        let mut keyframes = Self { reached: Vec::new(), missed: Vec::new(), home, source };
         for mode in modes {
             let name = name(&manipulator.format_mode(mode));
             match manipulator.inverse(&pose, mode, &mut buffer) {
@@ -92,14 +95,16 @@ impl Keyframes {
             joints: position.joints,
             within_limits: position.within_limits,
         });
-        Some(Self { reached: reached.collect(), missed: Vec::new(), source: Source::Branches })
+        let (reached, home) = (reached.collect(), name(&input.home_branch().to_string()));
+        Some(Self { reached, missed: Vec::new(), home, source: Source::Branches })
     }
 
     /// The posture at home alone.
     pub fn home(mechanism: &Mechanism) -> Self {
         let joints = mechanism.coordinates().map(|c| c.home).collect();
-        let home = Keyframe { name: name(""), joints, within_limits: true };
-        Self { reached: vec![home], missed: Vec::new(), source: Source::Home }
+        let home = name("");
+        let keyframe = Keyframe { name: home.clone(), joints, within_limits: true };
+        Self { reached: vec![keyframe], missed: Vec::new(), home, source: Source::Home }
     }
 }
 

@@ -13,6 +13,7 @@ mod joints;
 mod servo;
 
 use crate::keyframe::{Keyframes, Source};
+use crate::mass::Mass;
 use crate::xml::{Element, number};
 use joints::{Names, joint_values, joints};
 use opm_core::mechanism::Mechanism;
@@ -63,7 +64,7 @@ impl Model<'_> {
         let servos = Servos::new(self.bodies, self.options.density);
         let mut names = Names::of(self.mechanism);
         let mut base = Element::new("body").with("name", "base");
-        base = base.children(geoms::of(&self.bodies[0], self.options.density));
+        base = base.children(geoms::shapes(&self.bodies[0]));
         let mut equality = Element::new("equality");
         let mut actuator = Element::new("actuator");
         let mut first = 1;
@@ -99,7 +100,10 @@ impl Model<'_> {
             .with("integrator", "implicitfast")
             .with("solver", "Newton");
         // Bodies touch where they are joined, and their shapes are not those of a real mechanism.
-        let geom = Element::new("geom").with("contype", "0").with("conaffinity", "0");
+        let geom = Element::new("geom")
+            .with("contype", "0")
+            .with("conaffinity", "0")
+            .numbers("density", &[self.options.density]);
         // The smallest mechanisms have moments of inertia that MuJoCo takes for none.
         let compiler = Element::new("compiler")
             .with("angle", "radian")
@@ -118,7 +122,7 @@ impl Model<'_> {
     fn chain(
         &self,
         chain: &Chain<'_>,
-        servos: &Servos<'_>,
+        servos: &Servos,
         names: &mut Names,
         equality: &mut Element,
     ) -> (Option<Element>, String) {
@@ -143,16 +147,16 @@ impl Model<'_> {
                     equality.push(self.stiff(coupling));
                 }
             }
-            let density = self.options.density;
-            let shared = density / self.mechanism.legs.len() as f64;
-            element = match (end, chain.first) {
-                (true, true) => {
-                    let site = Element::new("site").with("name", SITE);
-                    element.children(geoms::of(body, shared)).child(site)
-                }
-                (true, false) => element.children(geoms::hidden(body, shared)),
-                (false, _) => element.children(geoms::of(body, density)),
-            };
+            let mass = Mass::of_body(body, self.options.density);
+            let share = if end { 1.0 / self.mechanism.legs.len() as f64 } else { 1.0 };
+            element.push(geoms::inertial(&mass.share(share)));
+            // The end of another leg is the platform, drawn already.
+            if !end || chain.first {
+                element = element.children(geoms::shapes(body));
+            }
+            if end && chain.first {
+                element.push(Element::new("site").with("name", SITE));
+            }
             open.push(element);
             parent = body;
         }
@@ -181,12 +185,13 @@ impl Model<'_> {
     /// The keyframes.
     fn postures(&self, keyframes: &Keyframes) -> Element {
         let mut list = Element::new("keyframe");
-        match keyframes.source {
-            Source::Modes => list.comment("the working modes at the home pose"),
-            Source::Branches => list.comment("the branches, with the input at home"),
-            Source::HomeMode => list.comment("the home mode; there are too many to write"),
-            Source::Home => list.comment("home; there are no closed forms of other modes"),
-        }
+        let home = &keyframes.home;
+        list.comment(match keyframes.source {
+            Source::Modes => format!("the working modes at the home pose; {home} is home"),
+            Source::Branches => format!("the branches with the input at home; {home} is home"),
+            Source::HomeMode => "the home mode; there are too many to write".to_owned(),
+            Source::Home => "home; there are no closed forms of other modes".to_owned(),
+        });
         if !keyframes.missed.is_empty() {
             list.comment(format!("do not reach the home pose: {}", keyframes.missed.join(" ")));
         }

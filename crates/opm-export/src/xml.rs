@@ -135,7 +135,10 @@ mod tests {
         let text = root.document();
         let document = Document::parse(&text).unwrap();
         assert_eq!(document.root_element().attribute("name"), Some(name));
-        assert_eq!(document.root_element().children().filter(|n| n.is_element()).count(), 1);
+        assert_eq!(
+            document.root_element().children().filter(roxmltree::Node::is_element).count(),
+            1
+        );
     }
 
     #[test]

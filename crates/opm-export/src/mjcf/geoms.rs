@@ -1,20 +1,23 @@
-//! The shapes of bodies.
+//! The shapes and the masses of bodies.
 
+use crate::mass::Mass;
 use crate::xml::Element;
 use nalgebra::{UnitQuaternion, Vector3};
 use opm_core::skeleton::{Body, Material, Part, Solid};
 
-/// The group of shapes that viewers do not show at first.
-const HIDDEN: &str = "4";
-
 /// The shapes of a body.
-pub fn of(body: &Body, density: f64) -> Vec<Element> {
-    body.parts.iter().map(|part| geom(part, density)).collect()
+pub fn shapes(body: &Body) -> impl Iterator<Item = Element> {
+    body.parts.iter().map(geom)
 }
 
-/// The shapes of a body that stands in the place of one that is drawn.
-pub fn hidden(body: &Body, density: f64) -> Vec<Element> {
-    of(body, density).into_iter().map(|geom| geom.with("group", HIDDEN)).collect()
+/// The mass of a body.
+pub fn inertial(mass: &Mass) -> Element {
+    let i = &mass.inertia;
+    let tensor = [i.m11, i.m22, i.m33, i.m12, i.m13, i.m23];
+    Element::new("inertial")
+        .numbers("pos", mass.centre.coords.as_slice())
+        .numbers("mass", &[mass.mass])
+        .numbers("fullinertia", &tensor)
 }
 
 /// The colours.
@@ -27,7 +30,7 @@ pub fn materials() -> Element {
     }))
 }
 
-fn geom(part: &Part, density: f64) -> Element {
+fn geom(part: &Part) -> Element {
     let geom = Element::new("geom");
     let shape = match part.solid {
         Solid::Cylinder { from, to, radius } => {
@@ -49,7 +52,7 @@ fn geom(part: &Part, density: f64) -> Element {
                 .numbers("size", &[0.5 * width, 0.5 * width, 0.5 * length])
         }
     };
-    shape.with("material", look(part.material).0).numbers("density", &[density])
+    shape.with("material", look(part.material).0)
 }
 
 /// The name and the colour of a material.

@@ -58,12 +58,7 @@ fn unique(taken: &mut BTreeSet<String>, wanted: String) -> String {
 }
 
 /// The joints between a body and its parent, the one nearest to the parent first.
-pub fn joints(
-    joint: &Joint,
-    body: &Body,
-    servos: &Servos<'_>,
-    names: &mut Names,
-) -> Vec<JointPart> {
+pub fn joints(joint: &Joint, body: &Body, servos: &Servos, names: &mut Names) -> Vec<JointPart> {
     let seat = body.seats.iter().find(|seat| seat.joint == joint.name);
     let place = seat.map_or(joint.point - body.origin, |seat| seat.centre.coords);
     let one = |kind: &str, name: &str, axis: Option<Unit<Vector3<f64>>>| {

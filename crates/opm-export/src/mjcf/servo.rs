@@ -5,7 +5,7 @@
 //! load a servo is critically damped. What it really moves is less, so that it follows at least as fast.
 
 use super::list;
-use crate::mass::{mean_square, volume};
+use crate::mass::Mass;
 use crate::xml::Element;
 use nalgebra::{Unit, Vector3};
 use opm_core::Quantity;
@@ -19,33 +19,35 @@ const FREQUENCY: f64 = 20.0 * TAU;
 const ARMATURE: f64 = 0.1;
 
 /// The servos of a mechanism.
-pub struct Servos<'a> {
-    /// The bodies that move.
-    moving: &'a [Body],
-    density: f64,
+pub struct Servos {
+    /// All that moves, as one body, in base coordinates at home.
+    moving: Mass,
 }
 
-impl<'a> Servos<'a> {
+impl Servos {
     /// The first of the bodies is the base.
-    pub fn new(bodies: &'a [Body], density: f64) -> Self {
-        Self { moving: &bodies[1..], density }
+    pub fn new(bodies: &[Body], density: f64) -> Self {
+        let masses = bodies[1..].iter().map(|body| {
+            let mass = Mass::of_body(body, density);
+            mass.moved(body.origin.coords)
+        });
+        Self { moving: Mass::sum(&masses.collect::<Vec<_>>()) }
     }
 
     /// The load of a joint coordinate: kilograms, or kilograms times square metres.
     fn load(&self, joint: &Joint, number: usize) -> f64 {
-        let axis = axis(joint, number);
-        let solids = self.moving.iter().flat_map(|body| {
-            let point = joint.point - body.origin.coords;
-            body.parts.iter().map(move |part| (part.solid, point))
-        });
-        let loads = solids.map(|(solid, point)| {
-            let arm = match joint.coordinates[number].quantity {
-                Quantity::Length => 1.0,
-                Quantity::Angle => mean_square(&solid, &axis, &point),
-            };
-            self.density * volume(&solid) * arm
-        });
-        loads.sum()
+        // A screw lifts what it turns.
+        let advance = match joint.kind {
+            JointKind::Helical { pitch } => pitch,
+            _ => 0.0,
+        };
+        match joint.coordinates[number].quantity {
+            Quantity::Length => self.moving.mass,
+            Quantity::Angle => {
+                let turned = self.moving.about(&axis(joint, number), &joint.point);
+                turned + self.moving.mass * advance * advance
+            }
+        }
     }
 
     /// A joint with the inertia of its motor, if it has one.
