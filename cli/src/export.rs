@@ -16,10 +16,8 @@ pub fn run(args: &ExportArgs, output: &Output) -> Result<(), Failure> {
 }
 
 fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
-    let options = MjcfOptions {
-        density: positive("--density", args.density)?,
-        time_step: positive("--time-step", args.time_step)?,
-    };
+    let options = MjcfOptions::new(args.density, args.time_step)
+        .map_err(|wrong| Failure::flag(&flag(wrong.option), wrong))?;
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
     path.map_or(Ok(()), ends_in_xml)?;
     let loaded = load::open(&args.mechanism, output)?;
@@ -27,10 +25,9 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
         loaded.refuse_as_output(path, &[])?;
     }
     let target = path.map(Target::create).transpose()?;
-    let mechanism = &loaded.file.mechanism;
-    let keyframes = Keyframes::of(mechanism);
-    let (label, count) = (&loaded.label, keyframes.reached.len());
-    match keyframes.source {
+    let keyframes = Keyframes::of(&loaded.file.mechanism);
+    let (label, count) = (&loaded.label, keyframes.reached().len());
+    match keyframes.source() {
         Source::Modes | Source::Branches => {}
         Source::HomeMode => output.note(format_args!(
             "{label}: it has too many working modes for a keyframe each; home is the only one"
@@ -39,7 +36,7 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
             "{label}: no closed forms, so home is the only keyframe; `opm decompose` says why"
         )),
     }
-    let model = mjcf(mechanism, &keyframes, &options);
+    let model = mjcf(&keyframes, &options);
     match target {
         None => print_with(|out| out.write_all(model.as_bytes())),
         Some(target) => {
@@ -52,11 +49,9 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
     }
 }
 
-fn positive(flag: &str, value: f64) -> Result<f64, Failure> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    Err(Failure::flag(flag, format!("{value}, expected a positive number")))
+/// The flag of an option.
+fn flag(option: &str) -> String {
+    format!("--{}", option.replace('_', "-"))
 }
 
 /// MuJoCo takes the format of a file from its ending.

@@ -3,6 +3,7 @@
 import csv
 import json
 import random
+import re
 import subprocess
 from xml.etree import ElementTree
 
@@ -14,14 +15,27 @@ from conftest import LINKAGES, REPOSITORY
 
 # Of the linkages that opm ships, Sarrus' has a pose, too.
 LOOPS = [name for name in LINKAGES if name != "sarrus"]
-MECHANISMS = sorted(path.stem for path in (REPOSITORY / "data" / "mechanisms").glob("*.toml"))
+SHIPPED = REPOSITORY / "data" / "mechanisms"
+MECHANISMS = sorted(path.stem for path in SHIPPED.glob("*.toml"))
+# Joints that no shipped mechanism has, in place of some that one has: its name, what is replaced, and by what.
+ARM = re.compile(r'  \{ name = "mu4".*\n.*\n')
+UNIVERSAL = (
+    '  { name = "u4", type = "universal", axis = [1, 0, 0], axis2 = [0, 1, 0], point = [0, 0, 0], actuated = true, '
+    "home = [10, -5], limits = [[-60, 60], [-60, 60]] },\n"
+)
+PITCH = re.compile("pitch = 20 ")
+VARIED = {
+    "universal": ("double-spherical-5dof", ARM, UNIVERSAL),
+    "left-handed": ("translational-helical-3dof-joints", PITCH, "pitch = -35, home = 20 "),
+    "large-pitch": ("translational-helical-3dof-joints", PITCH, "pitch = 1500, home = 20 "),
+}
 # Rounding of two chains of ten joints, and of the numbers that opm gives, in metres and in parts of a quaternion.
 CLOSED = 1e-12
 # Poses a mechanism, shared among modes that are drawn at random.
 POSES, MODES = 200, 4
-# A servoed motion of two seconds: how wide a loop may open, in metres, and by how many seconds a servo may lag: 16 ms
-# are its damping, and the rest is what it sags under the weight.
-STEPS, GAP, LAG = 2000, 50e-6, 0.05
+# A servoed motion of two seconds, and how wide a loop may open in it, in metres.
+STEPS, GAP = 2000, 50e-6
+GRAVITY = 9.81
 
 
 def run(opm, *arguments):
@@ -44,7 +58,15 @@ class Exported:
 
     def __init__(self, opm, folder, name):
         self.opm, self.folder, self.name = opm, folder, name
-        self.path = folder / f"{name}.xml"
+        self.path = folder / "model.xml"
+        self.varied = name in VARIED
+        if self.varied:
+            base, old, new = VARIED[name]
+            text, count = old.subn(new, (SHIPPED / f"{base}.toml").read_text())
+            assert count == 1
+            self.name = folder / f"{name}.toml"
+            self.name.write_text(text)
+        name = self.name
         run(opm, "export", "mjcf", name, "-o", self.path)
         self.model = mujoco.MjModel.from_xml_path(str(self.path))
         self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
@@ -116,13 +138,13 @@ class Exported:
             yield coordinate["name"], coordinate["home"], span
 
 
-@pytest.fixture(scope="module", params=MECHANISMS)
+@pytest.fixture(scope="module", params=[*MECHANISMS, *VARIED])
 def exported(opm, tmp_path_factory, request):
     return Exported(opm, tmp_path_factory.mktemp("mjcf"), request.param)
 
 
 def test_the_loops_close_at_poses_of_every_mode(exported):
-    generator = random.Random(exported.name)
+    generator = random.Random(str(exported.answer["name"]))
     if exported.is_linkage:
         sweep = run(exported.opm, "linkage", exported.name, "--sweep", "--count", str(POSES))
         rows = table(sweep)
@@ -177,7 +199,7 @@ def test_every_mode_at_home_is_a_keyframe(exported):
 def test_the_platform_is_where_opm_says(exported):
     if exported.is_linkage:
         pytest.skip("a linkage has no pose")
-    generator = random.Random(exported.name)
+    generator = random.Random(str(exported.answer["name"]))
     for _ in range(3):
         pose = ",".join(
             f"{name}={home + generator.uniform(-1, 1) * span!r}"
@@ -262,12 +284,21 @@ def test_servos_move_it_and_it_stays_together(exported):
         worst = np.maximum(worst, exported.gaps())
         reached = np.array([data.joint(name).qpos[0] for name in actuated])
         lag = np.maximum(lag, np.abs(reached - data.ctrl))
-    steps = np.abs(np.diff([[row[name] for name in actuated] for row in rows], axis=0))
     assert worst[0] < GAP, worst
-    assert (lag < LAG * steps.max(axis=0) / model.opt.timestep).all(), lag
+    # What the damper takes at the highest rate, and what the spring gives way where it carries all that moves, a hinge
+    # on an arm as long as the mechanism.
+    steps = np.abs(np.diff([[row[name] for name in actuated] for row in rows], axis=0))
+    stiffness, damping = model.actuator_gainprm[:, 0], -model.actuator_biasprm[:, 2]
+    hinges = model.jnt_type[model.actuator_trnid[:, 0]] == mujoco.mjtJoint.mjJNT_HINGE
+    weight = GRAVITY * model.body_subtreemass[model.body("base").id]
+    sag = weight * np.where(hinges, exported.size, 1.0)
+    allowed = (damping * steps.max(axis=0) / model.opt.timestep + sag) / stiffness
+    assert (lag < allowed).all(), (lag, allowed)
 
 
 def test_pinocchio_moves_the_bodies_to_the_same_places(exported):
+    if exported.varied:
+        pytest.skip("Pinocchio 4.1 has no reference values for the joints of a body that has several")
     model, data = exported.model, exported.data
     read = pinocchio.buildModelFromMJCF(str(exported.path))
     place = read.createData()

@@ -2,6 +2,7 @@
 
 use super::MechanismArgs;
 use clap::{Subcommand, ValueHint};
+use opm_export::MjcfOptions;
 use std::path::PathBuf;
 
 /// Write a mechanism as a model for another program
@@ -49,9 +50,9 @@ pub struct MjcfArgs {
     #[arg(short, long, value_name = "OUT.xml", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Density of all bodies, kilograms per cubic metre
-    #[arg(long, value_name = "KG/M3", default_value_t = 2700.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG/M3", default_value_t = MjcfOptions::DENSITY, allow_negative_numbers = true)]
     pub density: f64,
     /// Time step of the simulation, seconds; the loops are held as stiffly as it allows
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.001, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value_t = MjcfOptions::TIME_STEP, allow_negative_numbers = true)]
     pub time_step: f64,
 }

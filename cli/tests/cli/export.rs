@@ -31,7 +31,7 @@ fn joints_have_the_names_and_values_of_opm() {
     let mut expected = keys(solution);
     // The three coordinates of the ball are one joint.
     expected.retain(|name| !name.starts_with("s4."));
-    expected.push("s4".into());
+    expected.push("s4");
     assert_eq!(names(&model, "joint"), expected);
     for joint in model.descendants().filter(|n| n.has_tag_name("joint")) {
         let name = joint.attribute("name").unwrap();

@@ -33,31 +33,57 @@ pub enum Source {
 
 /// The postures of a mechanism at its home pose.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Keyframes {
-    /// Those that reach it, in the order of the modes.
-    pub reached: Vec<Keyframe>,
-    /// The names of the modes that do not.
-    pub missed: Vec<String>,
-    /// The name of the one that the mechanism is assembled in.
-    pub home: String,
-    /// Where they come from.
-    pub source: Source,
+pub struct Keyframes<'a> {
+    mechanism: &'a Mechanism,
+    reached: Vec<Keyframe>,
+    missed: Vec<String>,
+    home: String,
+    source: Source,
 }
 
-impl Keyframes {
+impl<'a> Keyframes<'a> {
     /// The postures of any mechanism: of its modes, of its branches, or home alone.
-    pub fn of(mechanism: &Mechanism) -> Self {
+    pub fn of(mechanism: &'a Mechanism) -> Self {
         if let Ok(manipulator) = Manipulator::new(mechanism.clone()) {
-            return Self::of_manipulator(&manipulator);
+            return Self::in_modes(mechanism, &manipulator);
         }
         let linkage = Linkage::new(mechanism).ok();
         linkage
-            .and_then(|linkage| Self::of_linkage(&linkage))
-            .unwrap_or_else(|| Self::home(mechanism))
+            .and_then(|linkage| Self::in_branches(mechanism, &linkage))
+            .unwrap_or_else(|| Self::at_home(mechanism))
     }
 
     /// A posture for each working mode of a manipulator.
-    pub fn of_manipulator(manipulator: &Manipulator) -> Self {
+    pub fn of_manipulator(manipulator: &'a Manipulator) -> Self {
+        Self::in_modes(manipulator.mechanism(), manipulator)
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &'a Mechanism {
+        self.mechanism
+    }
+
+    /// The postures that reach the home pose, in the order of the modes.
+    pub fn reached(&self) -> &[Keyframe] {
+        &self.reached
+    }
+
+    /// The names of the modes that do not reach it.
+    pub fn missed(&self) -> &[String] {
+        &self.missed
+    }
+
+    /// The name of the posture that the mechanism is assembled in.
+    pub fn home(&self) -> &str {
+        &self.home
+    }
+
+    /// Where the postures come from.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    fn in_modes(mechanism: &'a Mechanism, manipulator: &Manipulator) -> Self {
         let every = manipulator.choices() <= MOST_CHOICES;
         let source = if every { Source::Modes } else { Source::HomeMode };
         let modes: Vec<_> = match source {
@@ -66,26 +92,24 @@ impl Keyframes {
         };
         let pose = manipulator.home_pose();
         let mut buffer = manipulator.solution();
-        let home = name(&manipulator.format_mode(manipulator.home_mode()));
-        let mut keyframes = Self { reached: Vec::new(), missed: Vec::new(), home, source };
+        let (mut reached, mut missed) = (Vec::new(), Vec::new());
         for mode in modes {
             let name = name(&manipulator.format_mode(mode));
             match manipulator.inverse(&pose, mode, &mut buffer) {
-                Ok(Some(solution)) => keyframes.reached.push(Keyframe {
+                Ok(Some(solution)) => reached.push(Keyframe {
                     name,
                     joints: solution.joints().to_vec(),
                     within_limits: solution.within_limits(),
                 }),
-                Ok(None) | Err(_) => keyframes.missed.push(name),
+                Ok(None) | Err(_) => missed.push(name),
             }
         }
-        keyframes
+        let home = name(&manipulator.format_mode(manipulator.home_mode()));
+        Self { mechanism, reached, missed, home, source }
     }
 
-    /// A posture for each branch of a linkage, with the first actuated joint, or else the first one, at home; `None`
-    /// where that joint is no input.
-    pub fn of_linkage(linkage: &Linkage) -> Option<Self> {
-        let mechanism = linkage.mechanism();
+    /// The input is the first actuated joint, or else the first one; `None` where that joint cannot be an input.
+    fn in_branches(mechanism: &'a Mechanism, linkage: &Linkage) -> Option<Self> {
         let first =
             mechanism.joints().find(|joint| joint.actuated).or(mechanism.joints().next())?;
         let input = linkage.input(&first.coordinates[0].name)?;
@@ -96,15 +120,14 @@ impl Keyframes {
             within_limits: position.within_limits,
         });
         let (reached, home) = (reached.collect(), name(&input.home_branch().to_string()));
-        Some(Self { reached, missed: Vec::new(), home, source: Source::Branches })
+        Some(Self { mechanism, reached, missed: Vec::new(), home, source: Source::Branches })
     }
 
-    /// The posture at home alone.
-    pub fn home(mechanism: &Mechanism) -> Self {
+    fn at_home(mechanism: &'a Mechanism) -> Self {
         let joints = mechanism.coordinates().map(|c| c.home).collect();
         let home = name("");
-        let keyframe = Keyframe { name: home.clone(), joints, within_limits: true };
-        Self { reached: vec![keyframe], missed: Vec::new(), home, source: Source::Home }
+        let reached = vec![Keyframe { name: home.clone(), joints, within_limits: true }];
+        Self { mechanism, reached, missed: Vec::new(), home, source: Source::Home }
     }
 }
 

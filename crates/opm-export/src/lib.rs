@@ -14,8 +14,8 @@
 //!
 //! let manipulator = opm_core::Manipulator::example("planar-3rrr")?;
 //! let keyframes = Keyframes::of_manipulator(&manipulator);
-//! assert_eq!(keyframes.reached[0].name, "p_p_p");
-//! let model = mjcf(manipulator.mechanism(), &keyframes, &MjcfOptions::default());
+//! assert_eq!(keyframes.reached()[0].name, "p_p_p");
+//! let model = mjcf(&keyframes, &MjcfOptions::default());
 //! assert!(model.contains("<mujoco model=\"planar-3rrr\">"));
 //! # Ok::<(), opm_core::ReadError>(())
 //! ```
@@ -26,4 +26,4 @@ mod mjcf;
 mod xml;
 
 pub use keyframe::{Keyframe, Keyframes, Source};
-pub use mjcf::{MjcfOptions, mjcf};
+pub use mjcf::{MjcfOptions, NotPositive, mjcf};

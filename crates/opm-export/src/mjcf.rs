@@ -29,15 +29,43 @@ const SOLREF_STEPS: f64 = 2.0;
 /// What a model in MJCF is written with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MjcfOptions {
-    /// The density of all bodies, kilograms per cubic metre; positive. That of aluminium, unless it is set.
-    pub density: f64,
-    /// The time step of a simulation, seconds; positive. The stiffness of the constraints depends on it.
-    pub time_step: f64,
+    density: f64,
+    time_step: f64,
+}
+
+/// An option is not a positive number.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{value}, expected a positive number")]
+pub struct NotPositive {
+    /// The option: `density` or `time_step`.
+    pub option: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+impl MjcfOptions {
+    /// The density of aluminium, kilograms per cubic metre.
+    pub const DENSITY: f64 = 2700.0;
+    /// MuJoCo takes twice as much; the loops are held the more stiffly the less it is.
+    pub const TIME_STEP: f64 = 0.001;
+
+    /// The density of all bodies, kilograms per cubic metre, and the time step of a simulation, seconds. The stiffness of
+    /// the constraints depends on the time step.
+    ///
+    /// # Errors
+    /// One of them is not a positive number.
+    pub fn new(density: f64, time_step: f64) -> Result<Self, NotPositive> {
+        let options = [("density", density), ("time_step", time_step)];
+        match options.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
+            Some((option, value)) => Err(NotPositive { option, value }),
+            None => Ok(Self { density, time_step }),
+        }
+    }
 }
 
 impl Default for MjcfOptions {
     fn default() -> Self {
-        Self { density: 2700.0, time_step: 0.001 }
+        Self { density: Self::DENSITY, time_step: Self::TIME_STEP }
     }
 }
 
@@ -46,7 +74,8 @@ impl Default for MjcfOptions {
 /// The joints have opm's names and values; a ball has one name and a quaternion, a helical joint a slide `NAME.slide`
 /// beside its hinge. The platform is the body `platform`, and its sensors are `platform.position` and
 /// `platform.orientation`. Every actuated joint coordinate has a position servo of its name.
-pub fn mjcf(mechanism: &Mechanism, keyframes: &Keyframes, options: &MjcfOptions) -> String {
+pub fn mjcf(keyframes: &Keyframes<'_>, options: &MjcfOptions) -> String {
+    let mechanism = keyframes.mechanism();
     let skeleton = Skeleton::new(mechanism, None);
     Model { mechanism, bodies: skeleton.bodies(), options }.document(keyframes)
 }
@@ -60,7 +89,7 @@ struct Model<'a> {
 }
 
 impl Model<'_> {
-    fn document(&self, keyframes: &Keyframes) -> String {
+    fn document(&self, keyframes: &Keyframes<'_>) -> String {
         let servos = Servos::new(self.bodies, self.options.density);
         let mut names = Names::of(self.mechanism);
         let mut base = Element::new("body").with("name", "base");
@@ -183,19 +212,19 @@ impl Model<'_> {
     }
 
     /// The keyframes.
-    fn postures(&self, keyframes: &Keyframes) -> Element {
+    fn postures(&self, keyframes: &Keyframes<'_>) -> Element {
         let mut list = Element::new("keyframe");
-        let home = &keyframes.home;
-        list.comment(match keyframes.source {
+        let home = keyframes.home();
+        list.comment(match keyframes.source() {
             Source::Modes => format!("the working modes at the home pose; {home} is home"),
             Source::Branches => format!("the branches with the input at home; {home} is home"),
             Source::HomeMode => "the home mode; there are too many to write".to_owned(),
             Source::Home => "home; there are no closed forms of other modes".to_owned(),
         });
-        if !keyframes.missed.is_empty() {
-            list.comment(format!("do not reach the home pose: {}", keyframes.missed.join(" ")));
+        if !keyframes.missed().is_empty() {
+            list.comment(format!("do not reach the home pose: {}", keyframes.missed().join(" ")));
         }
-        for keyframe in &keyframes.reached {
+        for keyframe in keyframes.reached() {
             let mut name = keyframe.name.clone();
             if !keyframe.within_limits {
                 name.push_str(OUT_OF_LIMITS);
