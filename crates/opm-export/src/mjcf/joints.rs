@@ -13,10 +13,11 @@ use std::collections::BTreeSet;
 /// the slide: the larger motion is held to the smaller one's accuracy.
 const LARGE_PITCH: f64 = 1.0;
 
-/// The names that are taken. Those of opm's joints come first.
+/// The names that are taken. Those of opm's joints and legs come first.
 pub struct Names {
     joints: BTreeSet<String>,
     bodies: BTreeSet<String>,
+    constraints: BTreeSet<String>,
 }
 
 /// A joint of MuJoCo, and what couples it to the one before.
@@ -40,7 +41,12 @@ impl Names {
             coordinates.chain([joint.name.clone()])
         });
         let bodies = ["base", "platform"].map(str::to_owned);
-        Self { joints: joints.collect(), bodies: BTreeSet::from(bodies) }
+        let legs = mechanism.legs.iter().map(|leg| leg.name.clone());
+        Self {
+            joints: joints.collect(),
+            bodies: BTreeSet::from(bodies),
+            constraints: legs.collect(),
+        }
     }
 
     /// A name for a body, as it is wanted or with underscores behind.
@@ -94,7 +100,7 @@ pub fn joints(joint: &Joint, body: &Body, servos: &Servos, names: &mut Names) ->
                 (&*slide, &**hinge, pitch)
             };
             let coupling = Element::new("joint")
-                .with("name", &*joint.name)
+                .with("name", unique(&mut names.constraints, joint.name.clone()))
                 .with("joint1", follows)
                 .with("joint2", leads)
                 .numbers("polycoef", &[0.0, ratio, 0.0, 0.0, 0.0]);
