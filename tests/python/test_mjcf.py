@@ -152,7 +152,7 @@ def test_the_loops_close_at_poses_of_every_mode(exported):
         names = [exported.model.key(i).name for i in range(exported.model.nkey)]
         rows = []
         for key in generator.choices(names, k=MODES):
-            signs = key.removesuffix("_out_of_limits").replace("p", "+").replace("m", "-")
+            signs = key.removesuffix("_out_of_limits").removesuffix("_loose").replace("p", "+").replace("m", "-")
             moves = {
                 name: (span, generator.uniform(0.1, 0.4), generator.uniform(0, 6.3), home)
                 for name, home, span in exported.spans(angle=0.3, length=0.05)
@@ -190,10 +190,26 @@ def test_every_mode_at_home_is_a_keyframe(exported):
         found = answer(exported.opm, "ik", exported.name, "--pose", pose, "--all-modes")["solutions"]
         modes = [(solution["mode"], solution["within_limits"]) for solution in found]
     letters = str.maketrans("+- ", "pm_")
-    assert names == [
+    assert [name.replace("_loose", "") for name in names] == [
         (signs.translate(letters) or "home") + ("" if within else "_out_of_limits")
         for signs, within in modes
     ]
+
+
+def test_a_mode_is_loose_where_held_motors_leave_a_motion(exported):
+    if exported.is_linkage:
+        pytest.skip("a linkage is moved by its input")
+    model, data = exported.model, exported.data
+    servos = np.zeros((model.nu, model.nv))
+    for servo in range(model.nu):
+        servos[servo, model.jnt_dofadr[model.actuator_trnid[servo][0]]] = 1.0
+    for number in range(model.nkey):
+        mujoco.mj_resetDataKeyframe(model, data, number)
+        mujoco.mj_forward(model, data)
+        rows = data.efc_J.reshape(-1, model.nv)
+        equalities = rows[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]
+        least = np.linalg.svd(np.vstack([equalities, servos]), compute_uv=False)[model.nv - 1]
+        assert ("_loose" in model.key(number).name) == (least < 1e-9), least
 
 
 def test_the_platform_is_where_opm_says(exported):

@@ -28,7 +28,8 @@ pub enum ExportFormat {
 /// hinge and the slide NAME.slide. The platform is the body `platform`, at its reference point and parallel to the
 /// base at home; sensors give its position and orientation. The first leg carries the platform, and a weld closes
 /// each of the others. Each actuated joint has a position servo of its name. Each working mode that reaches the home
-/// pose is a keyframe, named by its signs: pp_mp_p is ++ -+ +; those past limits end in _out_of_limits.
+/// pose is a keyframe, named by its signs: pp_mp_p is ++ -+ +; those past limits end in _out_of_limits,
+/// and those in which held motors do not hold the platform in _loose.
 ///
 /// Bodies are those that `opm plot` draws, so their masses are a guess: set --density, or edit the file. The three
 /// limits of a spherical joint are left out, because MuJoCo limits only the angle of a ball. A mechanism that does not

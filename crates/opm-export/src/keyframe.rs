@@ -16,6 +16,8 @@ pub struct Keyframe {
     pub joints: Vec<f64>,
     /// Whether all of them are within their limits.
     pub within_limits: bool,
+    /// Whether the platform can move while the actuated joints are held (a parallel singularity).
+    pub loose: bool,
 }
 
 /// Where the postures come from.
@@ -92,17 +94,27 @@ impl<'a> Keyframes<'a> {
         };
         let pose = manipulator.home_pose();
         let mut buffer = manipulator.solution();
+        let (mut jacobians, length) =
+            (manipulator.jacobians(), manipulator.characteristic_length());
+        // With too few motors every posture is loose, which says nothing of it.
+        let held = manipulator.actuated().len() >= manipulator.task_coordinates().len();
         let (mut reached, mut missed) = (Vec::new(), Vec::new());
         for mode in modes {
             let name = name(&manipulator.format_mode(mode));
-            match manipulator.inverse(&pose, mode, &mut buffer) {
-                Ok(Some(solution)) => reached.push(Keyframe {
-                    name,
-                    joints: solution.joints().to_vec(),
-                    within_limits: solution.within_limits(),
-                }),
-                Ok(None) | Err(_) => missed.push(name),
-            }
+            let Ok(Some(solution)) = manipulator.inverse(&pose, mode, &mut buffer) else {
+                missed.push(name);
+                continue;
+            };
+            let singular = manipulator.differentiate(solution, &mut jacobians).is_ok() && {
+                let conditioning = manipulator.conditioning(&jacobians, length);
+                conditioning.manipulability.is_infinite()
+            };
+            reached.push(Keyframe {
+                name,
+                joints: solution.joints().to_vec(),
+                within_limits: solution.within_limits(),
+                loose: held && singular,
+            });
         }
         let home = name(&manipulator.format_mode(manipulator.home_mode()));
         Self { mechanism, reached, missed, home, source }
@@ -118,6 +130,7 @@ impl<'a> Keyframes<'a> {
             name: name(&position.branch.to_string()),
             joints: position.joints,
             within_limits: position.within_limits,
+            loose: false,
         });
         let (reached, home) = (reached.collect(), name(&input.home_branch().to_string()));
         Some(Self { mechanism, reached, missed: Vec::new(), home, source: Source::Branches })
@@ -126,7 +139,8 @@ impl<'a> Keyframes<'a> {
     fn at_home(mechanism: &'a Mechanism) -> Self {
         let joints = mechanism.coordinates().map(|c| c.home).collect();
         let home = name("");
-        let reached = vec![Keyframe { name: home.clone(), joints, within_limits: true }];
+        let reached =
+            vec![Keyframe { name: home.clone(), joints, within_limits: true, loose: false }];
         Self { mechanism, reached, missed: Vec::new(), home, source: Source::Home }
     }
 }

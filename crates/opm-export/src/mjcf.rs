@@ -226,6 +226,9 @@ impl Model<'_> {
         }
         for keyframe in keyframes.reached() {
             let mut name = keyframe.name.clone();
+            if keyframe.loose {
+                name.push_str(LOOSE);
+            }
             if !keyframe.within_limits {
                 name.push_str(OUT_OF_LIMITS);
             }
@@ -253,6 +256,8 @@ struct Chain<'a> {
 const PLATFORM: &str = "platform";
 /// The name of the site at the platform's reference point.
 const SITE: &str = "platform";
+/// What follows the name of a mode in which the platform is loose while the motors are held.
+const LOOSE: &str = "_loose";
 /// What follows the name of a mode that is past limits.
 const OUT_OF_LIMITS: &str = "_out_of_limits";
 
