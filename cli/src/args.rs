@@ -1,11 +1,13 @@
 //! Every argument of the command line; the doc comments are the help.
 
+mod export;
 mod measure;
 mod motion;
 mod pose;
 mod recording;
 mod workspace;
 
+pub use export::{ExportArgs, ExportFormat, MjcfArgs};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
@@ -59,6 +61,7 @@ Examples:
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds
   opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
+  opm export mjcf plano-spherical-5dof -o plano.xml    a model for MuJoCo, loops and all
   opm help format                                      how to write a mechanism file";
 
 /// Options of every subcommand.
@@ -96,6 +99,7 @@ pub enum Command {
     Plot(PlotArgs),
     Inspect(InspectArgs),
     Layout(LayoutArgs),
+    Export(ExportArgs),
     Examples(ExamplesArgs),
     Schema(SchemaArgs),
     Format(FormatArgs),

@@ -8,6 +8,7 @@ mod change;
 mod completions;
 mod decompose;
 mod examples;
+mod export;
 mod failure;
 mod fk;
 mod format;
@@ -27,6 +28,7 @@ mod progress;
 mod runs;
 mod schema;
 mod stream;
+mod target;
 mod text;
 mod trajectory;
 mod transform;
@@ -72,6 +74,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Layout(command) => layout::run(command, output),
+        Command::Export(command) => export::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),
         Command::Format(_) => format::run(output),

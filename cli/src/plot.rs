@@ -19,13 +19,13 @@ mod workspace;
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
 use crate::progress::interruptible;
-use opm_mcap::{PartialFile, Sink};
+use crate::target::Target;
 use opm_plot::{Drawing, Size, png};
 use serde_json::json;
 use source::Source;
 use std::fs::File;
-use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Read};
+use std::path::Path;
 
 /// The first bytes of every MCAP file.
 const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
@@ -134,38 +134,4 @@ fn is_recording(path: &Path) -> bool {
     let mut start = [0; MAGIC.len()];
     let begins = File::open(path).and_then(|mut file| file.read_exact(&mut start));
     named || begins.is_ok() && start == MAGIC
-}
-
-/// The file of the picture: opened before the work, so that a wrong path costs no time.
-struct Target {
-    path: PathBuf,
-    file: Option<PartialFile>,
-}
-
-impl Target {
-    fn create(path: &Path) -> Result<Self, Failure> {
-        let file = PartialFile::create(path).map_err(|e| Failure::at(path.display(), e))?;
-        Ok(Self { path: path.to_owned(), file: Some(file) })
-    }
-
-    fn commit(mut self, bytes: &[u8]) -> Result<(), Failure> {
-        let Some(mut file) = self.file.take() else { return Ok(()) };
-        let written = match file.write_all(bytes) {
-            Ok(()) => file.commit(),
-            Err(error) => {
-                file.discard();
-                Err(error)
-            }
-        };
-        written.map_err(|error| Failure::at(self.path.display(), error))
-    }
-}
-
-impl Drop for Target {
-    /// An incomplete picture is of no use.
-    fn drop(&mut self) {
-        if let Some(file) = self.file.take() {
-            file.discard();
-        }
-    }
 }

@@ -4,6 +4,7 @@
 use crate::error::wrong;
 use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
 use opm_core::mechanism::examples;
+use opm_export::MjcfOptions;
 use opm_workspace::MOST_THREADS;
 use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -46,6 +47,12 @@ pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
     }
     let number = whole(given, "threads", &(1..=u64::from(MOST_THREADS)))?;
     Ok(NonZeroUsize::new(number as usize))
+}
+
+/// The arguments `density` and `time_step`.
+pub fn mjcf_options(density: f64, time_step: f64) -> PyResult<MjcfOptions> {
+    MjcfOptions::new(density, time_step)
+        .map_err(|error| wrong(format!("{} is {error}", error.option)))
 }
 
 /// The argument `shards`.

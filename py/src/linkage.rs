@@ -8,6 +8,7 @@ use crate::snap;
 use crate::solutions::{Names, Solutions};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
+use opm_export::{Keyframes, mjcf};
 use pyo3::prelude::*;
 use std::f64::consts::PI;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -254,6 +255,34 @@ impl Linkage {
             },
         )?;
         Solutions::of_all_modes(py, Names::of_branches(&self.inner), values.len(), tables)
+    }
+
+    /// The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
+    ///
+    /// Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
+    /// position servo of its name, and each branch with the input at home a keyframe, named by its
+    /// signs: ``p_m`` is ``+ -``. It is the file that ``opm export mjcf`` writes.
+    ///
+    /// Parameters
+    /// ----------
+    /// density : float
+    ///     Density of all bodies, kilograms per cubic metre.
+    /// time_step : float
+    ///     Time step of the simulation, seconds; the loops are held as stiffly as it allows.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     For ``mujoco.MjModel.from_xml_string``, or a file.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A number is not positive.
+    #[pyo3(signature = (*, density = 2700.0, time_step = 0.001))]
+    fn to_mjcf(&self, py: Python<'_>, density: f64, time_step: f64) -> PyResult<String> {
+        let options = arguments::mjcf_options(density, time_step)?;
+        Ok(py.detach(|| mjcf(&Keyframes::of(self.inner.mechanism()), &options)))
     }
 
     fn __repr__(&self) -> String {

@@ -1,6 +1,6 @@
 //! Manipulators: from files, their decomposition, and inverse kinematics of arrays of poses.
 
-use crate::arguments::{self, Array};
+use crate::arguments::{self, Array, mjcf_options};
 use crate::decomposition::Decomposition;
 use crate::error::{failed, wrong};
 use crate::html;
@@ -15,6 +15,7 @@ use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::file::{FileUnits, Locations, MechanismFile};
 use opm_core::task;
+use opm_export::{Keyframes, mjcf};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -409,6 +410,34 @@ impl Manipulator {
             return self.inverse_all(py, &poses, threads);
         }
         Solutions::find(py, &self.inner, &poses, self.mode(mode)?, threads)
+    }
+
+    /// The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
+    ///
+    /// Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
+    /// position servo of its name, and each working mode that reaches the home pose a keyframe, named by its
+    /// signs: ``pp_mp_p`` is ``++ -+ +``. It is the file that ``opm export mjcf`` writes.
+    ///
+    /// Parameters
+    /// ----------
+    /// density : float
+    ///     Density of all bodies, kilograms per cubic metre.
+    /// time_step : float
+    ///     Time step of the simulation, seconds; the loops are held as stiffly as it allows.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     For ``mujoco.MjModel.from_xml_string``, or a file.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     A number is not positive.
+    #[pyo3(signature = (*, density = 2700.0, time_step = 0.001))]
+    fn to_mjcf(&self, py: Python<'_>, density: f64, time_step: f64) -> PyResult<String> {
+        let options = mjcf_options(density, time_step)?;
+        Ok(py.detach(|| mjcf(&Keyframes::of_manipulator(&self.inner), &options)))
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -92,6 +92,7 @@ fn help_and_version_go_to_standard_output() {
         "workspace",
         "plot",
         "inspect",
+        "export",
         "examples",
         "schema",
         "completions",
@@ -122,6 +123,7 @@ fn the_examples_in_the_help_parse() {
         "trajectory",
         "workspace",
         "plot",
+        "export mjcf",
         "examples",
         "schema",
     ];
@@ -129,7 +131,8 @@ fn the_examples_in_the_help_parse() {
         if command == "plot" {
             record_for_plots(&folder);
         }
-        let help = opm(&[command, "--help"]);
+        let words: Vec<&str> = command.split(' ').chain(["--help"]).collect();
+        let help = opm(&words);
         let (_, examples) = help.text().split_once("Examples:\n").expect("examples");
         // A backslash continues a line.
         let examples = examples.replace("\\\n", " ");
@@ -146,7 +149,7 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                let written = [".mcap", ".svg", ".png"].iter().any(|ending| arg.ends_with(ending));
+                let written = [".mcap", ".svg", ".png", ".xml"].iter().any(|e| arg.ends_with(e));
                 if written || *arg == "joints.csv" {
                     *arg = folder.arg(arg);
                 }

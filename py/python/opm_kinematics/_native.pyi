@@ -233,6 +233,30 @@ class Linkage:
         OpmError
             There is no joint of this name.
         """
+    def to_mjcf(self, *, density: float = 2700.0, time_step: float = 0.001) -> str:
+        """The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
+
+        Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
+        position servo of its name, and each branch with the input at home a keyframe, named by its
+        signs: ``p_m`` is ``+ -``. It is the file that ``opm export mjcf`` writes.
+
+        Parameters
+        ----------
+        density : float
+            Density of all bodies, kilograms per cubic metre.
+        time_step : float
+            Time step of the simulation, seconds; the loops are held as stiffly as it allows.
+
+        Returns
+        -------
+        str
+            For ``mujoco.MjModel.from_xml_string``, or a file.
+
+        Raises
+        ------
+        OpmError
+            A number is not positive.
+        """
     def range(self, input: str | None = None) -> NDArray[np.float64]:
         """The range of one joint in which the loop closes, joint limits not considered.
 
@@ -505,6 +529,30 @@ class Manipulator:
         ------
         OpmError
             The pose is out of reach.
+        """
+    def to_mjcf(self, *, density: float = 2700.0, time_step: float = 0.001) -> str:
+        """The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
+
+        Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
+        position servo of its name, and each working mode that reaches the home pose a keyframe, named by its
+        signs: ``pp_mp_p`` is ``++ -+ +``. It is the file that ``opm export mjcf`` writes.
+
+        Parameters
+        ----------
+        density : float
+            Density of all bodies, kilograms per cubic metre.
+        time_step : float
+            Time step of the simulation, seconds; the loops are held as stiffly as it allows.
+
+        Returns
+        -------
+        str
+            For ``mujoco.MjModel.from_xml_string``, or a file.
+
+        Raises
+        ------
+        OpmError
+            A number is not positive.
         """
     def _repr_html_(self) -> str: ...
     def inverse(self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None) -> Solutions:

@@ -1,0 +1,59 @@
+//! Arguments of the commands that write a mechanism for other programs.
+
+use super::MechanismArgs;
+use clap::{Subcommand, ValueHint};
+use opm_export::MjcfOptions;
+use std::path::PathBuf;
+
+/// Write a mechanism as a model for another program
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm export mjcf plano-spherical-5dof -o plano.xml")]
+pub struct ExportArgs {
+    /// The format of the model.
+    #[command(subcommand)]
+    pub format: ExportFormat,
+}
+
+/// The formats that a mechanism is written in.
+#[derive(Debug, Subcommand)]
+pub enum ExportFormat {
+    Mjcf(MjcfArgs),
+}
+
+/// Write a mechanism as a model of MuJoCo (MJCF), with its closed loops
+///
+/// Joints have opm's names, and at every pose opm's values; a ball is one joint with a quaternion, a helical joint a
+/// hinge and the slide NAME.slide. The platform is the body `platform`, at its reference point and parallel to the
+/// base at home; sensors give its position and orientation. The first leg carries the platform, and a weld closes
+/// each of the others. Each actuated joint has a position servo of its name. Each working mode that reaches the home
+/// pose is a keyframe, named by its signs: pp_mp_p is ++ -+ +; those past limits end in _out_of_limits,
+/// and those in which held motors do not hold the platform in _loose.
+///
+/// Bodies are those that `opm plot` draws, so their masses are a guess: set --density, or edit the file. The three
+/// limits of a spherical joint are left out, because MuJoCo limits only the angle of a ball. A mechanism that does not
+/// decompose is written, too, with one keyframe. All numbers are in metres, radians, kilograms and seconds.
+///
+/// The output is the model; --format has no effect.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm export mjcf plano-spherical-5dof -o plano.xml
+  opm export mjcf my-mechanism.toml --set h=140mm --density 1200 > model.xml
+  opm export mjcf five-bar -o five-bar.xml --time-step 0.0005
+  python -m mujoco.viewer --mjcf=plano.xml")]
+pub struct MjcfArgs {
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
+    /// Output file; standard output if it is - or not given
+    #[arg(short, long, value_name = "OUT.xml", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Density of all bodies, kilograms per cubic metre
+    #[arg(long, value_name = "KG/M3", default_value_t = MjcfOptions::DENSITY, allow_negative_numbers = true)]
+    pub density: f64,
+    /// Time step of the simulation, seconds; the loops are held as stiffly as it allows
+    #[arg(long, value_name = "SECONDS", default_value_t = MjcfOptions::TIME_STEP, allow_negative_numbers = true)]
+    pub time_step: f64,
+}

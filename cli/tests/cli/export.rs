@@ -1,0 +1,160 @@
+//! `opm export mjcf`: the model has what the mechanism has, and wrong input is told. What MuJoCo makes of the models is
+//! tested in `tests/python`.
+
+use crate::PLANO;
+use crate::run::{Folder, keys, opm, opm_reading};
+use roxmltree::Document;
+use std::fs;
+
+/// The names of all elements of a kind, in the order of the model.
+fn names<'a>(model: &'a Document<'_>, kind: &str) -> Vec<&'a str> {
+    model
+        .descendants()
+        .filter(|n| n.has_tag_name(kind))
+        .filter_map(|n| n.attribute("name"))
+        .collect()
+}
+
+#[test]
+fn joints_have_the_names_and_values_of_opm() {
+    let folder = Folder::new();
+    let file = folder.arg("plano.xml");
+    let run = opm(&["export", "mjcf", PLANO, "-o", &file]);
+    assert_eq!(run.text(), "");
+    assert!(run.stderr.contains("plano.xml: 128 keyframes"), "{}", run.stderr);
+    assert_eq!(folder.names(), ["plano.xml"]);
+    let text = folder.read("plano.xml");
+    let model = Document::parse(&text).unwrap();
+
+    let home = opm(&["ik", PLANO, "--pose", "x=0", "--format", "json"]).json();
+    let solution = &home["solutions"][0]["joints"];
+    let mut expected = keys(solution);
+    // The three coordinates of the ball are one joint.
+    expected.retain(|name| !name.starts_with("s4."));
+    expected.push("s4");
+    assert_eq!(names(&model, "joint"), expected);
+    for joint in model.descendants().filter(|n| n.has_tag_name("joint")) {
+        let name = joint.attribute("name").unwrap();
+        let Some(reference) = joint.attribute("ref") else {
+            assert_eq!((name, joint.attribute("type")), ("s4", Some("ball")));
+            continue;
+        };
+        let home = solution[name].as_f64().unwrap();
+        assert!((reference.parse::<f64>().unwrap() - home).abs() < 1e-12, "{name}");
+    }
+    assert_eq!(names(&model, "weld"), ["leg2", "leg3", "leg4"]);
+    assert_eq!(names(&model, "position"), ["S1", "S2", "S3", "phi14", "phi24"]);
+    assert_eq!(names(&model, "body").iter().filter(|&&name| name == "platform").count(), 1);
+    let keyframes = names(&model, "key");
+    assert_eq!(keyframes.len(), 128);
+    assert!(keyframes.contains(&"pp_mp_pm_m"), "{keyframes:?}");
+}
+
+/// A file, standard output and `-` hold the same bytes, and so does a model of the mechanism from standard input.
+#[test]
+fn the_model_goes_to_standard_output_too() {
+    let folder = Folder::new();
+    let file = folder.arg("a.xml");
+    opm(&["export", "mjcf", "five-bar", "-o", &file]).text();
+    let written = folder.read("a.xml");
+    assert_eq!(opm(&["export", "mjcf", "five-bar"]).text(), written);
+    assert_eq!(opm(&["export", "mjcf", "five-bar", "-o", "-", "--format", "json"]).text(), written);
+    let mechanism = opm(&["examples", "five-bar"]).stdout;
+    assert_eq!(opm_reading(&mechanism, &["export", "mjcf", "-"]).text(), written);
+}
+
+#[test]
+fn limits_density_and_time_step_are_taken() {
+    let arguments = ["--set", "limits.S=0:0.3", "--density", "1000", "--time-step", "0.002"];
+    let run = opm(&[&["export", "mjcf", PLANO], &arguments[..]].concat());
+    let model = Document::parse(run.text()).unwrap();
+    let named = |kind: &str, name: &str| {
+        model
+            .descendants()
+            .find(|n| n.has_tag_name(kind) && n.attribute("name") == Some(name))
+            .unwrap()
+    };
+    assert_eq!(named("joint", "S1").attribute("range"), Some("0 0.3"));
+    assert_eq!(named("position", "S1").attribute("ctrlrange"), Some("0 0.3"));
+    assert_eq!(named("weld", "leg2").attribute("solref"), Some("0.004 1"));
+    let mass = |text: &str| -> f64 {
+        let model = Document::parse(text).unwrap();
+        let masses = model.descendants().filter_map(|n| n.attribute("mass"));
+        masses.map(|mass| mass.parse::<f64>().unwrap()).sum()
+    };
+    let aluminium = opm(&["export", "mjcf", PLANO, "--set", "limits.S=0:0.3"]).stdout;
+    assert!((mass(&aluminium) / mass(run.text()) - 2.7).abs() < 1e-12);
+}
+
+/// In the other mode of leg 1 its elbow B1 is at 88 degrees.
+#[test]
+fn modes_past_limits_are_named() {
+    let run = opm(&["export", "mjcf", "planar-3rrr", "--set", "B1.limits=-80deg:80deg"]);
+    let model = Document::parse(run.text()).unwrap();
+    let keyframes = names(&model, "key");
+    assert_eq!(keyframes.len(), 8);
+    for name in keyframes {
+        assert_eq!(name.ends_with("_out_of_limits"), name.starts_with('m'), "{name}");
+    }
+}
+
+/// Two arms that close a loop in no subspaces of their own: there is a model, with home as its only keyframe.
+#[test]
+fn a_mechanism_without_closed_forms_is_written_too() {
+    let joint = |name: &str, axis: &str, point: &str| {
+        format!("  {{ name = \"{name}\", type = \"revolute\", axis = {axis}, point = {point} }},\n")
+    };
+    let leg = |name: &str, joints: &[String]| {
+        format!("[[leg]]\nname = \"{name}\"\njoints = [\n{}]\n", joints.concat())
+    };
+    let heading = "format = 1\nname = \"a <general> loop\"\nunits = { length = \"mm\", angle = \"deg\" }\n\
+                   [platform]\npoint = [0, 0, 100]\n";
+    let one = [
+        joint("a", "[1, 2, 3]", "[0, 0, 0]"),
+        joint("b", "[3, -1, 1]", "[10, 50, 0]"),
+        joint("c", "[1, 1, -2]", "[0, 20, 70]"),
+        joint("d", "[0, 1, 4]", "[20, 0, 90]"),
+    ];
+    let two = [
+        joint("e", "[2, 1, 0]", "[100, 0, 0]"),
+        joint("f", "[1, -3, 1]", "[110, 10, 30]"),
+        joint("g", "[5, 1, 2]", "[70, 30, 60]"),
+    ];
+    let file = format!("{heading}{}{}", leg("one", &one), leg("two", &two));
+    let run = opm_reading(&file, &["export", "mjcf", "-"]);
+    let model = Document::parse(run.text()).unwrap();
+    assert_eq!(model.root_element().attribute("model"), Some("a <general> loop"));
+    assert_eq!(names(&model, "joint"), ["a", "b", "c", "d", "e", "f", "g"]);
+    assert_eq!(names(&model, "key"), ["home"]);
+    assert!(run.stderr.contains("home is the only keyframe"), "{}", run.stderr);
+}
+
+#[test]
+fn wrong_input_is_told_and_leaves_no_file() {
+    let folder = Folder::new();
+    let good = folder.arg("a.xml");
+    let export = |args: &[&str]| opm(&[&["export", "mjcf"], args].concat());
+    export(&["none.toml", "-o", &good]).fails_with_one_line(1, &["none.toml: No such file"]);
+    export(&["plano-sperical-5dof", "-o", &good]).fails_with_one_line(1, &["plano-spherical-5dof"]);
+    for name in ["a.mjcf", "a", "a.xml.gz"] {
+        let output = folder.arg(name);
+        export(&[PLANO, "-o", &output])
+            .fails_with_one_line(2, &["--output", "expected a name that ends in .xml"]);
+    }
+    let nowhere = folder.arg("no/where.xml");
+    export(&[PLANO, "-o", &nowhere])
+        .fails_with_one_line(1, &["where.xml", "cannot create", "No such file"]);
+    for flag in ["--density", "--time-step"] {
+        for value in ["0", "-1", "inf", "nan"] {
+            export(&[PLANO, "-o", &good, flag, value])
+                .fails_with_one_line(2, &[flag, "expected a positive number"]);
+        }
+    }
+    opm(&["export"]).fails(2, &["mjcf"]);
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+
+    let text = opm(&["examples", PLANO]).stdout;
+    let own = folder.write("own.xml", &text);
+    export(&[&own, "-o", &own]).fails_with_one_line(2, &["--output", "also the input"]);
+    assert_eq!(fs::read_to_string(folder.path("own.xml")).unwrap(), text);
+}

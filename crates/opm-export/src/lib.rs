@@ -1,0 +1,29 @@
+//! Mechanisms as models of other programs.
+//!
+//! Formats for robots describe trees of bodies, and closed loops come to them second. opm knows the assembled pose,
+//! every passive joint and every working mode, so it can write all of a parallel mechanism:
+//!
+//! * [`mjcf()`] writes the model format of MuJoCo, which other simulators read, too.
+//! * [`Keyframes`] are the postures of a mechanism at its home pose, one for each working mode, by name.
+//!
+//! Everything that is written is in metres, radians, kilograms and seconds, with all digits. The values of joints are
+//! those that opm reports.
+//!
+//! ```
+//! use opm_export::{Keyframes, MjcfOptions, mjcf};
+//!
+//! let manipulator = opm_core::Manipulator::example("planar-3rrr")?;
+//! let keyframes = Keyframes::of_manipulator(&manipulator);
+//! assert_eq!(keyframes.reached()[0].name, "p_p_p");
+//! let model = mjcf(&keyframes, &MjcfOptions::default());
+//! assert!(model.contains("<mujoco model=\"planar-3rrr\">"));
+//! # Ok::<(), opm_core::ReadError>(())
+//! ```
+
+mod keyframe;
+mod mass;
+mod mjcf;
+mod xml;
+
+pub use keyframe::{Keyframe, Keyframes, Source};
+pub use mjcf::{MjcfOptions, NotPositive, mjcf};

@@ -1,0 +1,68 @@
+//! The shapes and the masses of bodies.
+
+use crate::mass::Mass;
+use crate::xml::Element;
+use nalgebra::{UnitQuaternion, Vector3};
+use opm_core::skeleton::{Body, Material, Part, Solid};
+
+/// The shapes of a body.
+pub fn shapes(body: &Body) -> impl Iterator<Item = Element> {
+    body.parts.iter().map(geom)
+}
+
+/// The mass of a body.
+pub fn inertial(mass: &Mass) -> Element {
+    let i = &mass.inertia;
+    let tensor = [i.m11, i.m22, i.m33, i.m12, i.m13, i.m23];
+    Element::new("inertial")
+        .numbers("pos", mass.centre.coords.as_slice())
+        .numbers("mass", &[mass.mass])
+        .numbers("fullinertia", &tensor)
+}
+
+/// The colours.
+pub fn materials() -> Element {
+    use Material::{Actuated, Base, Link, Passive, Platform};
+    let all = [Base, Link, Actuated, Passive, Platform];
+    Element::new("asset").children(all.map(|material| {
+        let (name, color) = look(material);
+        Element::new("material").with("name", name).numbers("rgba", &color)
+    }))
+}
+
+fn geom(part: &Part) -> Element {
+    let geom = Element::new("geom");
+    let shape = match part.solid {
+        Solid::Cylinder { from, to, radius } => {
+            let ends = [from.x, from.y, from.z, to.x, to.y, to.z];
+            geom.with("type", "cylinder").numbers("fromto", &ends).numbers("size", &[radius])
+        }
+        Solid::Ball { centre, radius } => geom
+            .with("type", "sphere")
+            .numbers("pos", centre.coords.as_slice())
+            .numbers("size", &[radius]),
+        Solid::Block { centre, axis, length, width } => {
+            let along =
+                UnitQuaternion::rotation_between(&Vector3::z(), &axis).unwrap_or_else(|| {
+                    UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
+                });
+            geom.with("type", "box")
+                .numbers("pos", centre.coords.as_slice())
+                .numbers("quat", &[along.w, along.i, along.j, along.k])
+                .numbers("size", &[0.5 * width, 0.5 * width, 0.5 * length])
+        }
+    };
+    shape.with("material", look(part.material).0)
+}
+
+/// The name and the colour of a material.
+fn look(material: Material) -> (&'static str, [f64; 4]) {
+    match material {
+        Material::Base => ("base", [0.25, 0.27, 0.3, 1.0]),
+        Material::Link => ("link", [0.7, 0.72, 0.75, 1.0]),
+        Material::Actuated => ("actuated", [0.9, 0.5, 0.1, 1.0]),
+        Material::Passive => ("passive", [0.55, 0.75, 0.9, 1.0]),
+        Material::Platform => ("platform", [0.15, 0.4, 0.75, 1.0]),
+        Material::Imaginary => ("imaginary", [0.6, 0.6, 0.6, 0.3]),
+    }
+}

@@ -1,0 +1,101 @@
+//! Position servos, and the inertia of their motors.
+//!
+//! A servo is a spring and a damper on the joint. They are chosen for all that moves: its mass where the joint is a
+//! slide, its moment of inertia about the joint where it is a hinge, as though the mechanism moved as one body. On such a
+//! load a servo is critically damped. What it really moves is less, so that it follows at least as fast.
+
+use super::list;
+use crate::mass::Mass;
+use crate::xml::Element;
+use nalgebra::{Unit, Vector3};
+use opm_core::Quantity;
+use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::skeleton::Body;
+use std::f64::consts::TAU;
+
+/// The natural frequency of a servo on its load, radians per second: 20 Hz.
+const FREQUENCY: f64 = 20.0 * TAU;
+/// The inertia of a motor, as a share of its load.
+const ARMATURE: f64 = 0.1;
+
+/// The servos of a mechanism.
+pub struct Servos {
+    /// All that moves, as one body, in base coordinates at home.
+    moving: Mass,
+}
+
+impl Servos {
+    /// The first of the bodies is the base.
+    pub fn new(bodies: &[Body], density: f64) -> Self {
+        let masses = bodies[1..].iter().map(|body| {
+            let mass = Mass::of_body(body, density);
+            mass.moved(body.origin.coords)
+        });
+        Self { moving: Mass::sum(&masses.collect::<Vec<_>>()) }
+    }
+
+    /// The load of a joint coordinate: kilograms, or kilograms times square metres.
+    fn load(&self, joint: &Joint, number: usize) -> f64 {
+        // A screw lifts what it turns.
+        let advance = match joint.kind {
+            JointKind::Helical { pitch } => pitch,
+            _ => 0.0,
+        };
+        match joint.coordinates[number].quantity {
+            Quantity::Length => self.moving.mass,
+            Quantity::Angle => {
+                let turned = self.moving.about(&axis(joint, number), &joint.point);
+                turned + self.moving.mass * advance * advance
+            }
+        }
+    }
+
+    /// A joint with the inertia of its motor, if it has one.
+    pub fn armed(&self, element: Element, joint: &Joint, number: usize) -> Element {
+        if !joint.actuated {
+            return element;
+        }
+        element.numbers("armature", &[ARMATURE * self.load(joint, number)])
+    }
+
+    /// The servos of a joint: one for each coordinate if it is actuated.
+    pub fn actuators(&self, joint: &Joint) -> Vec<Element> {
+        let count = if joint.actuated { joint.coordinates.len() } else { 0 };
+        (0..count).map(|number| self.actuator(joint, number)).collect()
+    }
+
+    fn actuator(&self, joint: &Joint, number: usize) -> Element {
+        let coordinate = &joint.coordinates[number];
+        let ball = joint.kind == JointKind::Spherical;
+        let name = if ball { &joint.name } else { &coordinate.name };
+        let load = self.load(joint, number);
+        let element = Element::new("position")
+            .with("name", &*coordinate.name)
+            .with("joint", &**name)
+            .numbers("kp", &[load * FREQUENCY * FREQUENCY])
+            .numbers("kv", &[2.0 * load * FREQUENCY]);
+        let element = match coordinate.limits.filter(|_| !ball) {
+            Some(limits) => element.with("ctrllimited", "true").with("ctrlrange", list(&limits)),
+            None => element,
+        };
+        if ball {
+            // A component of the rotation vector.
+            let gear: [f64; 6] = std::array::from_fn(|i| f64::from(u8::from(i == number)));
+            return element.numbers("gear", &gear);
+        }
+        element
+    }
+}
+
+/// The axis of a joint's coordinate.
+fn axis(joint: &Joint, number: usize) -> Unit<Vector3<f64>> {
+    match joint.kind {
+        JointKind::Universal { second } if number == 1 => second,
+        JointKind::Spherical => [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()][number],
+        JointKind::Universal { .. }
+        | JointKind::Revolute
+        | JointKind::Prismatic
+        | JointKind::Helical { .. }
+        | JointKind::Cylindrical => joint.axis,
+    }
+}

@@ -1,0 +1,332 @@
+"""`opm export mjcf`, read and simulated by MuJoCo: joints have opm's values, and the loops close and stay closed."""
+
+import csv
+import json
+import random
+import re
+import subprocess
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+import pinocchio
+import pytest
+from conftest import LINKAGES, REPOSITORY
+
+# Of the linkages that opm ships, Sarrus' has a pose, too.
+LOOPS = [name for name in LINKAGES if name != "sarrus"]
+SHIPPED = REPOSITORY / "data" / "mechanisms"
+MECHANISMS = sorted(path.stem for path in SHIPPED.glob("*.toml"))
+# Joints that no shipped mechanism has, in place of some that one has: its name, what is replaced, and by what.
+ARM = re.compile(r'  \{ name = "mu4".*\n.*\n')
+UNIVERSAL = (
+    '  { name = "u4", type = "universal", axis = [1, 0, 0], axis2 = [0, 1, 0], point = [0, 0, 0], actuated = true, '
+    "home = [10, -5], limits = [[-60, 60], [-60, 60]] },\n"
+)
+PITCH = re.compile("pitch = 20 ")
+VARIED = {
+    "universal": ("double-spherical-5dof", ARM, UNIVERSAL),
+    "left-handed": ("translational-helical-3dof-joints", PITCH, "pitch = -35, home = 20 "),
+    "large-pitch": ("translational-helical-3dof-joints", PITCH, "pitch = 1500, home = 20 "),
+}
+# Rounding of two chains of ten joints, and of the numbers that opm gives, in metres and in parts of a quaternion.
+CLOSED = 1e-12
+# Poses a mechanism, shared among modes that are drawn at random.
+POSES, MODES = 200, 4
+# A servoed motion of two seconds, and how wide a loop may open in it, in metres.
+STEPS, GAP = 2000, 50e-6
+GRAVITY = 9.81
+
+
+def run(opm, *arguments):
+    return subprocess.run([opm, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+def answer(opm, *arguments):
+    return json.loads(run(opm, *arguments, "--format", "json", "--quiet"))
+
+
+def table(text):
+    """The rows of a table, numbers where they are numbers; rows out of reach are left out."""
+    rows = [row for row in csv.DictReader(text.splitlines()) if all(row.values())]
+    text = ("branch", "mode")
+    return [{k: v if k in text else float(v) for k, v in row.items()} for row in rows]
+
+
+class Exported:
+    """A mechanism, its model, and what it is compared with."""
+
+    def __init__(self, opm, folder, name):
+        self.opm, self.folder, self.name = opm, folder, name
+        self.path = folder / "model.xml"
+        self.varied = name in VARIED
+        if self.varied:
+            base, old, new = VARIED[name]
+            text, count = old.subn(new, (SHIPPED / f"{base}.toml").read_text())
+            assert count == 1
+            self.name = folder / f"{name}.toml"
+            self.name.write_text(text)
+        name = self.name
+        run(opm, "export", "mjcf", name, "-o", self.path)
+        self.model = mujoco.MjModel.from_xml_path(str(self.path))
+        self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+        self.data = mujoco.MjData(self.model)
+        self.answer = answer(opm, "decompose", name)
+        self.is_linkage = name in LOOPS
+        mujoco.mj_forward(self.model, self.data)
+        reach = self.data.xpos[self.model.body("base").id + 1 :]
+        self.size = float(np.ptp(np.vstack([reach, np.zeros(3)]), axis=0).max())
+
+    def equalities(self, kind):
+        return [i for i in range(self.model.neq) if self.model.eq_type[i] == kind]
+
+    def pose_by(self, joints):
+        """Sets the joints to opm's values, and moves the bodies there."""
+        model, data = self.model, self.data
+        data.qpos[:] = model.qpos0
+        for number in range(model.njnt):
+            joint = model.joint(number)
+            place = joint.qposadr[0]
+            if joint.type[0] == mujoco.mjtJoint.mjJNT_BALL:
+                vector = np.array([joints[f"{joint.name}.{axis}"] for axis in "xyz"])
+                mujoco.mju_axisAngle2Quat(
+                    data.qpos[place : place + 4],
+                    vector / (np.linalg.norm(vector) or 1.0),
+                    np.linalg.norm(vector),
+                )
+            elif joint.name in joints:
+                data.qpos[place] = joints[joint.name]
+        for number in self.equalities(mujoco.mjtEq.mjEQ_JOINT):
+            # The slide of a helical joint: y - y0 = ratio (x - x0), and one of the two is opm's.
+            pair = [model.joint(i) for i in (model.eq_obj1id[number], model.eq_obj2id[number])]
+            ratio = model.eq_data[number][1]
+            slide = next(i for i in range(2) if pair[i].name not in joints)
+            known, unknown = (pair[1 - slide].qposadr[0], pair[slide].qposadr[0])
+            moved = data.qpos[known] - model.qpos0[known]
+            moved *= ratio if slide == 0 else 1 / ratio
+            data.qpos[unknown] = model.qpos0[unknown] + moved
+        mujoco.mj_kinematics(model, data)
+
+    def gaps(self):
+        """How far the ends of the legs are from the platform, in metres and in parts of a quaternion."""
+        data, model = self.data, self.model
+        gaps = []
+        for number in self.equalities(mujoco.mjtEq.mjEQ_WELD):
+            a, b = model.eq_obj1id[number], model.eq_obj2id[number]
+            turned = min(np.abs(data.xquat[a] - sign * data.xquat[b]).max() for sign in (1, -1))
+            gaps.append((np.linalg.norm(data.xpos[a] - data.xpos[b]), turned))
+        assert len(gaps) == len(self.answer["legs"]) - 1
+        return np.max(gaps, axis=0)
+
+    def motion(self, seconds, rate, coordinates, mode="home"):
+        """The rows of a motion, of which `coordinates` gives (amplitude, frequency, phase, offset)."""
+        lines = ["format = 1", 'name = "m"', 'units = { length = "m", angle = "rad" }']
+        lines += [f"duration = {seconds}", f"rate = {rate}", "[coordinates]"]
+        for name, (amplitude, frequency, phase, offset) in coordinates.items():
+            lines.append(
+                f"{name} = {{ amplitude = {amplitude}, frequency = {frequency}, phase = {phase}, offset = {offset} }}"
+            )
+        path = self.folder / "motion.toml"
+        path.write_text("\n".join(lines) + "\n")
+        arguments = ["--motion", path, "--mode", mode, "--quiet", "-o", "-"]
+        return table(run(self.opm, "trajectory", self.name, *arguments))
+
+    def spans(self, angle, length):
+        """How far each task coordinate is moved from home."""
+        for coordinate in self.answer["task_coordinates"]:
+            span = angle if coordinate["unit"] == "rad" else length * self.size
+            yield coordinate["name"], coordinate["home"], span
+
+
+@pytest.fixture(scope="module", params=[*MECHANISMS, *VARIED])
+def exported(opm, tmp_path_factory, request):
+    return Exported(opm, tmp_path_factory.mktemp("mjcf"), request.param)
+
+
+def test_the_loops_close_at_poses_of_every_mode(exported):
+    generator = random.Random(str(exported.answer["name"]))
+    if exported.is_linkage:
+        sweep = run(exported.opm, "linkage", exported.name, "--sweep", "--count", str(POSES))
+        rows = table(sweep)
+    else:
+        names = [exported.model.key(i).name for i in range(exported.model.nkey)]
+        rows = []
+        for key in generator.choices(names, k=MODES):
+            signs = key.removesuffix("_out_of_limits").removesuffix("_loose").replace("p", "+").replace("m", "-")
+            moves = {
+                name: (span, generator.uniform(0.1, 0.4), generator.uniform(0, 6.3), home)
+                for name, home, span in exported.spans(angle=0.3, length=0.05)
+            }
+            mode = "home" if key == "home" else signs.replace("_", "")
+            rows += exported.motion(POSES / MODES, 2, moves, mode)
+    assert len(rows) >= POSES
+    worst = np.zeros(2)
+    for row in rows:
+        exported.pose_by(row)
+        worst = np.maximum(worst, exported.gaps())
+    assert worst.max() < CLOSED, worst
+
+
+def test_every_mode_at_home_is_a_keyframe(exported):
+    model, data = exported.model, exported.data
+    names = [model.key(i).name for i in range(model.nkey)]
+    mujoco.mj_resetData(model, data)
+    mujoco.mj_kinematics(model, data)
+    home = data.body("platform").xpos.copy()
+    for number in range(model.nkey):
+        mujoco.mj_resetDataKeyframe(model, data, number)
+        mujoco.mj_kinematics(model, data)
+        assert max(exported.gaps()) < CLOSED
+        for servo in range(model.nu):
+            joint = model.actuator_trnid[servo][0]
+            assert data.ctrl[servo] == data.qpos[model.jnt_qposadr[joint]]
+        if not exported.is_linkage:
+            assert np.abs(data.body("platform").xpos - home).max() < CLOSED
+    if exported.is_linkage:
+        found = answer(exported.opm, "linkage", exported.name)["solutions"]
+        modes = [(solution["branch"], solution["within_limits"]) for solution in found]
+    else:
+        pose = ",".join(f"{name}={value!r}" for name, value, _ in exported.spans(0, 0))
+        found = answer(exported.opm, "ik", exported.name, "--pose", pose, "--all-modes")["solutions"]
+        modes = [(solution["mode"], solution["within_limits"]) for solution in found]
+    letters = str.maketrans("+- ", "pm_")
+    assert [name.replace("_loose", "") for name in names] == [
+        (signs.translate(letters) or "home") + ("" if within else "_out_of_limits")
+        for signs, within in modes
+    ]
+
+
+def test_a_mode_is_loose_where_held_motors_leave_a_motion(exported):
+    if exported.is_linkage:
+        pytest.skip("a linkage is moved by its input")
+    model, data = exported.model, exported.data
+    servos = np.zeros((model.nu, model.nv))
+    for servo in range(model.nu):
+        servos[servo, model.jnt_dofadr[model.actuator_trnid[servo][0]]] = 1.0
+    for number in range(model.nkey):
+        mujoco.mj_resetDataKeyframe(model, data, number)
+        mujoco.mj_forward(model, data)
+        rows = data.efc_J.reshape(-1, model.nv)
+        equalities = rows[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]
+        least = np.linalg.svd(np.vstack([equalities, servos]), compute_uv=False)[model.nv - 1]
+        assert ("_loose" in model.key(number).name) == (least < 1e-9), least
+
+
+def test_the_platform_is_where_opm_says(exported):
+    if exported.is_linkage:
+        pytest.skip("a linkage has no pose")
+    generator = random.Random(str(exported.answer["name"]))
+    for _ in range(3):
+        pose = ",".join(
+            f"{name}={home + generator.uniform(-1, 1) * span!r}"
+            for name, home, span in exported.spans(angle=0.2, length=0.03)
+        )
+        found = answer(exported.opm, "ik", exported.name, "--pose", pose)
+        assert found["reachable"], pose
+        exported.pose_by(found["solutions"][0]["joints"])
+        mujoco.mj_comPos(exported.model, exported.data)
+        mujoco.mj_sensorPos(exported.model, exported.data)
+        place = exported.data.sensor("platform.position").data
+        turned = exported.data.sensor("platform.orientation").data
+        expected = found["transform"]
+        assert np.abs(place - expected["position"]).max() < CLOSED
+        quaternion = np.array(expected["quaternion"])
+        assert min(np.abs(turned - s * quaternion).max() for s in (1, -1)) < CLOSED
+
+
+def test_the_constraints_leave_the_mobility(exported):
+    model, data = exported.model, exported.data
+    mujoco.mj_resetData(model, data)
+    mujoco.mj_forward(model, data)
+    rows = data.efc_J.reshape(-1, model.nv)[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]
+    values = np.linalg.svd(rows, compute_uv=False)
+    rank = int((values > 1e-9 * values[0]).sum())
+    # The values that count are far from those that are rounding.
+    assert values[rank - 1] > 1e-5 * values[0]
+    assert model.nv - rank == exported.answer["mobility"]
+
+
+def test_masses_are_those_of_the_shapes(exported):
+    """MuJoCo computes them from the shapes where they are not given."""
+    model = exported.model
+    other = exported.folder / "shapes.xml"
+    # The ends of the legs have no shapes: each has its share of the platform.
+    ends = [model.body(model.eq_obj2id[i]).name for i in exported.equalities(mujoco.mjtEq.mjEQ_WELD)]
+    whole = ElementTree.fromstring(exported.path.read_text())
+    for body in whole.iter("body"):
+        for inertial in body.findall("inertial"):
+            if body.get("name") not in ends:
+                body.remove(inertial)
+    other.write_text(ElementTree.tostring(whole, encoding="unicode"))
+    shapes = mujoco.MjModel.from_xml_path(str(other))
+    data, compared = mujoco.MjData(model), mujoco.MjData(shapes)
+    for one, at in ((model, data), (shapes, compared)):
+        mujoco.mj_kinematics(one, at)
+    for number in range(model.body("base").id + 1, model.nbody):
+        name = model.body(number).name
+        share = 1 / (len(ends) + 1) if name in [*ends, "platform"] else 1
+        original = shapes.body("platform" if name in ends else name).id
+        mass = share * shapes.body_mass[original]
+        tensors = [
+            at.ximat[i].reshape(3, 3) @ np.diag(one.body_inertia[i]) @ at.ximat[i].reshape(3, 3).T
+            for one, at, i in ((model, data, number), (shapes, compared, original))
+        ]
+        assert model.body_mass[number] == pytest.approx(mass, rel=1e-9)
+        assert np.abs(data.xipos[number] - compared.xipos[original]).max() < 1e-9
+        assert np.abs(tensors[0] - share * tensors[1]).max() < 1e-9 * np.abs(tensors[0]).max()
+
+
+def test_servos_move_it_and_it_stays_together(exported):
+    model, data = exported.model, exported.data
+    actuated = [model.actuator(i).name for i in range(model.nu)]
+    if exported.is_linkage:
+        joint = model.joint(actuated[0])
+        home, times = float(model.qpos0[joint.qposadr[0]]), np.arange(STEPS + 1) * 1e-3
+        rows = [{actuated[0]: home + 0.1 * (1 - np.cos(np.pi * t))} for t in times]
+    else:
+        # From home and back, at rest at both ends; every other coordinate goes there and back twice.
+        moves = {
+            name: (span, 0.5 + 0.5 * (number % 2), -np.pi / 2, home + span)
+            for number, (name, home, span) in enumerate(exported.spans(angle=0.05, length=0.01))
+        }
+        rows = exported.motion(2, 1000, moves)
+    assert len(rows) == STEPS + 1
+    mujoco.mj_resetData(model, data)
+    worst = np.zeros(2)
+    lag = np.zeros(model.nu)
+    for row in rows[:-1]:
+        data.ctrl[:] = [row[name] for name in actuated]
+        mujoco.mj_step(model, data)
+        worst = np.maximum(worst, exported.gaps())
+        reached = np.array([data.joint(name).qpos[0] for name in actuated])
+        lag = np.maximum(lag, np.abs(reached - data.ctrl))
+    assert worst[0] < GAP, worst
+    # What the damper takes at the highest rate, and what the spring gives way where it carries all that moves, a hinge
+    # on an arm as long as the mechanism.
+    steps = np.abs(np.diff([[row[name] for name in actuated] for row in rows], axis=0))
+    stiffness, damping = model.actuator_gainprm[:, 0], -model.actuator_biasprm[:, 2]
+    hinges = model.jnt_type[model.actuator_trnid[:, 0]] == mujoco.mjtJoint.mjJNT_HINGE
+    weight = GRAVITY * model.body_subtreemass[model.body("base").id]
+    sag = weight * np.where(hinges, exported.size, 1.0)
+    allowed = (damping * steps.max(axis=0) / model.opt.timestep + sag) / stiffness
+    assert (lag < allowed).all(), (lag, allowed)
+
+
+def test_pinocchio_moves_the_bodies_to_the_same_places(exported):
+    if exported.varied:
+        pytest.skip("Pinocchio 4.1 has no reference values for the joints of a body that has several")
+    model, data = exported.model, exported.data
+    read = pinocchio.buildModelFromMJCF(str(exported.path))
+    place = read.createData()
+    moving = range(model.body("base").id + 1, model.nbody)
+    mass = sum(inertia.mass for inertia in read.inertias)
+    assert mass == pytest.approx(sum(model.body_mass[i] for i in moving), rel=1e-12)
+    for number in range(model.nkey):
+        posture = read.referenceConfigurations[model.key(number).name]
+        pinocchio.framesForwardKinematics(read, place, posture)
+        mujoco.mj_resetDataKeyframe(model, data, number)
+        mujoco.mj_kinematics(model, data)
+        for body in moving:
+            frame = place.oMf[read.getFrameId(model.body(body).name, pinocchio.BODY)]
+            assert np.abs(frame.translation - data.xpos[body]).max() < CLOSED
+            assert np.abs(frame.rotation.ravel() - data.xmat[body]).max() < CLOSED
