@@ -3,7 +3,8 @@
 use crate::args::{LayoutArgs, Output};
 use crate::failure::Failure;
 use crate::output::{is_stdout, print_with};
-use opm_mcap::{Layout, LayoutError, PartialFile, ReadError, Sink};
+use crate::target::Target;
+use opm_mcap::{Layout, LayoutError, ReadError};
 use std::io::Write;
 use std::path::Path;
 
@@ -40,7 +41,7 @@ pub fn run(args: &LayoutArgs, output: &Output) -> Result<(), Failure> {
         Viewer::Rerun => layout.rerun(&from_script(&args.file, target)),
     };
     let Some(path) = target else { return print_with(|out| out.write_all(text.as_bytes())) };
-    write(path, &text).map_err(|error| Failure::at(path.display(), error))?;
+    Target::create(path)?.commit(text.as_bytes())?;
     let place = path.display();
     match viewer {
         Viewer::Foxglove => output.note(format_args!(
@@ -49,17 +50,6 @@ pub fn run(args: &LayoutArgs, output: &Output) -> Result<(), Failure> {
         Viewer::Rerun => output.note(format_args!("{place}: python {place} opens Rerun")),
     }
     Ok(())
-}
-
-fn write(path: &Path, text: &str) -> std::io::Result<()> {
-    let mut file = PartialFile::create(path).map_err(std::io::Error::other)?;
-    match file.write_all(text.as_bytes()) {
-        Ok(()) => file.commit(),
-        Err(error) => {
-            file.discard();
-            Err(error)
-        }
-    }
 }
 
 /// The recording as its script names it: by its name alone if they are in one folder.
