@@ -33,6 +33,7 @@ mod text;
 mod trajectory;
 mod transform;
 mod unitless;
+mod usage;
 mod velocity;
 mod workspace;
 
@@ -52,6 +53,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(args) => run(&args),
         // Help and the version come this way, too. Failures to print them are ignored.
         Err(usage) => {
+            let usage = usage::with_tips(usage);
             let _ = usage.print();
             return u8::try_from(usage.exit_code()).unwrap_or(2);
         }

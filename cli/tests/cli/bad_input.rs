@@ -68,6 +68,17 @@ fn wrong_usage_names_the_flag() {
     }
 }
 
+/// An option that other commands have is not to be passed as a value; they are named.
+#[test]
+fn an_option_of_other_commands_is_told() {
+    let wrong = opm(&["velocity", PLANO, "--pose", "x=1mm", "--all-modes"]);
+    wrong.fails(2, &["tip: --all-modes is an option of opm ik, opm workspace"]);
+    for option in ["--all-modes", "--all-mods", "--nothing-like-it", "-z"] {
+        let wrong = opm(&["velocity", PLANO, "--pose", "x=1mm", option]);
+        assert!(!wrong.stderr.contains("as a value"), "{}", wrong.stderr);
+    }
+}
+
 #[test]
 fn wrong_wishes_for_a_recording_cost_no_time_and_leave_no_file() {
     let folder = Folder::new();
