@@ -29,7 +29,7 @@ def record(opm, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def cloud(record):
-    with open(record("mcap", *FLAGS), "rb") as file:
+    with open(record("mcap", *FLAGS, "--scale", "none"), "rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         slices = [points(m) for *_, m in reader.iter_decoded_messages(topics="/workspace/slices")]
     cloud = np.concatenate(slices)
