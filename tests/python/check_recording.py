@@ -18,6 +18,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 OVERVIEW, SLICES, AXES = "/workspace/cloud", "/workspace/slices", "/workspace/axes"
+SLICE, LABEL = "/workspace/slice", "/workspace/label"
 START, SLICE_STEP = 1_000_000_000, 100_000_000  # nanoseconds
 MAX_OVERVIEW_POINTS, MAX_MESSAGE_POINTS = 2_000_000, 4_000_000
 COLORS = ["red", "green", "blue", "alpha"]
@@ -147,7 +148,17 @@ def check(path, expected=None):
         require(len(attachments) == 1 and attachments[0].data, "no mechanism file is attached")
 
         overview, slices, times, boxes = [], [], [], []
+        number, told, words = None, {}, None
         for schema, channel, message, cloud in reader.iter_decoded_messages(log_time_order=False):
+            if channel.topic == SLICE:
+                number = int(cloud.slice)
+                require(not told or max(told) <= number, "slices are out of order")
+                told[number] = cloud
+                continue
+            if channel.topic == LABEL:
+                words = cloud.entities[0].texts[0].text
+                require(words.endswith(f": {int(told[number].count)} points"), words)
+                continue
             if channel.topic == AXES:
                 boxes.append(check_box(cloud, clouds))
                 continue
@@ -159,13 +170,20 @@ def check(path, expected=None):
             if channel.topic == OVERVIEW:
                 overview.append(array)
             else:
-                slices.append(((message.log_time - START) // SLICE_STEP, array))
+                require(len(array) > 0, f"slice {number} is empty")
+                written = (message.log_time - START) // SLICE_STEP
+                require(written == len(told) - 1, f"slice {number} is at {message.log_time} ns")
+                slices.append((number, array))
 
     require(times[0] == START, f"the first message is at {times[0]} ns")
     require(len(overview) == 1, f"{len(overview)} overviews")
     require(len(overview[0]) <= MAX_OVERVIEW_POINTS, f"an overview of {len(overview[0])} points")
     numbers = [number for number, _ in slices]
-    require(sorted(set(numbers)) == list(range(int(clouds["slices"]))), "slices are missing")
+    require(numbers == sorted(numbers) and set(numbers) == set(told), "slices are missing")
+    require(max(numbers, default=0) < int(clouds["slices"]), "a slice is not of the grid")
+    for number, message in told.items():
+        count = sum(len(array) for of, array in slices if of == number)
+        require(message.count == count, f"slice {number} has {count} points, and says {message.count}")
     require(all(len(array) <= MAX_MESSAGE_POINTS for _, array in slices), "a message is too large")
     everything = np.concatenate([array for _, array in slices] or [overview[0][:0]])
     require(len(everything) == int(clouds["points"]), f"{len(everything)} points in the slices")

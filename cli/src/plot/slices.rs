@@ -9,7 +9,8 @@ use super::source::{Rate, Source, Stop};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_mcap::Cloud as Points;
-use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
+use opm_mcap::SliceReader;
+use opm_mcap::workspace::SLICES_TOPIC;
 use opm_plot::color::Map;
 use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
 use opm_study::WorkspaceKind;
@@ -141,11 +142,13 @@ impl<'a> Slices<'a> {
             let [first, last] = ends.unwrap_or([value; 2]);
             ends = Some([first.min(value), last.max(value)]);
         };
+        let mut slices = SliceReader::default();
         source.messages(|message| {
+            let slice = slices.slice(message)?;
             if message.topic != SLICES_TOPIC {
                 return Ok::<(), Stop>(());
             }
-            if let (Some(cloud), Some(slice)) = (message.cloud()?, slice_at(message.time)) {
+            if let (Some(cloud), Some(slice)) = (message.cloud()?, slice) {
                 self.each(&cloud, slice, Some(varied), |_, value| extend(value));
             }
             Ok(())

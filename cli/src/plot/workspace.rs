@@ -11,7 +11,8 @@ use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
 use crate::text::count;
 use opm_core::Quantity;
-use opm_mcap::workspace::{SLICES_TOPIC, slice_at};
+use opm_mcap::SliceReader;
+use opm_mcap::workspace::SLICES_TOPIC;
 use opm_plot::{Drawing, Heading, TileFigure};
 use opm_study::WorkspaceKind;
 use opm_workspace::Axis;
@@ -51,11 +52,13 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
         cloud = None;
     }
 
+    let mut reader = SliceReader::default();
     source.messages(|message| {
+        let slice = reader.slice(message)?;
         if message.topic != SLICES_TOPIC {
             return Ok::<(), Stop>(());
         }
-        let (Some(found), Some(slice)) = (message.cloud()?, slice_at(message.time)) else {
+        let (Some(found), Some(slice)) = (message.cloud()?, slice) else {
             return Ok(());
         };
         if let Some(slices) = &mut slices {

@@ -8,7 +8,7 @@ use crate::run::{Folder, Run, number, opm};
 use crate::{HELICAL, PLANO};
 use opm_mcap::trajectory::{Coordinate, Posture, Role, Sample};
 use opm_mcap::{
-    CloudLayout, Metadata, Trajectory, TrajectoryRecorder, Workspace, WorkspaceRecorder,
+    CloudLayout, Metadata, Slices, Trajectory, TrajectoryRecorder, Workspace, WorkspaceRecorder,
 };
 use roxmltree::Document;
 use seen::{across, assert_legible, class, label, named, paths, pieces, up};
@@ -652,7 +652,7 @@ fn points_of_an_unknown_mechanism_are_drawn_as_they_are() {
         mechanism: b"nonsense",
         run: Metadata::new(),
         points: 50,
-        slices: 1,
+        slices: Slices { axes: vec![], point_area: 1.0 },
     };
     let rows: Vec<f64> = (0..50).flat_map(|i| [i, i * i, 7, i % 5].map(f64::from)).collect();
     let mut recorder = WorkspaceRecorder::create(file.as_ref(), &workspace).unwrap();
@@ -698,7 +698,7 @@ fn slices_that_hold_nothing_are_left_out() {
         mechanism: b"nonsense",
         run: grid.map(|(name, range)| (name.to_owned(), range.to_owned())).into(),
         points: 15,
-        slices: 1,
+        slices: Slices { axes: vec![], point_area: 1.0 },
     };
     let rows: Vec<f64> =
         (0..15).flat_map(|i| [i % 5, i % 3, [1, 2, 5][i / 5]].map(|v| v as f64)).collect();

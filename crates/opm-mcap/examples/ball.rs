@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use opm_mcap::{CloudLayout, Metadata, Workspace, WorkspaceRecorder};
+use opm_mcap::{CloudLayout, Metadata, SliceAxis, Slices, Workspace, WorkspaceRecorder};
 
 /// Grid spacing, in metres.
 const SPACING: f64 = 0.01;
@@ -45,7 +45,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             mechanism: b"name = \"ball\"\n",
             run: Metadata::from([("mechanism".into(), "ball".into())]),
             points,
-            slices,
+            slices: Slices {
+                axes: vec![SliceAxis {
+                    name: "slice_x".into(),
+                    unit: "m",
+                    ends: [-(radius as f64), radius as f64].map(|n| n * SPACING),
+                    count: slices,
+                }],
+                point_area: SPACING * SPACING,
+            },
         },
     )?;
     let every = recorder.overview_every() as usize;

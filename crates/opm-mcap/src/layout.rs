@@ -25,7 +25,7 @@ use crate::reader::{Recording, read};
 use crate::scene::end_labels;
 use crate::trajectory::{BODIES_TOPIC, VIOLATIONS_TOPIC};
 use crate::workspace::{
-    AXES_TOPIC, BOUNDARY_POINTS_TOPIC, BOUNDARY_TOPIC, OVERVIEW_TOPIC, SLICES_TOPIC,
+    AXES_TOPIC, BOUNDARY_POINTS_TOPIC, BOUNDARY_TOPIC, LABEL_TOPIC, OVERVIEW_TOPIC, SLICES_TOPIC,
 };
 use crate::{Message, Metadata, ReadError};
 use extent::{Extent, Frames};
@@ -129,10 +129,11 @@ fn workspace(recording: &Recording, frame: &str) -> Vec<View> {
     let boundary = recording.topic(BOUNDARY_TOPIC).map(|topic| topic.name.clone());
     let dots = recording.topic(BOUNDARY_POINTS_TOPIC).map(|topic| topic.name.clone());
     let axes = recording.topic(AXES_TOPIC).map(|topic| topic.name.clone());
-    let view = |title: &str, topic: &str, size, hidden: &str, with_boundary: bool| {
-        let lines = boundary.iter().cloned();
+    let words = recording.topic(LABEL_TOPIC).map(|topic| topic.name.clone());
+    let view = |title: &str, topic: &str, size, hidden: &str, with_slice: bool| {
+        let lines = boundary.iter().chain(&words).cloned();
         let (on, off) =
-            if with_boundary { (lines.collect(), vec![]) } else { (vec![], lines.collect()) };
+            if with_slice { (lines.collect(), vec![]) } else { (vec![], lines.collect()) };
         let shown = [(topic.to_owned(), size)].into_iter();
         View {
             title: title.to_owned(),

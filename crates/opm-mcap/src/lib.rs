@@ -5,7 +5,9 @@
 //! This crate takes plain numbers and names; it knows no manipulators.
 //!
 //! ```
-//! use opm_mcap::{CloudLayout, Metadata, ReadError, Workspace, WorkspaceRecorder, read};
+//! use opm_mcap::{
+//!     CloudLayout, Metadata, ReadError, SliceAxis, Slices, Workspace, WorkspaceRecorder, read,
+//! };
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let folder = tempfile::tempdir()?;
@@ -20,13 +22,14 @@
 //!     scale: [1.0; 3],
 //!     units: ["m", "m", "rad"],
 //! };
+//! let xi = SliceAxis { name: "xi".into(), unit: "rad", ends: [0.0, 0.5], count: 2 };
 //! let workspace = Workspace {
 //!     layout,
 //!     mechanism_name: "square.toml",
 //!     mechanism: b"name = \"square\"",
 //!     run: Metadata::new(),
 //!     points: 3,
-//!     slices: 2,
+//!     slices: Slices { axes: vec![xi], point_area: 0.1 },
 //! };
 //! let mut recorder = WorkspaceRecorder::create(&path, &workspace)?;
 //! recorder.overview(&[0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 0.5])?;
@@ -52,6 +55,7 @@
 //! |---|---|
 //! | [`workspace`] | the recording of a workspace: an overview, and every point slice by slice |
 //! | [`trajectory`] | the recording of a motion: joints, rates, bodies, violations |
+//! | [`slices`] | what the slices of a workspace are |
 //! | [`shard`] | the reachable poses of a part of a sweep, by their numbers |
 //! | [`table`] | points as NPY for NumPy and PLY for mesh tools |
 //! | [`cloud`] | the layout of the points of a cloud, and how they are packed |
@@ -82,6 +86,7 @@ mod log;
 mod reader;
 pub mod scene;
 pub mod shard;
+pub mod slices;
 pub mod table;
 pub mod trajectory;
 pub mod workspace;
@@ -98,6 +103,7 @@ pub use log::Metadata;
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
 pub use scene::{Body, ClosedLine, Shape, Solid};
 pub use shard::{Shard, ShardRecorder};
+pub use slices::{SliceAxis, SliceReader, Slices};
 pub use table::{TableFormat, TableRecorder, table_columns};
 pub use trajectory::{
     Coordinate, Frame, Posture, Rates, Role, Sample, Trajectory, TrajectoryRecorder,

@@ -270,6 +270,39 @@ pub(crate) fn labelled_box(
     SceneUpdate { deletions: Vec::new(), entities: vec![entity] }
 }
 
+/// A value with its name and unit.
+pub(crate) fn label(name: &str, value: f64, unit: &str) -> String {
+    format!("{name} = {} {unit}", short(value))
+}
+
+/// Words about the slice that is shown, above a box round all points.
+pub(crate) fn slice_label(
+    frame_id: &str,
+    bounds: [[f64; 2]; 3],
+    text: &str,
+    time: Timestamp,
+) -> SceneUpdate {
+    let [x, y, _] = bounds.map(|[low, high]| 0.5 * (low + high));
+    let [low, high] = bounds[2];
+    let z = high + BESIDE * (high - low);
+    let text = TextPrimitive {
+        pose: Some(along([x, y, z], [0.0, 0.0, 1.0])),
+        billboard: true,
+        font_size: LABEL_PIXELS,
+        scale_invariant: true,
+        color: color(BOX_COLOR),
+        text: text.to_owned(),
+    };
+    let entity = SceneEntity {
+        timestamp: Some(time),
+        frame_id: frame_id.to_owned(),
+        id: "slice".to_owned(),
+        texts: vec![text],
+        ..SceneEntity::default()
+    };
+    SceneUpdate { deletions: Vec::new(), entities: vec![entity] }
+}
+
 /// The distance of labels from the box, as a share of its extent.
 const BESIDE: f64 = 0.12;
 
@@ -295,7 +328,7 @@ pub(crate) fn end_labels(
             let [low, high] = bounds[away];
             let outward = if at[away] == 1 { 1.0 } else { -1.0 };
             place[away] += outward * BESIDE * (high - low);
-            labels.push((place, format!("{name} = {} {unit}", short(end / scale))));
+            labels.push((place, label(&name, end / scale, &unit)));
         }
     }
     labels

@@ -3,14 +3,16 @@
 //! | topic | messages |
 //! |---|---|
 //! | `/workspace/cloud` | one: every k-th point, at most [`MAX_OVERVIEW_POINTS`], at the start |
-//! | `/workspace/slices` | one for each slice, [`SLICE_STEP`] apart; together they hold every point |
+//! | `/workspace/slices` | one for each slice that has points, [`SLICE_STEP`] apart; together they hold every point |
+//! | `/workspace/slice` | `opm.Slice`, before each of them: the number of the slice, its coordinates, its points and their area |
+//! | `/workspace/label` | `foxglove.SceneUpdate`: the same in words, above the points |
 //! | `/workspace/axes` | one `foxglove.SceneUpdate`: a box round the points, with the values at its ends |
 //! | `/workspace/boundary` | `foxglove.SceneUpdate`, if the boundary is known: its closed lines, with their slice |
 //! | `/workspace/boundary_points` | `foxglove.PointCloud`: the same lines as points, for viewers without scenes |
 //!
 //! A viewer shows the newest message of a topic. So the overview, which comes first, is always in view, and
-//! moving the playhead walks through the slices. Beside slices, its colours are faint. A slice without points has an empty message: otherwise the
-//! slice before it would stay in view. A slice with more points than [`MAX_MESSAGE_POINTS`] continues in
+//! moving the playhead walks through the slices. Beside slices, its colours are faint. A slice without points has no messages, and
+//! takes no time. A slice with more points than [`MAX_MESSAGE_POINTS`] continues in
 //! further messages, each [`PART_STEP`] after the one before.
 //!
 //! Time starts at [`START`] and counts slices; no clock is read. The metadata records are `run` (the
@@ -25,14 +27,19 @@ use foxglove::Encode;
 use foxglove::messages::{PointCloud, SceneUpdate, Timestamp};
 
 use crate::cloud::CloudEncoder;
+use crate::joints::JointsTopic;
 use crate::log::{Log, Topic};
-use crate::scene::{ClosedLine, dots, labelled_box, lines};
+use crate::scene::{ClosedLine, dots, labelled_box, lines, slice_label};
+pub use crate::slices::SLICE_TOPIC;
+use crate::slices::Slices;
 use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
 
 /// The topic of the overview.
 pub const OVERVIEW_TOPIC: &str = "/workspace/cloud";
 /// The topic of the slices.
 pub const SLICES_TOPIC: &str = "/workspace/slices";
+/// The topic of the words about the slice that is shown.
+pub const LABEL_TOPIC: &str = "/workspace/label";
 /// The topic of the labelled box round the points.
 pub const AXES_TOPIC: &str = "/workspace/axes";
 /// The topic of the boundary.
@@ -55,19 +62,13 @@ pub const MAX_MESSAGE_BYTES: u64 = 128 << 20;
 /// The number of uncompressed bytes of points after which a chunk is closed. In chunks of this size zstd finds
 /// the slice before, so that they are smaller by a fifth than chunks of 1 MiB.
 pub const CHUNK_BYTES: u64 = 4 << 20;
-/// Most slices. Each has a message, even without points; a million of them play for a day.
+/// Most slices. A million of them play for a day.
 pub const MAX_SLICES: u64 = 1_000_000;
 
 /// The number of parts into which flushes divide the slices. A recording that is cut short lacks at most one
 /// of them, or the last 4 MiB of points if that is less. They are counted in slices, not in seconds, so that
 /// the bytes do not depend on the machine's speed.
 const FLUSHES: u64 = 100;
-
-/// The number of the slice that a message of [`SLICES_TOPIC`] belongs to, from its time in nanoseconds; `None`
-/// for a time before the first slice.
-pub fn slice_at(time: u64) -> Option<u64> {
-    Some(time.checked_sub(START)? / SLICE_STEP)
-}
 
 /// The head of a workspace recording.
 #[derive(Debug, Clone)]
@@ -82,8 +83,8 @@ pub struct Workspace<'a> {
     pub run: Metadata,
     /// The number of points of all slices together.
     pub points: u64,
-    /// The number of slices: combinations of values on the slowest grid axes.
-    pub slices: u64,
+    /// The slices: combinations of values on the slowest grid axes.
+    pub slices: Slices,
 }
 
 /// How messages are divided: the numbers that follow from the memory bound and the number of points.
@@ -126,8 +127,9 @@ struct Boundary {
 #[derive(Debug, Clone, Copy)]
 struct Open {
     slice: u64,
-    /// The number of messages of this slice that are already written.
+    /// The number of messages of this slice that are already written, and of their points.
     parts: u64,
+    points: u64,
 }
 
 /// Writes a workspace recording.
@@ -148,6 +150,14 @@ pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     /// `None` while the overview is being gathered.
     open: Option<Open>,
     pushed: u64,
+    /// What the slices are, and where it is told.
+    told: Slices,
+    slice: JointsTopic,
+    label: Topic,
+    /// The number of slices that are already written.
+    written: u64,
+    /// The range of the points of the overview.
+    bounds: Option<[[f64; 2]; 3]>,
 }
 
 impl WorkspaceRecorder {
@@ -167,11 +177,12 @@ impl<W: Sink> WorkspaceRecorder<W> {
     /// # Errors
     /// As [`create`](WorkspaceRecorder::create).
     pub fn new(sink: W, workspace: &Workspace<'_>) -> Result<Self, RecordError> {
-        let Workspace { layout, slices, points, .. } = workspace;
-        if *slices > MAX_SLICES {
-            return Err(RecordError::TooManySlices { slices: *slices, limit: MAX_SLICES });
+        let Workspace { layout, slices: told, points, .. } = workspace;
+        let slices = told.count();
+        if slices > MAX_SLICES {
+            return Err(RecordError::TooManySlices { slices, limit: MAX_SLICES });
         }
-        let plan = Plan::new(*points, *slices, layout.stride());
+        let plan = Plan::new(*points, slices, layout.stride());
         let encoder = CloudEncoder::new(layout, plan.capacity())?;
 
         let mut log = Log::new(sink, CHUNK_BYTES)?;
@@ -180,9 +191,27 @@ impl<W: Sink> WorkspaceRecorder<W> {
         log.metadata("clouds", &describe(layout, &plan))?;
         let overview = log.topic::<PointCloud>(OVERVIEW_TOPIC)?;
         let slices = log.topic::<PointCloud>(SLICES_TOPIC)?;
+        let slice = JointsTopic::new(&mut log, SLICE_TOPIC, "Slice", &told.names()?)?;
+        let label = log.topic::<SceneUpdate>(LABEL_TOPIC)?;
+        let (told, written, bounds) = (told.clone(), 0, None);
         let layout = layout.clone();
         let (boundary, open) = (None, None);
-        Ok(Self { log, encoder, plan, overview, slices, layout, boundary, open, pushed: 0 })
+        Ok(Self {
+            log,
+            encoder,
+            plan,
+            overview,
+            slices,
+            layout,
+            boundary,
+            open,
+            pushed: 0,
+            told,
+            slice,
+            label,
+            written,
+            bounds,
+        })
     }
 
     /// The k of the overview, to which points number 0, k, 2k, ... belong.
@@ -374,7 +403,8 @@ impl<W: Sink> WorkspaceRecorder<W> {
         if found != expected {
             return Err(RecordError::Count { what: "overview", found, expected });
         }
-        if let Some(bounds) = self.encoder.bounds() {
+        self.bounds = self.encoder.bounds();
+        if let Some(bounds) = self.bounds {
             let mut topic = self.log.topic::<SceneUpdate>(AXES_TOPIC)?;
             let mut message = Vec::new();
             labelled_box(&self.layout, bounds, stamp(START)?)
@@ -388,18 +418,21 @@ impl<W: Sink> WorkspaceRecorder<W> {
         }
         self.log.message(&mut self.overview, START, self.encoder.message(stamp(START)?)?)?;
         self.encoder.clear();
-        Ok(*self.open.insert(Open { slice: 0, parts: 0 }))
+        Ok(*self.open.insert(Open { slice: 0, parts: 0, points: 0 }))
     }
 
     /// Closes slices, with or without points, until `end` is open.
     fn close_until(&mut self, mut open: Open, end: u64) -> Result<Open, RecordError> {
         while open.slice < end {
             let slice = open.slice;
-            self.write_part(open)?;
+            if self.encoder.len() > 0 {
+                self.write_part(open)?;
+                self.written += 1;
+            }
             if (slice + 1).is_multiple_of(self.plan.slices.div_ceil(FLUSHES)) {
                 self.log.flush()?;
             }
-            open = *self.open.insert(Open { slice: slice + 1, parts: 0 });
+            open = *self.open.insert(Open { slice: slice + 1, parts: 0, points: 0 });
         }
         Ok(open)
     }
@@ -417,26 +450,45 @@ impl<W: Sink> WorkspaceRecorder<W> {
         self.log.message(&mut boundary.points, time, &points)
     }
 
+    /// Says which slice is shown, and how many points it has so far.
+    fn tell(&mut self, slice: u64, points: u64, time: u64) -> Result<(), RecordError> {
+        let row = self.told.row(slice, points);
+        self.slice.write(&mut self.log, time, &row)?;
+        let Some(bounds) = self.bounds.filter(|_| !self.told.axes.is_empty()) else {
+            return Ok(());
+        };
+        let mut message = Vec::new();
+        slice_label(&self.layout.frame_id, bounds, &self.told.words(slice, points), stamp(time)?)
+            .encode(&mut message)
+            .map_err(|reason| RecordError::Layout(format!("the label: {reason}")))?;
+        self.log.message(&mut self.label, time, &message)
+    }
+
     /// Writes the gathered points as the open slice's next message.
     fn write_part(&mut self, open: Open) -> Result<Open, RecordError> {
         const LIMIT: u64 = SLICE_STEP / PART_STEP;
-        let Open { slice, parts } = open;
+        let Open { slice, parts, points } = open;
+        let points = points + self.encoder.len() as u64;
         if parts == LIMIT {
             return Err(RecordError::SliceTooLarge { slice, limit: LIMIT });
         }
-        let time = START + slice * SLICE_STEP + parts * PART_STEP;
+        let time = START + self.written * SLICE_STEP + parts * PART_STEP;
         self.write_boundary(slice, time)?;
+        self.tell(slice, points, time)?;
         self.log.message(&mut self.slices, time, self.encoder.message(stamp(time)?)?)?;
         self.encoder.clear();
-        Ok(*self.open.insert(Open { slice, parts: parts + 1 }))
+        Ok(*self.open.insert(Open { slice, parts: parts + 1, points }))
     }
 }
 
 impl Boundary {
-    /// The lines that are shown from this slice on, if they differ from those before.
+    /// The lines that are shown from this slice on, if they differ from those before. Slices may have been skipped.
     fn at(&mut self, slice: u64) -> Option<Vec<ClosedLine>> {
-        let next = self.left.as_slice().first()?;
-        (next.0 <= slice).then(|| self.left.next())?.map(|(_, lines)| lines)
+        let mut latest = None;
+        while self.left.as_slice().first().is_some_and(|next| next.0 <= slice) {
+            latest = self.left.next().map(|(_, lines)| lines);
+        }
+        latest
     }
 }
 

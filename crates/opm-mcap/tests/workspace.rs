@@ -8,7 +8,7 @@ use foxglove::messages::{LinePrimitive, SceneUpdate};
 use opm_mcap::workspace::{
     AXES_TOPIC, BOUNDARY_TOPIC, MAX_MESSAGE_POINTS, OVERVIEW_TOPIC, PART_STEP,
 };
-use opm_mcap::workspace::{SLICE_STEP, SLICES_TOPIC, START, slice_at};
+use opm_mcap::workspace::{LABEL_TOPIC, SLICE_STEP, SLICE_TOPIC, SLICES_TOPIC, START};
 use opm_mcap::{ReadError, RecordError, WorkspaceRecorder};
 use std::io::Cursor;
 
@@ -31,7 +31,7 @@ fn everything_comes_back() {
     let (seen, recording) = clouds(&path).unwrap();
 
     assert!(recording.complete);
-    assert_eq!(recording.time_range, Some([START, START + 6 * SLICE_STEP]));
+    assert_eq!(recording.time_range, Some([START, START + 2 * SLICE_STEP]));
     let topics: Vec<_> =
         (recording.topics.iter()).map(|t| (&*t.name, &*t.schema, t.messages, t.points)).collect();
     let schema = "foxglove.PointCloud";
@@ -40,7 +40,9 @@ fn everything_comes_back() {
         [
             (AXES_TOPIC, "foxglove.SceneUpdate", 1, None),
             (OVERVIEW_TOPIC, schema, 1, Some(15)),
-            (SLICES_TOPIC, schema, 7, Some(15)),
+            (LABEL_TOPIC, "foxglove.SceneUpdate", 3, None),
+            (SLICE_TOPIC, "opm.Slice", 3, None),
+            (SLICES_TOPIC, schema, 3, Some(15)),
         ]
     );
     let [attachment] = &recording.attachments[..] else { panic!("one attachment") };
@@ -66,15 +68,36 @@ fn everything_comes_back() {
 
     let [overview, slices @ ..] = &seen[..] else { panic!("no messages") };
     assert_eq!((&*overview.topic, overview.time, overview.len()), (OVERVIEW_TOPIC, START, 15));
+    // Slices without points take no time.
     let mut first = 0;
-    assert_eq!(slices.len(), COUNTS.len());
-    for (number, (slice, count)) in slices.iter().zip(COUNTS).enumerate() {
-        assert_eq!(slice.slice, Some(number as u64));
-        assert_eq!(slice.time, START + number as u64 * SLICE_STEP);
+    let numbered = (0..).zip(COUNTS).filter(|(_, count)| *count > 0);
+    assert_eq!(slices.len(), 3);
+    for ((written, slice), (number, count)) in (0..).zip(slices).zip(numbered) {
+        assert_eq!(slice.slice, Some(number));
+        assert_eq!(slice.time, START + written * SLICE_STEP);
         check_points(slice, first..first + count);
         first += count;
     }
     check_points(overview, 0..15);
+
+    // What the slices are comes before their points, as numbers and in words.
+    let (mut told, mut words, mut values) = (vec![], vec![], vec![]);
+    opm_mcap::read::<ReadError>(&path, |message| {
+        if message.topic == SLICE_TOPIC && message.values(&mut values)? {
+            assert_eq!(message.flat.unwrap().names, ["slice", "xi", "count", "area"]);
+            told.push((message.time, values.clone()));
+        } else if message.topic == LABEL_TOPIC {
+            let scene = SceneUpdate::decode(message.data).unwrap();
+            words.push(scene.entities[0].texts[0].text.clone());
+        }
+        Ok(())
+    })
+    .unwrap();
+    let expected = [(0, vec![1.0, 1.0, 5.0, 1.25]), (1, vec![4.0, 4.0, 3.0, 0.75])];
+    let expected = expected.into_iter().chain([(2, vec![5.0, 5.0, 7.0, 1.75])]);
+    let expected: Vec<_> = expected.map(|(i, row)| (START + i * SLICE_STEP, row)).collect();
+    assert_eq!(told, expected);
+    assert_eq!(words, ["xi = 1 rad: 5 points", "xi = 4 rad: 3 points", "xi = 5 rad: 7 points"]);
 }
 
 fn check_points(cloud: &Seen, range: std::ops::Range<u64>) {
@@ -117,7 +140,7 @@ fn an_empty_workspace_is_a_whole_recording() {
         assert!(recording.complete);
         assert_eq!(recording.topic(OVERVIEW_TOPIC).unwrap().points, Some(0));
         assert_eq!(recording.topic(OVERVIEW_TOPIC).unwrap().messages, 1);
-        assert_eq!(recording.topic(SLICES_TOPIC).unwrap().messages, counts.len() as u64);
+        assert_eq!(recording.topic(SLICES_TOPIC).unwrap().messages, 0);
         assert_eq!(recording.extents, []);
         assert_eq!(seen[0].columns.len(), 8, "an empty cloud still tells its fields");
     }
@@ -288,17 +311,19 @@ fn slices_are_limited() {
     assert!(matches!(result, Err(RecordError::TooManySlices { .. })));
 }
 
-/// Boundaries come with their slices, whether these have points or not, and the last stays in view.
+/// Boundaries come with the slices that have points, and the last stays in view.
 #[test]
 fn boundaries_are_shown_from_their_slices_on() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bounded.mcap");
     let square = |side: f64| vec![[0.0, 0.0, 1.0], [side, 0.0, 1.0], [side, side, 1.0]];
     let lines = vec![(0, vec![square(1.0)]), (2, vec![square(2.0), square(3.0)]), (3, vec![])];
-    let mut recorder = WorkspaceRecorder::create(&path, &workspace(layout(), 2, 5)).unwrap();
+    let mut recorder = WorkspaceRecorder::create(&path, &workspace(layout(), 4, 5)).unwrap();
     recorder.boundary(lines.clone()).unwrap();
-    recorder.overview(&rows(0..2)).unwrap();
-    recorder.push(2, &rows(0..2)).unwrap();
+    recorder.overview(&rows(0..4)).unwrap();
+    recorder.push(1, &rows(0..1)).unwrap();
+    recorder.push(2, &rows(1..3)).unwrap();
+    recorder.push(4, &rows(3..4)).unwrap();
     recorder.finish(&record([])).unwrap();
     let mut seen: Vec<(u64, Vec<opm_mcap::ClosedLine>)> = vec![];
     opm_mcap::read::<ReadError>(&path, |message| {
@@ -309,12 +334,14 @@ fn boundaries_are_shown_from_their_slices_on() {
             let line = |line: &LinePrimitive| -> Vec<[f64; 3]> {
                 line.points.iter().map(|p| [p.x, p.y, p.z]).collect()
             };
-            seen.push((slice_at(message.time).unwrap(), entity.lines.iter().map(line).collect()));
+            let written = (message.time - START) / SLICE_STEP;
+            seen.push((written, entity.lines.iter().map(line).collect()));
         }
         Ok(())
     })
     .unwrap();
-    assert_eq!(seen, lines);
+    let expected: Vec<_> = (0..).zip(lines).map(|(written, (_, rings))| (written, rings)).collect();
+    assert_eq!(seen, expected);
 
     for wrong in [vec![(1, vec![]), (1, vec![])], vec![(5, vec![])], vec![(2, vec![]), (0, vec![])]]
     {
@@ -350,7 +377,7 @@ fn a_box_tells_the_values_of_scaled_axes() {
             let column = |name: &str| cloud.column(name).unwrap().collect::<Vec<_>>();
             at.push((column("z"), column("theta11")));
             colors.push(["red", "green", "blue"].map(|name| column(name)[0]));
-        } else {
+        } else if message.topic == AXES_TOPIC {
             scenes.push(SceneUpdate::decode(message.data).unwrap());
         }
         Ok(())

@@ -12,6 +12,7 @@ mod scene;
 mod set;
 mod shard;
 mod shards;
+mod slices;
 mod table;
 mod workspace;
 
@@ -20,8 +21,9 @@ pub use linkage::record_linkage;
 pub use motion::{MotionRecorder, violation_fields};
 pub use shard::{ShardCount, ShardFindings, ShardRecording, StoredShard};
 pub use shards::Shards;
+pub use slices::slices_together;
 pub use table::{TableOptions, is_motion_table, write_motion_csv, write_motion_table};
-pub use workspace::{Findings, WorkspaceRecording, slices_together};
+pub use workspace::{Findings, WorkspaceRecording};
 
 use crate::error::{RequestError, StudyError};
 use opm_mcap::{Metadata, PartialFile};

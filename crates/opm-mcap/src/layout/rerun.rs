@@ -3,7 +3,7 @@
 use super::plots::{Plot, columns};
 use super::{Layout, View};
 use crate::trajectory::{BODIES_TOPIC, FRAMES_TOPIC, SCENE_TOPIC, VIOLATIONS_TOPIC};
-use crate::workspace::{AXES_TOPIC, BOUNDARY_POINTS_TOPIC, BOUNDARY_TOPIC};
+use crate::workspace::{AXES_TOPIC, BOUNDARY_POINTS_TOPIC, BOUNDARY_TOPIC, LABEL_TOPIC};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -122,6 +122,7 @@ fn space(view: &View) -> String {
     let topics = shown.iter().flat_map(|(topic, _)| match &**topic {
         SCENE_TOPIC => vec![format!("{BODIES_TOPIC}**"), FRAMES_TOPIC.to_owned()],
         BOUNDARY_TOPIC => vec![BOUNDARY_POINTS_TOPIC.to_owned()],
+        LABEL_TOPIC => vec![],
         AXES_TOPIC => vec!["/box/**".to_owned()],
         other => vec![other.to_owned()],
     });

@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
 use opm_mcap::{CloudLayout, Metadata, ReadError, RecordError, Recording, Sink};
+use opm_mcap::{SliceAxis, SliceReader, Slices};
 use opm_mcap::{Workspace, WorkspaceRecorder, workspace};
 
 pub const MECHANISM: &[u8] = b"format = 1\nname = \"test\"\n";
@@ -34,8 +35,15 @@ pub fn workspace(layout: CloudLayout, points: u64, slices: u64) -> Workspace<'st
         mechanism: MECHANISM,
         run: record([("mode", "++ ++ ++ +"), ("grid", "x=0:1:3")]),
         points,
-        slices,
+        slices: slices_of(slices),
     }
+}
+
+/// Slices at xi = 0, 1, 2 ...; a point stands for a quarter.
+pub fn slices_of(count: u64) -> Slices {
+    let ends = [0.0, count as f64 - 1.0];
+    let xi = SliceAxis { name: "xi".into(), unit: "rad", ends, count };
+    Slices { axes: vec![xi], point_area: 0.25 }
 }
 
 pub fn record<const N: usize>(pairs: [(&str, &str); N]) -> Metadata {
@@ -101,21 +109,17 @@ impl Seen {
 
 /// Reads all clouds.
 pub fn clouds(path: &Path) -> Result<(Vec<Seen>, Recording), ReadError> {
-    let mut seen = Vec::new();
+    let (mut seen, mut slices) = (Vec::new(), SliceReader::default());
     let recording = opm_mcap::read(path, |message| -> Result<(), ReadError> {
-        let Some(cloud) = message.cloud()? else {
-            assert_eq!(message.topic, workspace::AXES_TOPIC);
-            return Ok(());
-        };
+        let slice = slices.slice(message)?;
+        let Some(cloud) = message.cloud()? else { return Ok(()) };
         assert_eq!(cloud.frame_id, "base");
         assert_eq!(cloud.time, Some(message.time), "stamp and log time agree");
         let column = |name: &str| (name.to_string(), cloud.column(name).unwrap().collect());
         seen.push(Seen {
             topic: message.topic.into(),
             time: message.time,
-            slice: (message.topic == workspace::SLICES_TOPIC)
-                .then(|| workspace::slice_at(message.time))
-                .flatten(),
+            slice: slice.filter(|_| message.topic == workspace::SLICES_TOPIC),
             columns: cloud.fields().map(column).collect(),
         });
         Ok(())

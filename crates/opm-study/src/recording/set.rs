@@ -2,12 +2,13 @@
 
 use super::points::{layout, scale};
 use super::scale::Measures;
+use super::slices::{point_area, slice_axis};
 use crate::analysis::Analysis;
 use crate::columns::{Column, PointChoice, PointColumns};
 use crate::error::{RequestError, SetPart, StudyError};
 use crate::workspace::Workspace;
 use opm_core::manipulator::LegBranch;
-use opm_mcap::{ClosedLine, CloudLayout, MAX_SLICES};
+use opm_mcap::{ClosedLine, CloudLayout, MAX_SLICES, Slices};
 use opm_workspace::{Grid, GridSet, Outline, Visits};
 
 /// Closed lines, slice by slice.
@@ -21,8 +22,8 @@ pub struct SetCloud<'a> {
     shown: PointColumns,
     /// Number of points of a slice, in the set or not.
     slice: u64,
-    /// Number of slices.
-    pub slices: u64,
+    /// The axis that has another value in each slice.
+    held: Option<usize>,
 }
 
 impl<'a> SetCloud<'a> {
@@ -34,10 +35,11 @@ impl<'a> SetCloud<'a> {
         choice: PointChoice,
     ) -> Result<Self, RequestError> {
         let varying = set.varying();
-        let slices = match varying[..] {
-            [_, _, .., slowest] => set.axes()[slowest].axis.count,
-            _ => 1,
+        let held = match varying[..] {
+            [_, _, .., slowest] => Some(slowest),
+            _ => None,
         };
+        let slices = held.map_or(1, |axis| set.axes()[axis].axis.count);
         if slices > MAX_SLICES {
             return Err(RequestError::TooManySlices {
                 part: SetPart::Values,
@@ -48,7 +50,19 @@ impl<'a> SetCloud<'a> {
         }
         let slice = set.points() / slices;
         let shown = PointColumns::of_set(choice, set);
-        Ok(Self { workspace, analysis, set, shown, slice, slices })
+        Ok(Self { workspace, analysis, set, shown, slice, held })
+    }
+
+    /// The slices.
+    pub fn slices(&self) -> Slices {
+        let Workspace { grid, kind, .. } = self.workspace;
+        let (first, axes) = (kind.axes(grid).start, self.set.axes());
+        let held = self
+            .held
+            .map(|i| slice_axis(&axes[i].axis, grid.coordinates()[first + i].quantity.unit()));
+        let within = axes.iter().enumerate().filter(|(i, _)| Some(*i) != self.held);
+        let point_area = point_area(within.map(|(_, axis)| &axis.axis));
+        Slices { axes: held.into_iter().collect(), point_area }
     }
 
     /// The layout of the points, for a recorder.

@@ -3,6 +3,7 @@
 use super::describe::{describe, result};
 use super::points::{Cloud, Packing, Points, Portion};
 use super::set::{SetCloud, pose_boundary};
+use super::slices::{slices_of, slices_together};
 use super::{Attachment, check_mcap, create, partial, refuse_standard_output};
 use crate::analysis::Analysis;
 use crate::columns::{Column, PointChoice, PointColumns};
@@ -18,9 +19,6 @@ use opm_mcap::{
 use opm_workspace::{Grid, Hits, Inscribed, Poses, Progress};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Largest number of slices. More would play for longer than a quarter of an hour.
-const PLAYABLE: u64 = 10_000;
 
 /// Number of points between two checks for cancellation.
 const PORTION: u64 = 1 << 12;
@@ -187,7 +185,7 @@ fn record_set(
         mechanism: mechanism.text.as_bytes(),
         run,
         points: analysis.count.reachable,
-        slices: set.slices,
+        slices: set.slices(),
     };
     let mut recorder = WorkspaceRecorder::new(file, &header).map_err(failed)?;
     if let Some(lines) = set.boundary() {
@@ -290,7 +288,7 @@ impl PoseRecording<'_> {
             mechanism: mechanism.text.as_bytes(),
             run: describe(workspace, mechanism),
             points: count.reachable,
-            slices: grid.slices() / together,
+            slices: slices_of(grid),
         };
         let packing = Packing::new(&header.layout).map_err(failed)?;
         let mut recorder = WorkspaceRecorder::new(file, &header).map_err(failed)?;
@@ -383,18 +381,4 @@ impl PoseRecording<'_> {
             )
             .map_err(|error| self.interrupted(error))
     }
-}
-
-/// The number of the grid's slices that make up one slice of the recording. Whole axes are joined, the faster
-/// ones first, until a person can play the rest.
-pub fn slices_together(grid: &Grid) -> u64 {
-    let upper = &grid.axes()[grid.lower()..];
-    let mut together = 1;
-    // With one section there is one slice.
-    for axis in &upper[..upper.len().saturating_sub(1)] {
-        if grid.slices() / together > PLAYABLE {
-            together *= axis.count;
-        }
-    }
-    together
 }
