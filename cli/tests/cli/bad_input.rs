@@ -83,7 +83,7 @@ fn an_option_of_other_commands_is_told() {
 fn wrong_wishes_for_a_recording_cost_no_time_and_leave_no_file() {
     let folder = Folder::new();
     let output = folder.arg("out.mcap");
-    let slices = ["--grid", "psi=0:1:1000001"];
+    let slices = ["--grid", "x=0:1:2", "--grid", "y=0:1:2", "--grid", "psi=0:1:1000001"];
     for (flags, parts) in [
         (&["--color", "mood"][..], &["--color", "\"mood\"", "psi, theta11", "S1", "phi24"][..]),
         // Passive joints are not among the values.

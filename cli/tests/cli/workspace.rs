@@ -289,8 +289,10 @@ fn an_interrupted_run_leaves_no_file_under_its_name() {
 fn a_grid_of_very_many_orientations_is_recorded_by_its_slowest_axes() {
     let folder = Folder::new();
     let output = folder.arg("out.mcap");
-    let grid = ["--grid", "zeta=0:1:60", "--grid", "xi=0:1:50", "--grid", "psi=0:1:40"];
-    let counted = workspace(&[&[PLANO, "-o", &output], &grid[..]].concat());
+    let axes = ["x=0:0.1:2", "y=0:0.1:2", "zeta=0:1:60", "xi=0:1:50", "psi=0:1:40"];
+    let grid = axes.iter().flat_map(|axis| ["--grid", axis]);
+    let args: Vec<&str> = [PLANO, "-o", &output].into_iter().chain(grid).collect();
+    let counted = workspace(&args);
     let inspected = opm(&["inspect", &output, "--format", "json"]).json();
     let topics = inspected["topics"].as_array().unwrap();
     let slices = topics.iter().find(|topic| topic["name"] == "/workspace/slices").unwrap();

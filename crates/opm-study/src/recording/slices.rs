@@ -11,8 +11,8 @@ const PLAYABLE: u64 = 10_000;
 /// further axes are joined, the faster ones first.
 fn first_held(grid: &Grid) -> usize {
     let axes = grid.axes();
-    let varying = (0..axes.len()).filter(|&i| axes[i].count > 1);
-    let third = varying.skip(2).next().unwrap_or(axes.len());
+    let mut varying = (0..axes.len()).filter(|&i| axes[i].count > 1);
+    let third = varying.nth(2).unwrap_or(axes.len());
     let mut first = third.max(grid.lower());
     while first + 1 < axes.len() && points(&axes[first..]) > PLAYABLE {
         first += 1;
