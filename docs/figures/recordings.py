@@ -23,7 +23,7 @@ class Recording:
         with tempfile.TemporaryDirectory() as directory:
             path = Path(directory) / "workspace.mcap"
             flags = [f"--grid={name}={values}" for name, values in grid.items()]
-            output = [f"--axes={','.join(axes)}", "-o", path, "--quiet"]
+            output = [f"--axes={','.join(axes)}", "--scale=none", "-o", path, "--quiet"]
             opm("workspace", mechanism, *flags, *output)
             with open(path, "rb") as file:
                 reader = make_reader(file, decoder_factories=[DecoderFactory()])

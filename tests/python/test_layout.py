@@ -59,14 +59,14 @@ def shown(recorded):
     clouds = {
         topic: np.stack([points(message)[axis] for axis in "xyz"], axis=-1)
         for topic, messages in recorded.topics.items()
-        if topic.startswith(("/workspace/", "/bodies/")) and topic != "/workspace/boundary_points"
+        if topic.startswith(("/workspace/", "/scene/bodies/")) and topic != "/workspace/boundary_points"
         for _, message in messages
         if message.DESCRIPTOR.name == "PointCloud"
     }
     if "/tf" not in recorded.topics:
         return np.concatenate(list(clouds.values()))
     moved = [
-        clouds[f"/bodies/{frame}"] @ place[:3, :3].T + place[:3, 3]
+        clouds[f"/scene/bodies/{frame}"] @ place[:3, :3].T + place[:3, 3]
         for frames in recorded.frames()
         for frame, place in frames.items()
     ]
@@ -103,10 +103,10 @@ def test_a_layout_shows_the_recording(opm, recordings, name):
                 assert settings["colorMode"] == "rgba-fields" and settings["pointSize"] > 0
     visible = {topic for view in views for topic, settings in view["topics"].items() if settings["visible"]}
     named = {topic for view in views for topic in view["topics"]}
-    drawn = {topic for topic in recorded.topics if topic.startswith(("/workspace/", "/bodies/", "/scene"))}
+    drawn = {topic for topic in recorded.topics if topic.startswith(("/workspace/", "/scene"))}
     drawn -= {"/workspace/slice"}
     assert named == drawn
-    assert not any(topic.startswith("/bodies/") for topic in visible)
+    assert not any(topic.startswith("/scene/bodies/") for topic in visible)
     assert visible >= {topic for topic in ["/scene", "/workspace/cloud", "/workspace/boundary"] if topic in drawn}
 
     plots = [panel for key, panel in panels.items() if key.startswith("Plot!")]
@@ -144,7 +144,7 @@ def test_a_script_shows_the_recording_in_rerun(opm, recordings, name):
     views = [tuple(map(ast.literal_eval, call.args)) for call in calls if call.func.id == "space"]
     assert len(views) == (2 if name == "workspace" else 1)
     for _, topics, _, _ in views:
-        assert all(topic in recorded.topics or topic in ("/bodies/**", "/box/**") for topic in topics)
+        assert all(topic in recorded.topics or topic in ("/scene/bodies/**", "/box/**") for topic in topics)
     pytest.importorskip("rerun", reason="rerun-sdk is not installed")
     saved = path.with_suffix(".rrd")
     subprocess.run([sys.executable, script, saved], check=True)

@@ -192,7 +192,7 @@ def test_link_ends_coincide_at_every_frame(record, mechanism):
     assert max(moved.values()) > 0.01 and sum(m > 1e-6 for m in moved.values()) > len(moved) / 2
     # The same surfaces as points, each in its frame.
     for frame in ends:
-        [(time, cloud)] = recorded.topics[f"/bodies/{frame}"]
+        [(time, cloud)] = recorded.topics[f"/scene/bodies/{frame}"]
         assert (time, cloud.frame_id) == (START, frame)
         array = check_recording.points(cloud)
         assert len(array) > 50 or not len(ends[frame])

@@ -156,7 +156,8 @@ fn a_sweep_goes_to_a_file() {
     let inside = opm(&["inspect", &mcap, "--format", "json"]).json();
     assert_eq!(inside["complete"], true);
     let topics: Vec<_> = inside["topics"].as_array().unwrap().iter().map(|t| &t["name"]).collect();
-    for topic in ["/imaginary_joints", "/joints", "/joint_states", "/scene", "/tf", "/bodies/base"]
+    for topic in
+        ["/imaginary_joints", "/joints", "/joint_states", "/scene", "/tf", "/scene/bodies/base"]
     {
         assert!(topics.iter().any(|name| *name == topic), "{topic}: {topics:?}");
     }

@@ -10,7 +10,7 @@
 //! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know this schema; at most 60 a second |
 //! | `/tf` | `foxglove.FrameTransforms`: where every body is; at most 60 a second |
 //! | `/scene` | `foxglove.SceneUpdate`: what the bodies look like, each in its own frame; red while they are stuck |
-//! | `/bodies/NAME` | one `foxglove.PointCloud` for each body, for viewers without scenes: its surface |
+//! | `/scene/bodies/NAME` | one `foxglove.PointCloud` for each body, for viewers without scenes: its surface |
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
 //!
 //! Units are metres, radians and seconds. A topic without values is left out. Time starts at [`START`]; no
@@ -113,7 +113,7 @@ pub const SCENE_TOPIC: &str = "/scene";
 /// The topic of the times at which the motion cannot be followed.
 pub const VIOLATIONS_TOPIC: &str = "/violations";
 /// The beginning of the topics of the bodies' clouds.
-pub const BODIES_TOPIC: &str = "/bodies/";
+pub const BODIES_TOPIC: &str = "/scene/bodies/";
 
 /// The time at which a motion starts, nanoseconds: as good as zero, which viewers take for a time that is not set.
 pub const START: u64 = 1;

@@ -202,8 +202,8 @@ fn a_motion_has_all_topics() {
         (JOINT_STATES_TOPIC, 1),
         (FRAMES_TOPIC, 1),
         (SCENE_TOPIC, 2),
-        ("/bodies/base", 1),
-        ("/bodies/arm", 1),
+        ("/scene/bodies/base", 1),
+        ("/scene/bodies/arm", 1),
         (VIOLATIONS_TOPIC, 1),
     ] {
         assert_eq!(counts[topic], count, "{topic}");

@@ -1,6 +1,6 @@
 //! The upper section of section 3.1: the ranges of its imaginary joints, and its reach.
 
-use crate::{ROUNDING, wrapped};
+use super::{ROUNDING, wrapped};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use opm_core::manipulator::{LegBranch, Manipulator, Mode};
 use opm_core::task::Displacement;

@@ -1,7 +1,7 @@
 //! Position formulas of section 3.1.
 
-use crate::sample::{Sample, samples};
-use crate::{Misses, ROUNDING, e, printed, wrapped};
+use super::sample::{Sample, samples};
+use super::{Misses, ROUNDING, e, printed, wrapped};
 use fastrand::Rng;
 use nalgebra::Vector2;
 use opm_tests::paper::{self, Joints};

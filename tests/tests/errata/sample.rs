@@ -1,6 +1,6 @@
 //! Random plano-spherical manipulators, solved by the crate.
 
-use crate::{e, n, wrapped};
+use super::{e, n, wrapped};
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use opm_core::manipulator::Manipulator;

@@ -1,6 +1,6 @@
 //! Section 3.2: the translational manipulator with a helical leg.
 
-use crate::{Misses, ROUNDING, e, n, printed, wrapped};
+use super::{Misses, ROUNDING, e, n, printed, wrapped};
 use fastrand::Rng;
 use nalgebra::{Matrix2, Rotation2, Vector2, Vector3};
 use opm_core::group::subspace::SubspaceClass;

@@ -1,7 +1,7 @@
 //! Velocity formulas of section 3.1.
 
-use crate::sample::{Rates, samples};
-use crate::{DIFFERENCED, Misses, ROUNDING, e, printed};
+use super::sample::{Rates, samples};
+use super::{DIFFERENCED, Misses, ROUNDING, e, printed};
 use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector3, Vector5};
 
 /// The coefficients of Eq. 20 are the derivatives of the squared distance between two points, and

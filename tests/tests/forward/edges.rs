@@ -1,7 +1,7 @@
 //! Forward kinematics at home, at singularities, at the boundary of reach, beyond it, and with
 //! invalid values.
 
-use crate::{Reached, apart, check_all, example, unlimited};
+use super::{Reached, apart, check_all, example, unlimited};
 use fastrand::Rng;
 use nalgebra::DMatrix;
 use opm_core::forward::{ForwardError, Unmet};

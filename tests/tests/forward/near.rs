@@ -1,7 +1,7 @@
 //! Newton's method from a given pose: for mechanisms without closed-form forward kinematics, and
 //! for all others.
 
-use crate::{Reached, apart, check, example};
+use super::{Reached, apart, check, example};
 use fastrand::Rng;
 use opm_core::Quantity;
 use opm_core::forward::{NearError, Stop};

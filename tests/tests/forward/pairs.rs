@@ -1,7 +1,7 @@
 //! Random mechanisms of every pair of subspaces, with random actuated joints: in closed form if
 //! there is one, otherwise with Newton's method.
 
-use crate::{Reached, apart, check, check_all, unlimited};
+use super::{Reached, apart, check, check_all, unlimited};
 use fastrand::Rng;
 use opm_core::decomposition::mobility::mobility;
 use opm_core::forward::{NearError, NoClosedForm};

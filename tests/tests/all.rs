@@ -1,0 +1,33 @@
+//! Tests that span the crates, in one program: they share what they compile, and run side by side.
+
+mod batch;
+mod branches;
+mod condition;
+mod constraining_legs;
+mod default_grid;
+mod errata;
+mod forward;
+mod gallery;
+mod height;
+mod inclined;
+mod inverse;
+mod kinds;
+mod limits;
+mod linkage;
+mod locate;
+mod measure;
+mod one_subspace;
+mod paper;
+mod rejections;
+mod rows;
+mod shards;
+mod singularity;
+mod structured;
+mod sweep;
+mod task;
+mod three_translations;
+mod tilt_torsion;
+mod time_optimal;
+mod topology;
+mod trajectory;
+mod velocity;
