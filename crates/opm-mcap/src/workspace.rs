@@ -5,7 +5,7 @@
 //! | `/workspace/cloud` | one: every k-th point, at most [`MAX_OVERVIEW_POINTS`], at the start |
 //! | `/workspace/slices` | one for each slice that has points, [`SLICE_STEP`] apart; together they hold every point |
 //! | `/workspace/slice` | `opm.Slice`, before each of them: the number of the slice, its coordinates, its points and their area |
-//! | `/workspace/label` | `foxglove.SceneUpdate`: the same in words, above the points |
+//! | `/workspace/label` | `foxglove.SceneUpdate`, where there are several slices: the same in words, above the points |
 //! | `/workspace/axes` | one `foxglove.SceneUpdate`: a box round the points, with the values at its ends |
 //! | `/workspace/boundary` | `foxglove.SceneUpdate`, if the boundary is known: its closed lines, with their slice |
 //! | `/workspace/boundary_points` | `foxglove.PointCloud`: the same lines as points, for viewers without scenes |
@@ -153,7 +153,8 @@ pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     /// What the slices are, and where it is told.
     told: Slices,
     slice: JointsTopic,
-    label: Topic,
+    /// `None` where there is one slice only.
+    label: Option<Topic>,
     /// The number of slices that are already written.
     written: u64,
     /// The range of the points of the overview.
@@ -192,7 +193,10 @@ impl<W: Sink> WorkspaceRecorder<W> {
         let overview = log.topic::<PointCloud>(OVERVIEW_TOPIC)?;
         let slices = log.topic::<PointCloud>(SLICES_TOPIC)?;
         let slice = JointsTopic::new(&mut log, SLICE_TOPIC, "Slice", &told.names()?)?;
-        let label = log.topic::<SceneUpdate>(LABEL_TOPIC)?;
+        let label = match told.axes.is_empty() {
+            true => None,
+            false => Some(log.topic::<SceneUpdate>(LABEL_TOPIC)?),
+        };
         let (told, written, bounds) = (told.clone(), 0, None);
         let layout = layout.clone();
         let (boundary, open) = (None, None);
@@ -454,14 +458,12 @@ impl<W: Sink> WorkspaceRecorder<W> {
     fn tell(&mut self, slice: u64, points: u64, time: u64) -> Result<(), RecordError> {
         let row = self.told.row(slice, points);
         self.slice.write(&mut self.log, time, &row)?;
-        let Some(bounds) = self.bounds.filter(|_| !self.told.axes.is_empty()) else {
-            return Ok(());
-        };
+        let (Some(label), Some(bounds)) = (&mut self.label, self.bounds) else { return Ok(()) };
         let mut message = Vec::new();
         slice_label(&self.layout.frame_id, bounds, &self.told.words(slice, points), stamp(time)?)
             .encode(&mut message)
             .map_err(|reason| RecordError::Layout(format!("the label: {reason}")))?;
-        self.log.message(&mut self.label, time, &message)
+        self.log.message(label, time, &message)
     }
 
     /// Writes the gathered points as the open slice's next message.
