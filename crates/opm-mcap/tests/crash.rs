@@ -228,13 +228,13 @@ fn no_damaged_byte_goes_unnoticed() {
     let directory = tempfile::tempdir().unwrap();
     let bytes = recorded(&[2, 0, 3], 1);
     for at in 0..bytes.len() {
-        for flip in [0x01, 0x80] {
-            let mut damaged = bytes.clone();
-            damaged[at] ^= flip;
-            let path = file(&directory, "damaged.mcap", &damaged);
-            if let Ok(recording) = read(&path, nothing) {
-                assert!(!recording.complete, "byte {at} of {} flipped by {flip}", bytes.len());
-            }
+        // The lowest and the highest bit in turn.
+        let flip = [0x01, 0x80][at % 2];
+        let mut damaged = bytes.clone();
+        damaged[at] ^= flip;
+        let path = file(&directory, "damaged.mcap", &damaged);
+        if let Ok(recording) = read(&path, nothing) {
+            assert!(!recording.complete, "byte {at} of {} flipped by {flip}", bytes.len());
         }
     }
 }
