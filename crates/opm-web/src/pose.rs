@@ -12,7 +12,7 @@ use opm_core::{Mode, Quantity};
 use opm_study::text::reason;
 use serde::Serialize;
 
-/// Most choices whose modes are tried at every pose: 256 modes take about a tenth of a millisecond.
+/// Most choices whose modes are tried at every pose: 256 modes take a fraction of a millisecond.
 const MOST_CHOICES: u32 = 8;
 
 /// The answer to a pose. The bytes are the transforms of the bodies, if it is reached.

@@ -11,6 +11,8 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub struct Body<'a> {
     name: &'a str,
+    /// Where its frame is at home, parallel to the base's.
+    origin: [f64; 3],
     section: Option<String>,
     solids: Vec<Shape>,
 }
@@ -33,6 +35,7 @@ pub fn bodies(explorer: &Explorer) -> Vec<Body<'_>> {
     bodies
         .map(|body| Body {
             name: &body.name,
+            origin: body.origin.coords.into(),
             section: section_of_body(explorer, &body.name).map(|section| section.to_string()),
             solids: body.parts.iter().map(shape).collect(),
         })

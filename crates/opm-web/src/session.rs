@@ -97,7 +97,7 @@ impl Session {
     }
 }
 
-/// The mechanisms that can be explored: those that opm ships, but for single loops, which have no pose to ask for.
+/// The mechanisms that opm ships.
 fn examples() -> Reply {
     #[derive(Serialize)]
     struct Example {
@@ -105,8 +105,7 @@ fn examples() -> Reply {
         description: &'static str,
         text: &'static str,
     }
-    let shipped =
-        EXAMPLES.iter().filter(|example| Explorer::open(example.text, &Default::default()).is_ok());
-    let list = shipped.map(|e| Example { name: e.name, description: e.description, text: e.text });
+    let list =
+        EXAMPLES.iter().map(|e| Example { name: e.name, description: e.description, text: e.text });
     Reply::new(&list.collect::<Vec<_>>())
 }

@@ -1,8 +1,8 @@
 //! What a page is answered, compared with the library asked directly, pose by pose.
 
-use opm_core::Manipulator;
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file;
+use opm_core::{Manipulator, Solution};
 use opm_web::{Reply, Session};
 use serde_json::{Value, json};
 
@@ -67,7 +67,7 @@ fn a_slice_is_what_each_of_its_poses_is() {
             let pose = manipulator.pose(values).unwrap();
             let parsed = manipulator.parse_mode(mode).unwrap();
             let found = manipulator.inverse(&pose, parsed, &mut buffer).unwrap();
-            let within = found.is_some_and(|solution| solution.within_limits());
+            let within = found.is_some_and(Solution::within_limits);
             assert_eq!(shown == 1, within, "{mode} at {pose:?}");
             reachable += u64::from(within);
         }
@@ -83,7 +83,7 @@ fn a_slice_is_what_each_of_its_poses_is() {
         }
         let area = |slice: &Value| -> f64 {
             let rings = slice["rings"].as_array().unwrap();
-            rings.iter().map(|ring| area_of(ring)).sum()
+            rings.iter().map(area_of).sum()
         };
         let (one, other) = (area(&slice), area(&turned.value()));
         assert!((one + other).abs() <= 1e-9 * one.abs(), "mirrored: {one} {other}");
@@ -107,7 +107,7 @@ fn the_boundary_holds_the_reachable_poses() {
     let slice = answer(&mut session, &request);
     let (cell, reachable) = (3.0 * 3.0, slice["reachable"].as_f64().unwrap());
     let rings = slice["rings"].as_array().unwrap();
-    let area: f64 = rings.iter().map(|ring| area_of(ring)).sum();
+    let area: f64 = rings.iter().map(area_of).sum();
     assert!((area / (cell * reachable) - 1.0).abs() < 0.02, "{area}");
     assert_eq!(slice["unit"], "mm^2");
 }
@@ -129,15 +129,15 @@ fn the_whole_workspace_is_counted_on_the_fitted_grid() {
     let count = Sweep::new(&manipulator, &grid, modes).count(&progress).unwrap();
     assert_eq!(found["reachable"], count.reachable);
     let mut buffer = manipulator.solution();
-    let reached = |number: u64, buffer: &mut opm_core::Solution| {
+    let reached = |number: u64, buffer: &mut Solution| {
         let found = manipulator.inverse(&grid.pose(number), manipulator.home_mode(), buffer);
-        found.unwrap().is_some_and(|solution| solution.within_limits())
+        found.unwrap().is_some_and(Solution::within_limits)
     };
     let each = (0..grid.poses()).filter(|&number| reached(number, &mut buffer)).count();
     assert_eq!(each as u64, count.reachable);
 }
 
-/// S1 = 168.806 mm and theta11 = 11.86 deg are in the README of the reference data, from another solver.
+/// The library gives them in metres and radians, and the platform's place as a displacement.
 #[test]
 fn a_pose_has_the_joints_of_inverse_kinematics_in_the_units_of_the_file() {
     let (mut session, description) = opened("plano-spherical-5dof");
@@ -263,7 +263,6 @@ fn assert_same(after: &Value, before: &Value) {
 fn a_change_changes_the_mechanism_and_none_is_the_file_again() {
     for (name, change, pose) in [
         ("plano-spherical-5dof", json!({ "leg1.h": [130] }), json!({ "x": 10 })),
-        // Along its axis and across it: the second joint of the first leg, a slider's pin.
         ("plano-spherical-5dof-joints", json!({ "S1.limits": [] }), json!({ "x": 10 })),
     ] {
         let (mut session, before) = opened(name);
@@ -401,10 +400,9 @@ fn every_shipped_mechanism_with_a_pose_can_be_explored() {
     let list = answer(&mut Session::default(), &json!({ "do": "examples" }));
     let names: Vec<&str> =
         list.as_array().unwrap().iter().map(|e| e["name"].as_str().unwrap()).collect();
+    assert_eq!(names, EXAMPLES.iter().map(|example| example.name).collect::<Vec<_>>());
     // Bennett's loops have no pose to ask for: `opm linkage` is for them.
-    let shipped = EXAMPLES.iter().map(|example| example.name);
-    assert_eq!(names, shipped.filter(|name| !name.starts_with("bennett")).collect::<Vec<_>>());
-    for name in names {
+    for name in names.into_iter().filter(|name| !name.starts_with("bennett")) {
         let (mut session, description) = opened(name);
         let reply = ask(&mut session, &json!({ "do": "pose" }));
         let home = reply.value();
