@@ -11,7 +11,7 @@ PEERS_VENV := target/venv-peers
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help test lint test-rust test-python bench guard guard-store figures python
+.PHONY: help test lint test-rust test-python bench guard guard-store figures web python
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -52,6 +52,9 @@ guard-store: ## Store the instructions that are taken now, for make guard to com
 
 figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
 	$(FIGURES_VENV)/bin/python docs/figures/make_figures.py
+
+web: ## Build the explorer's page; needs node, and a compiler for WebAssembly
+	web/build.sh
 
 # Before anything that takes minutes.
 python:

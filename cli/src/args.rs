@@ -1,5 +1,6 @@
 //! Every argument of the command line; the doc comments are the help.
 
+mod explore;
 mod export;
 mod measure;
 mod motion;
@@ -7,6 +8,7 @@ mod pose;
 mod recording;
 mod workspace;
 
+pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
@@ -61,6 +63,7 @@ Examples:
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds
   opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
+  opm explore plano-spherical-5dof -o robot.html       a page for browsers, workspace and all
   opm export mjcf plano-spherical-5dof -o plano.xml    a model for MuJoCo, loops and all
   opm help format                                      how to write a mechanism file";
 
@@ -99,6 +102,7 @@ pub enum Command {
     Plot(PlotArgs),
     Inspect(InspectArgs),
     Layout(LayoutArgs),
+    Explore(ExploreArgs),
     Export(ExportArgs),
     Examples(ExamplesArgs),
     Schema(SchemaArgs),

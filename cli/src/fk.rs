@@ -5,11 +5,10 @@ mod poses;
 
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
-use crate::ik::reason;
 use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Pose;
-use crate::text::{self, Table};
+use crate::text::{self, Table, reason};
 use crate::unitless;
 use opm_core::forward::{Assemblies, Assembly, NearError, Unmet};
 use opm_core::group::JointDisplacement;

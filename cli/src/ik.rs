@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Checks;
-use crate::text::{self, Table};
+use crate::text::{self, Table, reason};
 use crate::transform::{self, Located};
 use crate::unitless;
 use opm_core::chain::limits::Limits;
@@ -381,14 +381,4 @@ fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
     });
     let parts: Vec<String> = parts.collect();
     format!("the transform is outside the manipulator's motion by {}", parts.join(" and "))
-}
-
-/// The section of the leg that does not close, and by how much.
-pub fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
-    let (section, gap) = (unreachable.section, unreachable.deficit);
-    if gap.excess.is_finite() {
-        format!("{section} section out of reach by {}", units.show(gap.excess, gap.quantity))
-    } else {
-        format!("{section} section out of reach")
-    }
 }

@@ -8,6 +8,7 @@ mod change;
 mod completions;
 mod decompose;
 mod examples;
+mod explore;
 mod export;
 mod failure;
 mod fk;
@@ -76,6 +77,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
         Command::Layout(command) => layout::run(command, output),
+        Command::Explore(command) => explore::run(command, output),
         Command::Export(command) => export::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),

@@ -11,7 +11,6 @@ use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::mechanism::file::{self, Digits, MechanismFile};
-use opm_core::task::{OddJoint, TaskError};
 use opm_study::recording::Attachment;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -219,38 +218,7 @@ impl Loaded {
     /// The place of an error in messages: the file, and the line if it is
     /// known.
     pub fn place_of(&self, error: &CompileError) -> String {
-        let (file, places) = (&self.file, &self.file.places);
-        let of_leg = |leg: &str| {
-            let number = file.mechanism.legs.iter().position(|known| known.name == leg);
-            number.and_then(|number| places.legs.get(number)).copied()
-        };
-        let place = match error {
-            CompileError::Decompose(
-                DecomposeError::NoFreedom { near: Some(near), .. }
-                | DecomposeError::SingularHome { near: Some(near), .. }
-                | DecomposeError::NoPartialSubspaces { near: Some(near), .. },
-            ) => near.joints.first().and_then(|miss| of_leg(&miss.leg)),
-            CompileError::Decompose(DecomposeError::NoPartialSubspaces {
-                odd: Some(odd), ..
-            }) => of_leg(&odd.leg),
-            CompileError::Decompose(DecomposeError::NoPartialSubspaces {
-                height: Some(height),
-                ..
-            }) => of_leg(&height.leg),
-            CompileError::Decompose(DecomposeError::NoActuator { .. }) => {
-                places.legs.first().copied()
-            }
-            CompileError::Leg { leg, .. }
-            | CompileError::Task(
-                TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }
-                | TaskError::Height { odd: OddJoint { leg, .. }, .. }
-                | TaskError::JointName { leg, .. },
-            ) => of_leg(leg),
-            CompileError::Constraint(error) => error.leg().and_then(of_leg),
-            CompileError::Task(error) => error.key().and_then(|key| places.of_task(key)),
-            _ => None,
-        };
-        match place {
+        match error.location(&self.file) {
             Some((line, column)) => format!("{}:{line}:{column}", self.label),
             None => self.label.clone(),
         }

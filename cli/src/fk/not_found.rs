@@ -1,7 +1,7 @@
 //! Why no assembly was found near a pose, and what to do.
 
 use super::shown;
-use crate::ik::reason;
+use crate::text::reason;
 use opm_core::Quantity;
 use opm_core::forward::{NotFound, Stop};
 use opm_core::manipulator::{Manipulator, Mode, Unreachable};

@@ -3,6 +3,7 @@
 mod bad_input;
 mod batch;
 mod decompose;
+mod explore;
 mod export;
 mod fk;
 mod format;

@@ -4,9 +4,10 @@
 //! every passive joint and every working mode, so it can write all of a parallel mechanism:
 //!
 //! * [`mjcf()`] writes the model format of MuJoCo, which other simulators read, too.
+//! * [`explorer()`] writes a page in which a browser shows the mechanism and its workspace.
 //! * [`Keyframes`] are the postures of a mechanism at its home pose, one for each working mode, by name.
 //!
-//! Everything that is written is in metres, radians, kilograms and seconds, with all digits. The values of joints are
+//! Everything in a model is in metres, radians, kilograms and seconds, with all digits. The values of joints are
 //! those that opm reports.
 //!
 //! ```
@@ -23,7 +24,9 @@
 mod keyframe;
 mod mass;
 mod mjcf;
+mod page;
 mod xml;
 
 pub use keyframe::{Keyframe, Keyframes, Source};
 pub use mjcf::{MjcfOptions, NotPositive, mjcf};
+pub use page::explorer;

@@ -1,5 +1,7 @@
-//! Numbers and errors as text.
+//! Numbers, legs out of reach and errors as text.
 
+use opm_core::manipulator::Unreachable;
+use opm_core::mechanism::file::FileUnits;
 use std::error::Error;
 use std::fmt::{Display, Write};
 
@@ -14,6 +16,16 @@ pub fn count(number: u64) -> String {
         text.push(digit);
     }
     text
+}
+
+/// The section of the leg that does not close, and by how much.
+pub fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
+    let (section, gap) = (unreachable.section, unreachable.deficit);
+    if gap.excess.is_finite() {
+        format!("{section} section out of reach by {}", units.show(gap.excess, gap.quantity))
+    } else {
+        format!("{section} section out of reach")
+    }
 }
 
 /// An error and its causes, on one line.

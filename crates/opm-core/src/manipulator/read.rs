@@ -1,7 +1,10 @@
 //! A manipulator from the text of a mechanism file, or from one of the mechanisms that opm ships.
 
 use super::{CompileError, Manipulator};
+use crate::decomposition::DecomposeError;
+use crate::mechanism::file::{Location, MechanismFile};
 use crate::mechanism::{examples, file};
+use crate::task::{OddJoint, TaskError};
 
 /// Why a mechanism file does not give a manipulator.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -54,6 +57,40 @@ impl Manipulator {
         match examples::find(name) {
             Some(example) => Self::read(example.text),
             None => Err(ReadError::Example { name: name.to_owned() }),
+        }
+    }
+}
+
+impl CompileError {
+    /// The place of the file that the error is about, if it is known: a leg, or a value of `[task]`.
+    pub fn location(&self, file: &MechanismFile) -> Option<Location> {
+        let MechanismFile { mechanism, places, .. } = file;
+        let of_leg = |leg: &str| {
+            let number = mechanism.legs.iter().position(|known| known.name == leg);
+            number.and_then(|number| places.legs.get(number)).copied()
+        };
+        match self {
+            Self::Decompose(
+                DecomposeError::NoFreedom { near: Some(near), .. }
+                | DecomposeError::SingularHome { near: Some(near), .. }
+                | DecomposeError::NoPartialSubspaces { near: Some(near), .. },
+            ) => near.joints.first().and_then(|miss| of_leg(&miss.leg)),
+            Self::Decompose(DecomposeError::NoPartialSubspaces { odd: Some(odd), .. }) => {
+                of_leg(&odd.leg)
+            }
+            Self::Decompose(DecomposeError::NoPartialSubspaces {
+                height: Some(height), ..
+            }) => of_leg(&height.leg),
+            Self::Decompose(DecomposeError::NoActuator { .. }) => places.legs.first().copied(),
+            Self::Leg { leg, .. }
+            | Self::Task(
+                TaskError::Subspace { odd: Some(OddJoint { leg, .. }), .. }
+                | TaskError::Height { odd: OddJoint { leg, .. }, .. }
+                | TaskError::JointName { leg, .. },
+            ) => of_leg(leg),
+            Self::Constraint(error) => error.leg().and_then(of_leg),
+            Self::Task(error) => error.key().and_then(|key| places.of_task(key)),
+            _ => None,
         }
     }
 }

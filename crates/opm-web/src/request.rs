@@ -1,0 +1,102 @@
+//! What the page asks.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// Values by the names of task coordinates, in the units of the file. A coordinate without a value has that of home.
+pub type Coordinates = BTreeMap<String, f64>;
+
+/// Changed numbers of the mechanism by their names, in the units of the file: one number, the two ends of limits or none
+/// of them, the components of a point or of a direction.
+pub type Changes = BTreeMap<String, Vec<f64>>;
+
+/// A request, an object with the key `do`: `{ "do": "pose", "pose": { "x": 10 } }`.
+///
+/// The working mode is that of home where none is given.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
+pub enum Request {
+    /// The mechanisms that opm ships.
+    Examples {},
+    /// Opens a mechanism and describes it.
+    Open {
+        /// The text of the mechanism file.
+        text: String,
+        /// What is changed of it.
+        #[serde(default)]
+        changes: Changes,
+    },
+    /// Changes the open mechanism and describes it. Numbers that are not named are those of the file.
+    Change {
+        /// All that is changed of the file.
+        changes: Changes,
+    },
+    /// The text of the mechanism file, with the changes.
+    File {},
+    /// The joints at a pose, the bodies, and the working modes that reach it.
+    Pose {
+        /// The pose.
+        #[serde(default)]
+        pose: Coordinates,
+        /// The working mode.
+        mode: Option<String>,
+    },
+    /// The poses of the platform for given values of the actuated joints.
+    Forward {
+        /// A value for each actuated joint coordinate, in the file's units.
+        joints: BTreeMap<String, f64>,
+        /// The assemblies nearest to this pose come first.
+        #[serde(default)]
+        pose: Coordinates,
+    },
+    /// Fits a grid to the whole workspace. The session keeps it until the next fit.
+    Fit {
+        /// The working mode.
+        mode: Option<String>,
+    },
+    /// Counts the reachable poses of the fitted grid.
+    Whole {
+        /// The working mode.
+        mode: Option<String>,
+    },
+    /// The reachable poses of a plane grid, their number and their boundary.
+    Slice {
+        /// The axis across.
+        x: AxisRequest,
+        /// The axis upwards.
+        y: AxisRequest,
+        /// The other coordinates.
+        #[serde(default)]
+        pose: Coordinates,
+        /// The working mode.
+        mode: Option<String>,
+    },
+    /// A number for each reachable pose of a plane grid, to colour it by.
+    Colours {
+        /// The axis across.
+        x: AxisRequest,
+        /// The axis upwards.
+        y: AxisRequest,
+        /// The other coordinates.
+        #[serde(default)]
+        pose: Coordinates,
+        /// The working mode.
+        mode: Option<String>,
+        /// `condition` for the condition number, or the name of a joint.
+        by: String,
+    },
+}
+
+/// One axis of a plane grid: both ends are on the grid.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AxisRequest {
+    /// The name of the task coordinate.
+    pub name: String,
+    /// The lowest value, in the file's units.
+    pub min: f64,
+    /// The highest value.
+    pub max: f64,
+    /// The number of values.
+    pub count: u64,
+}

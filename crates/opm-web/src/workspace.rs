@@ -1,0 +1,278 @@
+//! Workspaces: plane slices, and the whole on a fitted grid.
+
+use crate::explorer::Explorer;
+use crate::pose::quantities;
+use crate::problem::Problems;
+use crate::request::{AxisRequest, Coordinates};
+use crate::session::Reply;
+use crate::units::{shown, shown_range};
+use opm_core::Quantity;
+use opm_study::{Workspace, WorkspaceKind, WorkspaceRequest};
+use opm_workspace::{
+    Axis, ConditionLimit, Conditioned, Count, GridSet, Modes, Progress, boundary, default_grid,
+};
+use serde::Serialize;
+
+/// Most points of a slice: more than a screen has.
+const MOST_POINTS: u64 = 1 << 24;
+
+/// The colour that is the local conditioning index.
+const CONDITION: &str = "condition";
+
+/// The answer to a fit.
+#[derive(Serialize)]
+struct Fitted {
+    axes: Vec<FittedAxis>,
+    poses: u64,
+}
+
+/// The range of a task coordinate that holds the workspace.
+#[derive(Serialize)]
+struct FittedAxis {
+    name: String,
+    min: f64,
+    max: f64,
+    count: u64,
+    unbounded: bool,
+}
+
+/// The count of a whole workspace.
+#[derive(Serialize)]
+struct Whole {
+    poses: u64,
+    reachable: u64,
+    measure: f64,
+    unit: String,
+    /// The lowest and highest value of each imaginary joint over the reachable poses.
+    imaginary: Vec<Option<[f64; 2]>>,
+}
+
+/// The answer to a slice. The bytes have a 1 for each reachable pose, row by row from the lowest value of y on.
+#[derive(Serialize)]
+struct Slice {
+    poses: u64,
+    reachable: u64,
+    measure: f64,
+    unit: String,
+    imaginary: Vec<Option<[f64; 2]>>,
+    /// The boundary as closed polylines: x and y of one corner after the other.
+    rings: Vec<Vec<f64>>,
+}
+
+/// The range of the numbers that colour a slice. The bytes are a 32-bit number for each pose, in the order of those of
+/// the slice; NaN where it is not reachable.
+#[derive(Serialize)]
+struct Colours {
+    unit: &'static str,
+    min: Option<f64>,
+    max: Option<f64>,
+}
+
+/// Fits a grid to the workspace in a mode.
+pub fn fit(explorer: &Explorer, mode: Option<&str>) -> Result<(Reply, Vec<Axis>), Problems> {
+    let (manipulator, units) = (explorer.manipulator(), explorer.units());
+    let modes = Modes::One(explorer.mode(mode)?);
+    let (grid, extents) = default_grid(manipulator, modes, &Progress::default())
+        .map_err(|error| Problems::of(&error))?;
+    let axes = grid.axes().iter().zip(grid.coordinates()).zip(extents);
+    let axes = axes.map(|((axis, c), extent)| FittedAxis {
+        name: axis.name.clone(),
+        min: shown(axis.min, c.quantity, units),
+        max: shown(axis.max, c.quantity, units),
+        count: axis.count,
+        unbounded: extent.unbounded,
+    });
+    let fitted = Fitted { axes: axes.collect(), poses: grid.poses() };
+    Ok((Reply::new(&fitted), grid.axes().to_vec()))
+}
+
+/// Counts the reachable poses of a fitted grid.
+pub fn whole(explorer: &Explorer, fitted: &[Axis], mode: Option<&str>) -> Result<Reply, Problems> {
+    if fitted.is_empty() {
+        return Err(Problems::one("no grid was fitted"));
+    }
+    let workspace = workspace(explorer, fitted.to_vec(), mode)?;
+    let count =
+        workspace.sweep().count(&Progress::default()).map_err(|error| Problems::of(&error))?;
+    let (measure, unit) = measure(explorer, &workspace, &count);
+    let imaginary = imaginary(explorer, &count);
+    let Count { poses, reachable, .. } = count;
+    Ok(Reply::new(&Whole { poses, reachable, measure, unit, imaginary }))
+}
+
+/// The reachable poses of a plane grid.
+pub fn slice(
+    explorer: &Explorer,
+    axes: [&AxisRequest; 2],
+    pose: &Coordinates,
+    mode: Option<&str>,
+) -> Result<Reply, Problems> {
+    let plane = Plane::new(explorer, axes, pose, mode)?;
+    let (count, poses) = plane
+        .workspace
+        .count_and_keep(&Progress::default())
+        .map_err(|error| Problems::of(&error))?;
+    let set = GridSet::reached(&poses, &Progress::default()).map_err(|e| Problems::of(&e))?;
+    let mut mask = vec![0_u8; plane.points()];
+    set.numbers().for_each(|number| mask[plane.place(number)] = 1);
+    let outlines = boundary(&set).unwrap_or_default();
+    let rings = outlines.iter().flat_map(|outline| &outline.rings);
+    let [x, y] = plane.quantities();
+    let ring = rings.map(|ring| {
+        let corners = ring.points.iter().map(|&[a, b]| if plane.swapped { [b, a] } else { [a, b] });
+        let units = explorer.units();
+        corners.flat_map(|[a, b]| [a / units.factor(x), b / units.factor(y)]).collect()
+    });
+    let rings = ring.collect();
+    let (measure, unit) = measure(explorer, &plane.workspace, &count);
+    let imaginary = imaginary(explorer, &count);
+    let Count { poses, reachable, .. } = count;
+    Ok(Reply::with_bytes(&Slice { poses, reachable, measure, unit, imaginary, rings }, mask))
+}
+
+/// A number for each reachable pose of a plane grid.
+pub fn colours(
+    explorer: &Explorer,
+    axes: [&AxisRequest; 2],
+    pose: &Coordinates,
+    mode: Option<&str>,
+    by: &str,
+) -> Result<Reply, Problems> {
+    let plane = Plane::new(explorer, axes, pose, mode)?;
+    let (manipulator, units) = (explorer.manipulator(), explorer.units());
+    let set = GridSet::reached(&plane.workspace.poses(), &Progress::default());
+    let set = set.map_err(|error| Problems::of(&error))?;
+    let (mut numbers, mut range) = (vec![f32::NAN; plane.points()], None);
+    let mut note = |number: u64, value: f64| {
+        let [min, max] = range.get_or_insert([value; 2]);
+        (*min, *max) = (min.min(value), max.max(value));
+        numbers[plane.place(number)] = value as f32;
+    };
+    let unit = if by == CONDITION {
+        let limit = ConditionLimit { most: f64::MAX, length: manipulator.characteristic_length() };
+        let mut conditioned = Conditioned::new(manipulator, limit);
+        let poses: Vec<f64> = set.numbers().flat_map(|number| set.point(number)).collect();
+        let mut indices = vec![0.0; set.count() as usize];
+        conditioned.local_indices(&poses, plane.workspace.modes(), &mut indices);
+        // A pose without a finite condition number is singular.
+        let indices = indices.into_iter().map(|index| if index.is_nan() { 0.0 } else { index });
+        set.numbers().zip(indices).for_each(|(number, index)| note(number, index));
+        ""
+    } else {
+        let names = manipulator.coordinates().iter().map(|c| &c.name);
+        let mut names = names.chain(manipulator.imaginary().iter().map(|joint| &joint.name));
+        let joint = names.position(|name| name == by);
+        let quantity = joint.and_then(|joint| quantities(manipulator).nth(joint));
+        let (Some(joint), Some(quantity)) = (joint, quantity) else {
+            return Err(Problems::one(format!("{by:?} is not a joint, nor {CONDITION:?}")));
+        };
+        let (mode, mut buffer) = (explorer.mode(mode)?, manipulator.solution());
+        for number in set.numbers() {
+            let found = manipulator.inverse(&set.point(number), mode, &mut buffer);
+            if let Some(solution) = found.map_err(|error| Problems::of(&error))? {
+                let values = solution.joints().iter().chain(solution.imaginary());
+                let value = values.copied().nth(joint).unwrap_or(f64::NAN);
+                note(number, value / units.factor(quantity));
+            }
+        }
+        units.symbol(quantity)
+    };
+    let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let [min, max] = range.map_or([None; 2], |range| range.map(Some));
+    Ok(Reply::with_bytes(&Colours { unit, min, max }, bytes))
+}
+
+/// A plane grid.
+struct Plane {
+    workspace: Workspace,
+    /// The numbers of values across and upwards.
+    counts: [u64; 2],
+    /// The numbers of both coordinates among those of the grid.
+    coordinates: [usize; 2],
+    /// Whether the coordinate upwards comes before that across in the grid.
+    swapped: bool,
+}
+
+impl Plane {
+    fn new(
+        explorer: &Explorer,
+        axes: [&AxisRequest; 2],
+        pose: &Coordinates,
+        mode: Option<&str>,
+    ) -> Result<Self, Problems> {
+        let counts = axes.map(|axis| axis.count);
+        if counts[0].saturating_mul(counts[1]) > MOST_POINTS {
+            let [x, y] = counts;
+            let problem = format!("{x} x {y} points, expected at most {MOST_POINTS}");
+            return Err(Problems::one(problem));
+        }
+        let coordinates = explorer.manipulator().task_coordinates();
+        let number = |axis: &AxisRequest| coordinates.iter().position(|c| c.name == axis.name);
+        let units = explorer.units();
+        let given = axes.map(|axis| {
+            // An unknown name is for the grid to report.
+            let si = |value| match number(axis) {
+                Some(number) => units.si(value, coordinates[number].quantity),
+                None => value,
+            };
+            Axis::new(&*axis.name, si(axis.min), si(axis.max), axis.count)
+        });
+        let held = pose.iter().filter(|(name, _)| axes.iter().all(|axis| axis.name != **name));
+        let held = held.map(|(name, &value)| (name.clone(), value)).collect();
+        let at = explorer.pose(&held)?;
+        let fixed = held.keys().filter_map(|name| {
+            let number = coordinates.iter().position(|c| c.name == name)?;
+            Some(Axis::fixed(&**name, at[number]))
+        });
+        let workspace = workspace(explorer, given.into_iter().chain(fixed).collect(), mode)?;
+        let [Some(x), Some(y)] = axes.map(number) else {
+            return Err(Problems::one("an axis is not a task coordinate"));
+        };
+        Ok(Self { workspace, counts, coordinates: [x, y], swapped: y < x })
+    }
+
+    fn points(&self) -> usize {
+        let [x, y] = self.counts;
+        (x * y) as usize
+    }
+
+    /// The place of a pose among the points, row by row.
+    fn place(&self, number: u64) -> usize {
+        let [across, upwards] = self.counts;
+        let place = match self.swapped {
+            false => number,
+            true => number % upwards * across + number / upwards,
+        };
+        place as usize
+    }
+
+    fn quantities(&self) -> [Quantity; 2] {
+        self.coordinates.map(|number| self.workspace.grid().coordinates()[number].quantity)
+    }
+}
+
+/// The workspace over some axes in one mode.
+fn workspace(
+    explorer: &Explorer,
+    axes: Vec<Axis>,
+    mode: Option<&str>,
+) -> Result<Workspace, Problems> {
+    let mut request = WorkspaceRequest::new(WorkspaceKind::Grid);
+    request.axes = axes;
+    request.modes = Some(Modes::One(explorer.mode(mode)?));
+    let manipulator = explorer.manipulator().clone();
+    request.resolve(manipulator, &Progress::default()).map_err(|error| Problems::of(&error))
+}
+
+/// The measure of the reachable set, and its unit.
+fn measure(explorer: &Explorer, workspace: &Workspace, count: &Count) -> (f64, String) {
+    let measure = workspace.measure(WorkspaceKind::Grid, count, explorer.units());
+    measure.map_or((0.0, "1".to_owned()), |measure| (measure.value, measure.unit))
+}
+
+/// The ranges of the imaginary joints in the file's units.
+fn imaginary(explorer: &Explorer, count: &Count) -> Vec<Option<[f64; 2]>> {
+    let joints = explorer.manipulator().imaginary().iter().zip(&count.imaginary);
+    let range = |quantity, range: [f64; 2]| shown_range(range, quantity, explorer.units());
+    joints.map(|(joint, found)| found.map(|found| range(joint.quantity, found))).collect()
+}

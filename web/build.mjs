@@ -1,0 +1,63 @@
+// Puts the page together: node build.mjs LIBRARY.wasm CRATES.txt. It writes one HTML file, compressed, to the crate that
+// carries it. The same sources give the same bytes.
+
+import { build } from "esbuild";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { gzipSync } from "node:zlib";
+
+const [library, crates] = process.argv.slice(2);
+if (!library || !crates) throw new Error("expected the compiled library and the list of its crates");
+const MOST = 2.5e6;
+
+const text = (path) => readFileSync(new URL(path, import.meta.url), "utf8");
+const version = /\[workspace\.package\]\s+version = "([^"]+)"/.exec(text("../Cargo.toml"))[1];
+
+async function script(entry) {
+  const { outputFiles } = await build({
+    entryPoints: [new URL(entry, import.meta.url).pathname],
+    bundle: true,
+    minify: true,
+    write: false,
+    format: "iife",
+    target: "es2022",
+    legalComments: "none",
+  });
+  return outputFiles[0].text.trim();
+}
+
+async function style(entry) {
+  const { outputFiles } = await build({ entryPoints: [new URL(entry, import.meta.url).pathname], minify: true, write: false });
+  return outputFiles[0].text.trim();
+}
+
+const licences = [
+  "opm: MIT or Apache-2.0, at your option.\n",
+  text("../LICENSE-MIT"),
+  `three.js ${JSON.parse(text("node_modules/three/package.json")).version}:\n`,
+  text("node_modules/three/LICENSE"),
+  "Rust crates in the compiled library, with their licences:\n",
+  readFileSync(crates, "utf8"),
+  "The standard library of Rust: MIT OR Apache-2.0",
+].join("\n");
+
+const packed = gzipSync(readFileSync(library), { level: 9 }).toString("base64");
+// Nothing that is put into a script may look like the end of one.
+const harmless = (content) => content.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
+const parts = {
+  "/*STYLE*/": await style("src/style.css"),
+  LIBRARY: packed,
+  WORKER: harmless(await script("src/worker.ts")),
+  LICENCES: harmless(licences),
+  SCRIPT: harmless(await script("src/main.ts")),
+};
+const template = text("src/index.html").replaceAll("VERSION", version);
+const page = template.replace(/\/\*STYLE\*\/|\b(?:LIBRARY|WORKER|LICENCES|SCRIPT)\b/g, (name) => parts[name]);
+if (Buffer.byteLength(page) > MOST) throw new Error(`the page has ${Buffer.byteLength(page)} bytes, expected at most ${MOST}`);
+
+const folder = new URL("../crates/opm-export/page/", import.meta.url);
+mkdirSync(folder, { recursive: true });
+const small = gzipSync(page, { level: 9 });
+// The header of a gzip file names the system that wrote it; this is the number for unknown.
+small[9] = 255;
+writeFileSync(new URL("explorer.html.gz", folder), small);
+console.log(`explorer.html: ${Buffer.byteLength(page)} bytes, ${small.length} compressed`);

@@ -1,0 +1,82 @@
+// The table of joints: values, and bars inside the limits.
+
+import { byId, element, field, numberIn, short, show } from "./dom";
+import { COLOURS } from "./view";
+import type { Counted, Description, Joint, Posture } from "./types";
+
+export interface JointEvents {
+  /** An actuated joint is to have this value. */
+  driven(name: string, value: number): void;
+}
+
+interface Row {
+  joint: Joint;
+  row: HTMLTableRowElement;
+  value: HTMLElement;
+  bar: HTMLElement;
+  mark: HTMLElement;
+}
+
+export class JointTable {
+  private rows: Row[] = [];
+  private joints: Joint[] = [];
+
+  constructor(private readonly events: JointEvents) {}
+
+  build({ joints, forward }: Description): void {
+    this.joints = joints;
+    this.rows = [];
+    const body = element("tbody");
+    for (const leg of new Set(joints.map((joint) => joint.leg))) {
+      body.append(element("tr", {}, element("th", { colSpan: 4, scope: "rowgroup" }, leg)));
+      for (const joint of joints) if (joint.leg === leg) body.append(this.row(joint, forward));
+    }
+    const names = ["Joint", "Value", "Unit", "Within its limits"];
+    const head = element("tr", {}, ...names.map((name) => element("th", { scope: "col" }, name)));
+    byId("joints").replaceChildren(element("table", {}, element("thead", { className: "hidden" }, head), body));
+  }
+
+  private row(joint: Joint, forward: boolean): HTMLTableRowElement {
+    const { name, kind, limits, unit } = joint;
+    const dot = element("span", { className: "dot", title: `${kind}${joint.section ? `, ${joint.section} section` : ""}` });
+    dot.style.background = COLOURS[kind];
+    const driven = kind === "actuated" && forward;
+    const value = driven
+      ? element("input", { type: "number", step: "any", id: `joint-${name}`, "aria-label": `${name}, ${unit}` })
+      : element("output", { id: `joint-${name}` });
+    if (value instanceof HTMLInputElement) {
+      value.addEventListener("change", () => {
+        const wanted = numberIn(value);
+        if (wanted !== undefined) this.events.driven(name, wanted);
+      });
+    }
+    const mark = element("b");
+    const bar = element("div", { className: limits ? "" : "open" }, mark);
+    const row = element("tr", {}, element("td", {}, dot, name), element("td", { className: "value" }, value),
+      element("td", { className: "unit" }, unit), element("td", { className: "bar" }, bar));
+    this.rows.push({ joint, row, value, bar, mark });
+    return row;
+  }
+
+  /** The values of a posture, and the ranges of the imaginary joints over the workspace. */
+  update(posture: Posture | null, counted: Counted | null): void {
+    const first = this.joints.findIndex((joint) => joint.kind === "imaginary");
+    for (const { joint, row, value, bar, mark } of this.rows) {
+      const number = this.joints.indexOf(joint);
+      const now = posture?.values[number];
+      if (value instanceof HTMLInputElement) show(value, now === undefined ? undefined : Number(short(now)));
+      else value.textContent = now === undefined ? "" : short(now);
+      const swept = joint.kind === "imaginary" ? (counted?.imaginary[number - first] ?? null) : null;
+      const turn = joint.unit === "deg" ? 180 : joint.unit === "rad" ? Math.PI : null;
+      const [low, high] = joint.limits ?? swept ?? (turn ? [joint.home - turn, joint.home + turn] : [joint.home - 1, joint.home + 1]);
+      bar.title = joint.limits ? `limits ${field(low)} to ${field(high)} ${joint.unit}`
+        : swept ? `over the workspace ${short(low)} to ${short(high)} ${joint.unit}` : "no limits";
+      row.classList.toggle("beyond", posture?.beyond.includes(number) ?? false);
+      mark.hidden = now === undefined;
+      if (now !== undefined) {
+        const place = high > low ? (now - low) / (high - low) : 0.5;
+        mark.style.left = `${100 * Math.min(1, Math.max(0, place))}%`;
+      }
+    }
+  }
+}

@@ -1,0 +1,108 @@
+// The state of the page, which lives in its address: what is shared is a link.
+
+/** What is shown. A coordinate that is not named has its value at home. */
+export interface State {
+  /** Where the mechanism is from: the page itself, one of those that opm ships, or a text. */
+  source: { kind: "page" } | { kind: "example"; name: string } | { kind: "text"; name: string; text: string };
+  /** Changed numbers of the mechanism. */
+  changes: Record<string, number[]>;
+  pose: Record<string, number>;
+  /** The working mode; nothing for that of home. */
+  mode: string | null;
+  slice: SliceState;
+}
+
+/** The slice: its coordinates, and what is not the default of the mechanism. */
+export interface SliceState {
+  x: string | null;
+  y: string | null;
+  nx: number;
+  ny: number;
+  /** The ends of both axes, where they were set. */
+  ends: Partial<Record<"xmin" | "xmax" | "ymin" | "ymax", number>>;
+  colour: string;
+}
+
+export const POINTS = 201;
+
+export function initial(): State {
+  return {
+    source: { kind: "page" },
+    changes: {},
+    pose: {},
+    mode: null,
+    slice: { x: null, y: null, nx: POINTS, ny: POINTS, ends: {}, colour: "none" },
+  };
+}
+
+const ENDS = ["xmin", "xmax", "ymin", "ymax"] as const;
+
+/** The state as the part of an address after the `#`. */
+export async function toAddress(state: State): Promise<string> {
+  const query = new URLSearchParams();
+  if (state.source.kind === "example") query.set("example", state.source.name);
+  if (state.source.kind === "text") {
+    query.set("name", state.source.name);
+    query.set("file", await pack(state.source.text));
+  }
+  if (state.mode !== null) query.set("mode", state.mode);
+  for (const [name, value] of Object.entries(state.pose)) query.set(`pose.${name}`, String(value));
+  for (const [name, values] of Object.entries(state.changes)) query.set(`set.${name}`, values.join(":"));
+  const { x, y, nx, ny, ends, colour } = state.slice;
+  if (x) query.set("slice.x", x);
+  if (y) query.set("slice.y", y);
+  if (nx !== POINTS) query.set("slice.nx", String(nx));
+  if (ny !== POINTS) query.set("slice.ny", String(ny));
+  for (const end of ENDS) if (ends[end] !== undefined) query.set(`slice.${end}`, String(ends[end]));
+  if (colour !== "none") query.set("slice.colour", colour);
+  return query.toString();
+}
+
+/** The state of an address. What is not understood there is as in the initial state. */
+export async function fromAddress(hash: string): Promise<State> {
+  const state = initial();
+  const query = new URLSearchParams(hash.replace(/^#/, ""));
+  const number = (text: string | null) => (text === null || text.trim() === "" ? NaN : Number(text));
+  for (const [key, value] of query) {
+    const [group, name] = [key.slice(0, key.indexOf(".")), key.slice(key.indexOf(".") + 1)];
+    if (group === "pose" && Number.isFinite(number(value))) state.pose[name] = number(value);
+    if (group === "set") {
+      const values = value === "" ? [] : value.split(":").map(number);
+      if (values.every(Number.isFinite)) state.changes[name] = values;
+    }
+  }
+  state.mode = query.get("mode");
+  const slice = state.slice;
+  slice.x = query.get("slice.x");
+  slice.y = query.get("slice.y");
+  const points = (text: string | null) => (Number.isInteger(number(text)) && number(text) > 0 ? number(text) : POINTS);
+  slice.nx = points(query.get("slice.nx"));
+  slice.ny = points(query.get("slice.ny"));
+  for (const end of ENDS) {
+    const value = number(query.get(`slice.${end}`));
+    if (Number.isFinite(value)) slice.ends[end] = value;
+  }
+  slice.colour = query.get("slice.colour") ?? "none";
+  const [example, file] = [query.get("example"), query.get("file")];
+  if (example !== null) state.source = { kind: "example", name: example };
+  if (file !== null) {
+    const text = await unpackText(file).catch(() => null);
+    if (text !== null) state.source = { kind: "text", name: query.get("name") ?? "mechanism.toml", text };
+  }
+  return state;
+}
+
+/** A text, compressed, in letters that an address may have. */
+async function pack(text: string): Promise<string> {
+  const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+  const letters = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
+  return btoa(letters).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+}
+
+async function unpackText(packed: string): Promise<string> {
+  const letters = atob(packed.replace(/-/g, "+").replace(/_/g, "/"));
+  const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  return new Response(stream).text();
+}

@@ -1,0 +1,148 @@
+// What the compiled library answers: the JSON of crates/opm-web. Numbers are in the units of the mechanism file, but
+// for bodies and subspaces, which are in metres.
+
+export interface Problem {
+  place?: [line: number, column: number];
+  message: string;
+}
+
+export interface Coordinate {
+  name: string;
+  unit: string;
+  home: number;
+  place: boolean;
+}
+
+export interface Joint {
+  name: string;
+  leg: string;
+  kind: "actuated" | "passive" | "imaginary";
+  section: "lower" | "upper" | null;
+  unit: string;
+  home: number;
+  limits: [number, number] | null;
+}
+
+export interface Dimension {
+  name: string;
+  group: string;
+  label: string;
+  unit: string;
+  parts: string[];
+  values: number[];
+}
+
+export type Vector = [number, number, number];
+
+export interface Subspace {
+  name: string;
+  dimension: number;
+  point: Vector | null;
+  direction: Vector | null;
+}
+
+export interface Solid {
+  shape: "cylinder" | "ball" | "block";
+  material: "base" | "link" | "actuated" | "passive" | "platform" | "imaginary";
+  from: Vector;
+  to: Vector;
+  radius: number;
+}
+
+export interface Body {
+  name: string;
+  origin: Vector;
+  section: "lower" | "upper" | null;
+  solids: Solid[];
+}
+
+export interface Description {
+  name: string;
+  family: string | null;
+  length: string;
+  angle: string;
+  coordinates: Coordinate[];
+  dependent: Coordinate[];
+  home_mode: string;
+  modes: string[];
+  lambda: number;
+  mobility: number;
+  lower: Subspace;
+  upper: Subspace;
+  intersection: Subspace;
+  imaginary_joints: number;
+  joints: Joint[];
+  forward: boolean;
+  dimensions: Dimension[];
+  bodies: Body[];
+}
+
+export interface OutOfReach {
+  leg: string;
+  section: string;
+  deficit: number | null;
+  unit: string;
+  text: string;
+}
+
+export interface Posture {
+  mode: string;
+  reached: boolean;
+  within: boolean;
+  values: number[];
+  beyond: number[];
+  dependent: number[];
+  out_of_reach: OutOfReach[];
+  modes: { mode: string; within: boolean }[];
+}
+
+export interface FittedAxis {
+  name: string;
+  min: number;
+  max: number;
+  count: number;
+  unbounded: boolean;
+}
+
+export interface Fitted {
+  axes: FittedAxis[];
+  poses: number;
+}
+
+export interface Counted {
+  poses: number;
+  reachable: number;
+  measure: number;
+  unit: string;
+  imaginary: ([number, number] | null)[];
+}
+
+export interface Slice extends Counted {
+  rings: number[][];
+}
+
+export interface Colours {
+  unit: string;
+  min: number | null;
+  max: number | null;
+}
+
+export interface Assembly {
+  pose: number[];
+  mode: string;
+  within: boolean;
+  values: number[];
+}
+
+export interface Example {
+  name: string;
+  description: string;
+  text: string;
+}
+
+export interface AxisRequest {
+  name: string;
+  min: number;
+  max: number;
+  count: number;
+}
