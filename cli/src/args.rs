@@ -1,6 +1,7 @@
 //! Every argument of the command line; the doc comments are the help.
 
 mod export;
+mod generate;
 mod measure;
 mod motion;
 mod pose;
@@ -8,6 +9,7 @@ mod recording;
 mod workspace;
 
 pub use export::{ExportArgs, ExportFormat, MjcfArgs};
+pub use generate::{CArgs, GenerateArgs, Language};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
@@ -62,6 +64,7 @@ Examples:
   opm inspect cloud.mcap                               what a recording holds
   opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
   opm export mjcf plano-spherical-5dof -o plano.xml    a model for MuJoCo, loops and all
+  opm generate c plano-spherical-5dof -o controller    inverse kinematics as C, for a controller
   opm help format                                      how to write a mechanism file";
 
 /// Options of every subcommand.
@@ -100,6 +103,7 @@ pub enum Command {
     Inspect(InspectArgs),
     Layout(LayoutArgs),
     Export(ExportArgs),
+    Generate(GenerateArgs),
     Examples(ExamplesArgs),
     Schema(SchemaArgs),
     Format(FormatArgs),

@@ -12,6 +12,7 @@ mod export;
 mod failure;
 mod fk;
 mod format;
+mod generate;
 mod ik;
 mod inspect;
 mod layout;
@@ -77,6 +78,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Inspect(command) => inspect::run(command, output),
         Command::Layout(command) => layout::run(command, output),
         Command::Export(command) => export::run(command, output),
+        Command::Generate(command) => generate::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),
         Command::Format(_) => format::run(output),

@@ -6,6 +6,7 @@ mod decompose;
 mod export;
 mod fk;
 mod format;
+mod generate;
 mod ik;
 mod inspect;
 mod kind;
