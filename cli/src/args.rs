@@ -2,6 +2,7 @@
 
 mod explore;
 mod export;
+mod generate;
 mod measure;
 mod motion;
 mod pose;
@@ -10,6 +11,7 @@ mod workspace;
 
 pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs};
+pub use generate::{CArgs, GenerateArgs, Language};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
@@ -65,6 +67,7 @@ Examples:
   opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
   opm explore plano-spherical-5dof -o robot.html       a page for browsers, workspace and all
   opm export mjcf plano-spherical-5dof -o plano.xml    a model for MuJoCo, loops and all
+  opm generate c plano-spherical-5dof -o controller    inverse kinematics as C, for a controller
   opm help format                                      how to write a mechanism file";
 
 /// Options of every subcommand.
@@ -104,6 +107,7 @@ pub enum Command {
     Layout(LayoutArgs),
     Explore(ExploreArgs),
     Export(ExportArgs),
+    Generate(GenerateArgs),
     Examples(ExamplesArgs),
     Schema(SchemaArgs),
     Format(FormatArgs),

@@ -13,6 +13,7 @@ mod export;
 mod failure;
 mod fk;
 mod format;
+mod generate;
 mod ik;
 mod inspect;
 mod layout;
@@ -79,6 +80,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Layout(command) => layout::run(command, output),
         Command::Explore(command) => explore::run(command, output),
         Command::Export(command) => export::run(command, output),
+        Command::Generate(command) => generate::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),
         Command::Format(_) => format::run(output),

@@ -1,4 +1,4 @@
-"""Models for other programs: what MuJoCo makes of them is tested with the command, in tests/python."""
+"""Models and code for other programs: what MuJoCo makes of models is tested in tests/python, and code with its crate."""
 
 import subprocess
 import sys
@@ -29,3 +29,11 @@ def test_numbers_that_are_not_positive_are_refused(option, value):
     for mechanism in opm.examples.plano_spherical(), opm.examples.bennett():
         with pytest.raises(opm.OpmError, match=f"{option} is .*, expected a positive number"):
             mechanism.to_mjcf(**{option: value})
+
+
+def test_code_is_that_of_the_command(tmp_path):
+    mechanism = opm.examples.plano_spherical()
+    command = [sys.executable, "-m", "opm_kinematics", "generate", "c", mechanism.name, "-q", "-o", tmp_path]
+    subprocess.run(command, check=True)
+    assert mechanism.to_c() == {path.name: path.read_text() for path in tmp_path.iterdir()}
+    assert "int plano_spherical_5dof_inverse(" in mechanism.to_c()["plano_spherical_5dof.h"]

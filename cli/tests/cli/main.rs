@@ -7,6 +7,7 @@ mod explore;
 mod export;
 mod fk;
 mod format;
+mod generate;
 mod ik;
 mod inspect;
 mod kind;

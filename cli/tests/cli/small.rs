@@ -93,6 +93,7 @@ fn help_and_version_go_to_standard_output() {
         "plot",
         "inspect",
         "export",
+        "generate",
         "examples",
         "schema",
         "completions",
@@ -124,6 +125,7 @@ fn the_examples_in_the_help_parse() {
         "workspace",
         "plot",
         "export mjcf",
+        "generate c",
         "examples",
         "schema",
     ];
@@ -150,7 +152,8 @@ fn the_examples_in_the_help_parse() {
             }
             for arg in &mut args {
                 let written = [".mcap", ".svg", ".png", ".xml"].iter().any(|e| arg.ends_with(e));
-                if written || *arg == "joints.csv" {
+                if written || ["joints.csv", "controller", "src/kinematics"].contains(&arg.as_str())
+                {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {

@@ -15,7 +15,9 @@
 //! * A chain whose freedoms are dependent everywhere (a zero-length link between two revolutes, two
 //!   parallel sliders) is refused when it is built.
 
-pub(crate) mod condition;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
+pub mod condition;
 pub mod cylindrical;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]

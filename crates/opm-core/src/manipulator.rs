@@ -16,6 +16,9 @@ mod angles;
 pub(crate) mod batch;
 mod closure;
 mod dependent;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
+pub mod form;
 mod inverse;
 mod leg;
 mod lift;

@@ -554,6 +554,23 @@ class Manipulator:
         OpmError
             A number is not positive.
         """
+    def to_c(self) -> dict[str, str]:
+        """The closed-form inverse kinematics as C99 for a controller: the texts of the files, by name.
+
+        ``NAME.h`` and ``NAME.c`` are the code, which depends on ``math.h`` alone; NAME is the mechanism's name with ``_`` for
+        what a name of C cannot have. ``NAME_test.c`` compares the code with the poses in ``NAME_golden.h``, and
+        ``CMakeLists.txt`` builds both. They are the files that ``opm generate c`` writes.
+
+        Returns
+        -------
+        dict
+            The text of each file.
+
+        Raises
+        ------
+        OpmError
+            The mechanism has more than 32 two-valued choices.
+        """
     def _repr_html_(self) -> str: ...
     def inverse(self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None) -> Solutions:
         """Inverse kinematics of many poses, in one working mode or in all of them.

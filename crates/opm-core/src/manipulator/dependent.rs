@@ -18,6 +18,7 @@
 
 mod complete;
 mod constraint;
+pub(super) mod form;
 mod one_joint;
 mod zeros;
 

@@ -40,6 +40,19 @@ fn expected(example: &str) -> String {
 }
 
 impl Mode {
+    /// The signs as bits, the first one lowest: a set bit for a minus.
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+    /// assert_eq!(manipulator.parse_mode("-+ ++ +- +")?.bits(), 0b100001);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn bits(self) -> u64 {
+        self.0
+    }
+
     /// This mode with the minus signs of another one added.
     #[must_use]
     pub(crate) fn with(self, other: Self) -> Self {

@@ -32,13 +32,13 @@ pub(super) struct OneJoint {
     /// The numbers of the dependent coordinates.
     pub coordinates: Vec<usize>,
     /// The numbers of the section's coordinates, but that of a height.
-    all: Vec<usize>,
-    motion: Motion,
+    pub(super) all: Vec<usize>,
+    pub(super) motion: Motion,
 }
 
 /// The motion of the section.
 #[derive(Clone, Copy, Debug)]
-enum Motion {
+pub(super) enum Motion {
     /// It does not move.
     None,
     /// A rotation in a plane; the third coordinate tells the joint.

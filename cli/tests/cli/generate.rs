@@ -1,0 +1,63 @@
+//! `opm generate c`: the files that are written, and what is told of wrong input. What the code computes is tested with its
+//! crate.
+
+use crate::run::{Folder, opm, opm_reading};
+use std::fs;
+
+#[test]
+fn five_files_are_written_and_named() {
+    let folder = Folder::new();
+    let into = folder.arg("deep/controller");
+    let run = opm(&["generate", "c", "five-bar", "-o", &into]);
+    assert_eq!(run.text(), "");
+    let names =
+        ["CMakeLists.txt", "five_bar.c", "five_bar.h", "five_bar_golden.h", "five_bar_test.c"];
+    let mut found: Vec<String> = fs::read_dir(&into)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    found.sort();
+    assert_eq!(found, names);
+    for name in names {
+        assert!(run.stderr.contains(name), "{}", run.stderr);
+    }
+    let header = folder.read("deep/controller/five_bar.h");
+    assert!(header.contains("typedef double five_bar_real;"));
+    assert!(header.contains("five_bar_COORDINATES = 2,"));
+    assert!(header.contains("five_bar_JOINT_S1 = 0, /* S1, rad */"));
+
+    // The same bytes again, and from standard input, over the old ones.
+    let source = folder.read("deep/controller/five_bar.c");
+    let mechanism = opm(&["examples", "five-bar"]).stdout;
+    opm_reading(&mechanism, &["generate", "c", "-", "-q", "-o", &into]).text();
+    assert_eq!(folder.read("deep/controller/five_bar.c"), source);
+}
+
+/// A parameter changes the geometry and the poses, and no function.
+#[test]
+fn parameters_are_in_the_geometry_alone() {
+    let folder = Folder::new();
+    let functions = |name: &str, change: &[&str]| {
+        let into = folder.arg(name);
+        opm(&[&["generate", "c", "plano-spherical-5dof", "-o", &into], change].concat()).text();
+        let source = folder.read(&format!("{name}/plano_spherical_5dof.c"));
+        let (geometry, functions) = source.split_once("\n};\n").unwrap();
+        (geometry.to_owned(), functions.to_owned())
+    };
+    let (plain, changed) = (functions("a", &[]), functions("b", &["--set", "h=140mm"]));
+    assert_ne!(plain.0, changed.0);
+    assert_eq!(plain.1, changed.1);
+}
+
+#[test]
+fn wrong_input_is_told() {
+    let folder = Folder::new();
+    let into = folder.arg("out");
+    let generate = |args: &[&str]| opm(&[&["generate", "c"], args].concat());
+    generate(&["none.toml", "-o", &into]).fails_with_one_line(1, &["none.toml: No such file"]);
+    generate(&["bennett-plano-spherical-6r", "-o", &into]).fails_with_one_line(1, &["leg1"]);
+    assert!(folder.names().is_empty());
+    fs::write(&into, "a file").unwrap();
+    generate(&["five-bar", "-o", &into]).fails_with_one_line(1, &["out"]);
+    assert_eq!(folder.read("out"), "a file");
+}

@@ -1,0 +1,34 @@
+//! The closed-form kinematics of one mechanism as source code that depends on nothing.
+//!
+//! opm compiles a mechanism to closed forms at run time. A controller has one mechanism, and no room for a compiler: for
+//! it, [`c()`] writes the closed forms of that mechanism as C99, a few hundred lines with the field's names, without heap
+//! and global variables.
+//!
+//! ```
+//! let manipulator = opm_core::Manipulator::example("plano-spherical-5dof")?;
+//! let code = opm_generate::c(&manipulator)?;
+//! assert_eq!(code.name, "plano_spherical_5dof");
+//! assert!(code.header.contains("int plano_spherical_5dof_inverse("));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod c;
+mod names;
+
+pub use c::{CCode, c};
+
+/// Why no code can be written for a mechanism.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GenerateError {
+    /// There are more two-valued choices than an `unsigned` of C has bits.
+    #[error(
+        "the legs have {choices} two-valued choices, expected at most {most}: a working mode is one `unsigned` of C"
+    )]
+    Choices {
+        /// The number of choices.
+        choices: u32,
+        /// The most that there may be.
+        most: u32,
+    },
+}

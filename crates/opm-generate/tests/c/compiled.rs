@@ -1,0 +1,281 @@
+//! Generated C, compiled by the C compiler at hand, and called through a small program that reads poses from its input.
+
+use opm_core::{Manipulator, Mode};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+/// What every compiler accepts without a word.
+const STRICT: [&str; 7] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Wdouble-promotion",
+    "-Wshadow",
+];
+
+/// The compiler; `None`, and a word about it, where there is none.
+pub fn compiler() -> Option<String> {
+    let name = std::env::var("CC").unwrap_or_else(|_| "cc".into());
+    let found = Command::new(&name).arg("--version").output().is_ok_and(|run| run.status.success());
+    if !found {
+        println!("skipped: there is no C compiler ({name})");
+    }
+    found.then_some(name)
+}
+
+/// The type of the numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Real {
+    Double,
+    Float,
+}
+
+/// Several mechanisms in one program.
+pub struct Program {
+    folder: TempDir,
+    shapes: Vec<Shape>,
+}
+
+/// How many numbers there are of each kind.
+#[derive(Clone, Copy)]
+struct Shape {
+    coordinates: usize,
+    joints: usize,
+    imaginary: usize,
+    actuated: usize,
+    legs: usize,
+}
+
+/// A question: a mode and a pose, and a pose that is reached from there.
+#[derive(Clone, Debug)]
+pub struct Question {
+    pub mode: Mode,
+    pub pose: Vec<f64>,
+    pub next: Vec<f64>,
+}
+
+/// What the functions return and write for a question.
+#[derive(Debug)]
+pub struct Answer {
+    /// Of `NAME_inverse`.
+    pub status: f64,
+    pub joints: Vec<f64>,
+    pub imaginary: Vec<f64>,
+    /// Of `NAME_actuated`.
+    pub actuated_status: f64,
+    pub actuated: Vec<f64>,
+    /// Of `NAME_deficits`: that of the lower and that of the upper section of each leg.
+    pub deficits_status: f64,
+    pub deficits: Vec<f64>,
+    /// Of `NAME_limits`, for the joints.
+    pub limits: f64,
+    /// Of `NAME_transform`.
+    pub transform_status: f64,
+    pub position: Vec<f64>,
+    pub rotation: Vec<f64>,
+    /// Of `NAME_nearest`, for the next pose and the joints.
+    pub nearest_status: f64,
+    pub nearest_mode: f64,
+    pub nearest_joints: Vec<f64>,
+    pub nearest_imaginary: Vec<f64>,
+}
+
+/// What answers a record of the input: a mode, a pose, and the next one.
+const RUN: &str = "
+#define WRITE(value) do { double out = (double)(value); fwrite(&out, sizeof out, 1, stdout); } while (0)
+#define WRITE_ALL(values, count) do { for (i = 0; i < (count); ++i) WRITE((values)[i]); } while (0)
+#define RUN(NAME) do { \\
+    uint32_t mode; \\
+    double given[2 * NAME##_COORDINATES]; \\
+    int i, status; \\
+    while (fread(&mode, sizeof mode, 1, stdin) == 1) { \\
+        const NAME##_geometry *g = &NAME##_default; \\
+        NAME##_real pose[2 * NAME##_COORDINATES], joints[NAME##_JOINTS], imaginary[NAME##_IMAGINARY + 1]; \\
+        NAME##_real actuated[NAME##_ACTUATED + 1], deficits[2 * NAME##_LEGS], position[3], rotation[9]; \\
+        NAME##_real next[NAME##_JOINTS], next_imaginary[NAME##_IMAGINARY + 1]; \\
+        unsigned next_mode = 0; \\
+        if (fread(given, sizeof given, 1, stdin) != 1) return 2; \\
+        for (i = 0; i < 2 * NAME##_COORDINATES; ++i) pose[i] = (NAME##_real)given[i]; \\
+        for (i = 0; i < NAME##_JOINTS; ++i) next[i] = joints[i] = -77; \\
+        for (i = 0; i < NAME##_IMAGINARY; ++i) next_imaginary[i] = imaginary[i] = -77; \\
+        for (i = 0; i < NAME##_ACTUATED; ++i) actuated[i] = -77; \\
+        for (i = 0; i < 2 * NAME##_LEGS; ++i) deficits[i] = -77; \\
+        for (i = 0; i < 3; ++i) position[i] = -77; \\
+        for (i = 0; i < 9; ++i) rotation[i] = -77; \\
+        status = NAME##_inverse(g, pose, mode, joints, imaginary); \\
+        WRITE(status); \\
+        WRITE_ALL(joints, NAME##_JOINTS); \\
+        WRITE_ALL(imaginary, NAME##_IMAGINARY); \\
+        WRITE(NAME##_actuated(g, pose, mode, actuated)); \\
+        WRITE_ALL(actuated, NAME##_ACTUATED); \\
+        WRITE(NAME##_deficits(g, pose, mode, deficits)); \\
+        WRITE_ALL(deficits, 2 * NAME##_LEGS); \\
+        WRITE(NAME##_limits(g, joints)); \\
+        WRITE(NAME##_transform(g, pose, mode, position, rotation)); \\
+        WRITE_ALL(position, 3); \\
+        WRITE_ALL(rotation, 9); \\
+        WRITE(NAME##_nearest(g, pose + NAME##_COORDINATES, joints, &next_mode, next, next_imaginary)); \\
+        WRITE(next_mode); \\
+        WRITE_ALL(next, NAME##_JOINTS); \\
+        WRITE_ALL(next_imaginary, NAME##_IMAGINARY); \\
+    } \\
+} while (0)
+";
+
+impl Program {
+    /// Compiles the code of mechanisms with different names. `flags` are further ones of the compiler.
+    pub fn new(manipulators: &[&Manipulator], real: Real, flags: &[&str]) -> Option<Self> {
+        let compiler = compiler()?;
+        let folder = tempfile::tempdir().expect("a directory for temporary files");
+        let mut sources: Vec<PathBuf> = Vec::new();
+        let mut main =
+            String::from("#include <stdint.h>\n#include <stdio.h>\n#include <stdlib.h>\n");
+        let mut calls = String::new();
+        for (number, manipulator) in manipulators.iter().enumerate() {
+            let code = opm_generate::c(manipulator).expect("few choices");
+            for (name, text) in code.files() {
+                if name.ends_with("_test.c") || name == "CMakeLists.txt" {
+                    continue;
+                }
+                let text = match real {
+                    Real::Double => text.to_owned(),
+                    Real::Float => {
+                        let double = format!("typedef double {}_real;", code.name);
+                        assert_eq!(
+                            text.matches(&double).count(),
+                            usize::from(name == format!("{}.h", code.name))
+                        );
+                        text.replace(&double, &format!("typedef float {}_real;", code.name))
+                    }
+                };
+                let path = folder.path().join(&name);
+                std::fs::write(&path, text).expect("a file in it");
+                if name.ends_with(".c") {
+                    sources.push(path);
+                }
+            }
+            let name = &code.name;
+            let _ = writeln!(main, "#include \"{name}.h\"");
+            let _ = writeln!(calls, "    case {number}: RUN({name}); break;");
+        }
+        let _ = write!(
+            main,
+            "{RUN}int main(int argc, char **argv)\n{{\n    if (argc != 2) return 2;\n    switch (atoi(argv[1])) {{\n{calls}    \
+             default: return 2;\n    }}\n    return 0;\n}}\n"
+        );
+        let driver = folder.path().join("driver.c");
+        std::fs::write(&driver, main).expect("a file in it");
+        let run = |arguments: &mut Command| {
+            let done = arguments.current_dir(folder.path()).output().expect("a compiler that runs");
+            let told = String::from_utf8_lossy(&done.stderr).into_owned();
+            assert!(done.status.success(), "{told}");
+            assert_eq!(told, "", "the compiler has something to say");
+        };
+        run(Command::new(&compiler)
+            .args(STRICT)
+            .arg("-Werror")
+            .args(flags)
+            .arg("-c")
+            .args(&sources));
+        let objects = sources.iter().map(|source| source.with_extension("o"));
+        run(Command::new(&compiler)
+            .args(flags)
+            .args(["-o", "driver", "driver.c"])
+            .args(objects)
+            .arg("-lm"));
+        let shape = |m: &&Manipulator| Shape {
+            coordinates: m.task_coordinates().len(),
+            joints: m.coordinates().len(),
+            imaginary: m.imaginary().len(),
+            actuated: m.actuated().len(),
+            legs: m.mechanism().legs.len(),
+        };
+        Some(Self { folder, shapes: manipulators.iter().map(shape).collect() })
+    }
+
+    /// The answers of one mechanism.
+    pub fn ask(&self, number: usize, questions: &[Question]) -> Vec<Answer> {
+        let shape = self.shapes[number];
+        let mut input = Vec::new();
+        for Question { mode, pose, next } in questions {
+            assert_eq!((pose.len(), next.len()), (shape.coordinates, shape.coordinates));
+            input.extend(u32::try_from(mode.bits()).expect("few choices").to_ne_bytes());
+            input.extend(pose.iter().chain(next).flat_map(|value| value.to_ne_bytes()));
+        }
+        let mut child = Command::new(self.folder.path().join("driver"))
+            .arg(number.to_string())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program that was compiled");
+        let mut stdin = child.stdin.take().expect("a pipe");
+        let writer = std::thread::spawn(move || stdin.write_all(&input));
+        let output = child.wait_with_output().expect("it ends");
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success() && told.is_empty(), "{}: {told}", output.status);
+        writer.join().expect("it writes").expect("all is read");
+        let numbers: Vec<f64> = output
+            .stdout
+            .chunks_exact(8)
+            .map(|bytes| f64::from_ne_bytes(bytes.try_into().expect("eight bytes")))
+            .collect();
+        let mut numbers = numbers.into_iter();
+        let answers = questions.iter().map(|_| Answer::read(&mut numbers, shape)).collect();
+        assert_eq!(numbers.next(), None);
+        answers
+    }
+}
+
+impl Answer {
+    fn read(numbers: &mut impl Iterator<Item = f64>, shape: Shape) -> Self {
+        let mut take = |count: usize| -> Vec<f64> { numbers.by_ref().take(count).collect() };
+        let one = |values: Vec<f64>| values[0];
+        Self {
+            status: one(take(1)),
+            joints: take(shape.joints),
+            imaginary: take(shape.imaginary),
+            actuated_status: one(take(1)),
+            actuated: take(shape.actuated),
+            deficits_status: one(take(1)),
+            deficits: take(2 * shape.legs),
+            limits: one(take(1)),
+            transform_status: one(take(1)),
+            position: take(3),
+            rotation: take(9),
+            nearest_status: one(take(1)),
+            nearest_mode: one(take(1)),
+            nearest_joints: take(shape.joints),
+            nearest_imaginary: take(shape.imaginary),
+        }
+    }
+}
+
+/// Compiles the test program that is written beside the code, with each of these source files in turn, and runs it: whether
+/// it succeeds, and what it says.
+pub fn programs_of(code: &opm_generate::CCode, sources: &[&str]) -> Option<Vec<(bool, String)>> {
+    let compiler = compiler()?;
+    let folder = tempfile::tempdir().expect("a directory for temporary files");
+    let [source, test] = [".c", "_test.c"].map(|ending| format!("{}{ending}", code.name));
+    let run = |text: &&str| {
+        for (name, whole) in code.files() {
+            let text = if name == source { text } else { whole };
+            std::fs::write(folder.path().join(&name), text).expect("a file in it");
+        }
+        let built = Command::new(&compiler)
+            .args(STRICT)
+            .args(["-Werror", "-O1", "-o", "test", &source, &test, "-lm"])
+            .current_dir(folder.path())
+            .output()
+            .expect("a compiler that runs");
+        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+        let done = Command::new(folder.path().join("test")).output().expect("it runs");
+        (done.status.success(), String::from_utf8_lossy(&done.stdout).into_owned())
+    };
+    Some(sources.iter().map(run).collect())
+}

@@ -1,0 +1,73 @@
+//! The mechanisms and the poses that generated code is tested with.
+
+use crate::compiled::Question;
+use fastrand::Rng;
+use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::{Manipulator, Quantity};
+use opm_tests::random::{self, Options};
+use std::f64::consts::PI;
+
+/// The shipped mechanisms with closed forms.
+pub fn shipped() -> Vec<Manipulator> {
+    EXAMPLES.iter().filter_map(|example| Manipulator::read(example.text).ok()).collect()
+}
+
+/// A random mechanism of every pair of subspaces, and some of which a leg constrains the platform.
+pub fn random_mechanisms(seed: u64) -> Vec<Manipulator> {
+    let mut rng = Rng::with_seed(seed);
+    let mut all = Vec::new();
+    for pair in random::PAIRS {
+        let options = Options { limited: 0.3, balls: true };
+        let mut drawn = vec![random::mechanism(&mut rng, pair, options)];
+        for lacks in [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]] {
+            let options = Options { limited: 0.3, balls: false };
+            let repeated = rng.bool();
+            drawn.extend(random::constrained(&mut rng, pair, lacks, repeated, options));
+        }
+        for (mut mechanism, decomposition) in drawn {
+            mechanism.name = format!("m{}", all.len());
+            let Ok(m) = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone())
+            else {
+                continue;
+            };
+            // An orientation at home other than the identity has closed forms of its own.
+            let oriented = m.task().coordinates.iter().any(|c| c.name == "zeta") && rng.bool();
+            if oriented {
+                let home = [("zeta", 0.3), ("xi", 0.7), ("psi", -0.4)];
+                mechanism.task.home = home.map(|(name, value)| (name.into(), value)).into();
+            }
+            all.extend(Manipulator::with_decomposition(mechanism, decomposition));
+        }
+    }
+    assert!(all.len() > 150, "{}", all.len());
+    all
+}
+
+/// What questions are drawn from.
+pub struct Drawn<'a> {
+    pub rng: &'a mut Rng,
+    pub manipulator: &'a Manipulator,
+}
+
+impl Drawn<'_> {
+    /// Poses about home in random modes, half of them near home, and a pose near each.
+    pub fn questions(&mut self, count: usize) -> Vec<Question> {
+        (0..count).map(|_| self.question()).collect()
+    }
+
+    fn question(&mut self) -> Question {
+        let m = self.manipulator;
+        let size = m.characteristic_length();
+        let far = if self.rng.bool() { 1.0 } else { 0.3 };
+        let unit = |quantity| if quantity == Quantity::Angle { PI } else { size };
+        let (mut pose, mut next) = (Vec::new(), Vec::new());
+        for c in m.task_coordinates() {
+            let at = c.home + far * unit(c.quantity) * (2.0 * self.rng.f64() - 1.0);
+            pose.push(at);
+            next.push(at + 0.02 * unit(c.quantity) * (self.rng.f64() - 0.5));
+        }
+        let signs: String =
+            (0..m.choices()).map(|_| if self.rng.bool() { '-' } else { '+' }).collect();
+        Question { mode: m.parse_mode(&signs).expect("as many signs as choices"), pose, next }
+    }
+}
