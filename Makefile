@@ -8,6 +8,9 @@ TESTS_VENV := target/venv
 FIGURES_VENV := target/venv-figures
 PEERS_VENV := target/venv-peers
 
+# What is off by default is tested too. Everything is built with it, so that it is built once.
+FEATURES := --features opm-core/serde
+
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
@@ -20,20 +23,18 @@ test: python lint test-rust test-python ## Check everything: format, lints, docu
 
 lint: ## Check format, lints and documentation, warnings being errors
 	$(CARGO) fmt --all --check
-	$(CARGO) clippy --workspace --all-targets -- -D warnings
+	$(CARGO) clippy --workspace --all-targets $(FEATURES) -- -D warnings
 	$(CARGO) clippy -p opm-core --no-default-features -- -D warnings
-	$(CARGO) clippy -p opm-core --features serde --test serde -- -D warnings
-	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps $(FEATURES)
 
 # A fixed seed, so that a check passes or fails for what was changed; plain cargo test draws anew.
 test-rust: ## Run the Rust tests, build the examples
-	PROPTEST_RNG_SEED=20261121 $(CARGO) test --workspace
-	$(CARGO) test -p opm-core --features serde --test serde
+	PROPTEST_RNG_SEED=20261121 $(CARGO) test --workspace $(FEATURES)
 
 # The module as the Rust tests are built: optimised, without the minutes that linking for release takes. A run for each
 # folder: pytest cannot collect two files of one name together.
 test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's recordings with public decoders
-	MATURIN_PEP517_ARGS="--profile dev" $(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
+	MATURIN_PEP517_ARGS="--profile dev $(FEATURES)" $(TESTS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
 	$(TESTS_VENV)/bin/python -m pytest -q --numprocesses 2 --dist worksteal tests/python
 	$(TESTS_VENV)/bin/python -m pytest -q --numprocesses 2 --dist worksteal py/tests
 

@@ -13,8 +13,11 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 REPOSITORY = Path(__file__).parents[2]
 # Shipped mechanisms that are moved by one joint, not by a pose of the platform.
 LINKAGES = ["bennett-double-spherical-6r", "bennett-plano-spherical-6r", "sarrus"]
-# Builds the whole workspace, so that the artefacts of `cargo test --workspace` are reused.
-BUILD = "cargo build --quiet --workspace --bins --examples --message-format=json-render-diagnostics"
+# Builds the whole workspace with the features of `make test-rust`, so that its artefacts are reused.
+BUILD = (
+    "cargo build --quiet --workspace --features opm-core/serde --bins --examples"
+    " --message-format=json-render-diagnostics"
+)
 
 
 @pytest.fixture(scope="session")
