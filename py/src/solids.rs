@@ -6,7 +6,7 @@ use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use nalgebra::{Isometry3, Point3};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
-use opm_core::skeleton::{self, Configuration, ImaginaryJoints, Material, Skeleton};
+use opm_core::skeleton::{self, Configuration, ImaginaryJoints, Skeleton};
 use pyo3::prelude::*;
 
 /// A simple body to draw, in base coordinates.
@@ -90,7 +90,7 @@ impl Manipulator {
                 solids.push(Solid {
                     body: body.name.clone(),
                     shape: shape.to_owned(),
-                    material: material(part.material).to_owned(),
+                    material: part.material.name().to_owned(),
                     ends: frozen(ends.into_pyarray(py).reshape([2, 3])?)?,
                     width,
                 });
@@ -111,16 +111,5 @@ fn shape(solid: &skeleton::Solid, place: &Isometry3<f64>) -> (&'static str, [Poi
             let half = axis.into_inner() * (length / 2.0);
             ("block", [place * (centre - half), place * (centre + half)], width)
         }
-    }
-}
-
-fn material(material: Material) -> &'static str {
-    match material {
-        Material::Base => "base",
-        Material::Link => "link",
-        Material::Actuated => "actuated",
-        Material::Passive => "passive",
-        Material::Platform => "platform",
-        Material::Imaginary => "imaginary",
     }
 }

@@ -9,6 +9,7 @@ mod golden;
 mod interface;
 mod leg;
 mod library;
+mod nearest;
 mod pose;
 mod steps;
 
@@ -20,7 +21,7 @@ use opm_core::Manipulator;
 use opm_core::chain::Chain;
 use opm_core::group::{IntersectionMotion, PlanarMotion, TranslationalMotion};
 use opm_core::manipulator::Section;
-use opm_core::manipulator::form::{ClosedForms, JointMotion, StepKind};
+use opm_core::manipulator::form::{ClosedForms, SectionMotion, StepKind};
 use opm_core::mechanism::joint::JointCoordinate;
 use opm_core::numeric::Quantity;
 use opm_core::task::Task;
@@ -317,17 +318,17 @@ impl<'a> Writer<'a> {
                     let planar =
                         pose::kind(task, step.section) == opm_core::group::SubspaceKind::Planar;
                     let (kind, value) = match motion {
-                        JointMotion::None | JointMotion::Third => continue,
+                        SectionMotion::None | SectionMotion::Third => continue,
                         // The position of the axis: v = -i ω p.
-                        JointMotion::Turn(s) => {
+                        SectionMotion::Turn(s) => {
                             ("NAME_complex", complex(nalgebra::Complex::new(-s.z, s.y) * s.x))
                         }
-                        JointMotion::Slide(s, _) if planar => {
+                        SectionMotion::Slide(s, _) if planar => {
                             ("NAME_complex", complex(nalgebra::Complex::new(s.y, s.z)))
                         }
-                        JointMotion::Slide(s, _)
-                        | JointMotion::Axis(s)
-                        | JointMotion::LastAngle(s) => ("NAME_vector", vector(s)),
+                        SectionMotion::Slide(s, _)
+                        | SectionMotion::Axis(s)
+                        | SectionMotion::LastAngle(s) => ("NAME_vector", vector(s)),
                     };
                     geometry.add(kind, &format!("joint{place}"), &what, value);
                 }

@@ -4,7 +4,7 @@ use crate::explorer::Explorer;
 use opm_core::Section;
 use opm_core::decomposition::Freedom;
 use opm_core::nalgebra::{Isometry3, Point3};
-use opm_core::skeleton::{Configuration, Material, Part, Solid};
+use opm_core::skeleton::{Configuration, Part, Solid};
 use serde::Serialize;
 
 /// A body: its solids are in its own frame.
@@ -70,14 +70,6 @@ fn section_of_body(explorer: &Explorer, name: &str) -> Option<Section> {
 
 fn shape(part: &Part) -> Shape {
     let at = |point: Point3<f64>| -> [f64; 3] { point.coords.into() };
-    let material = match part.material {
-        Material::Base => "base",
-        Material::Link => "link",
-        Material::Actuated => "actuated",
-        Material::Passive => "passive",
-        Material::Platform => "platform",
-        Material::Imaginary => "imaginary",
-    };
     let (shape, from, to, radius) = match part.solid {
         Solid::Cylinder { from, to, radius } => ("cylinder", from, to, radius),
         Solid::Ball { centre, radius } => ("ball", centre, centre, radius),
@@ -86,7 +78,7 @@ fn shape(part: &Part) -> Shape {
             ("block", centre - half, centre + half, 0.5 * width)
         }
     };
-    Shape { shape, material, from: at(from), to: at(to), radius }
+    Shape { shape, material: part.material.name(), from: at(from), to: at(to), radius }
 }
 
 /// The transforms of all bodies to the base, in their order: 4 x 4 matrices of 32-bit numbers, column by column.

@@ -6,9 +6,9 @@ use nalgebra::Isometry3;
 
 impl Manipulator {
     /// How far two poses of the platform in SE(3) are apart ([`Manipulator::platform_pose`]): the angle between their
-    /// orientations, in radians, plus the distance of their reference points over the mechanism's size. A residual of an
-    /// assembly is measured alike. Task coordinates are not compared: where Euler angles are singular, as at home in many
-    /// mechanisms, values that are far apart give the same pose.
+    /// orientations, in radians, plus the distance of their reference points over the mechanism's size. The
+    /// residual of an assembly is measured in the same way. Task coordinates are not compared: many mechanisms have
+    /// singular Euler angles at home, and there different angles give the same orientation.
     pub fn platform_distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let way = to.translation.vector - from.translation.vector;
         from.rotation.angle_to(&to.rotation) + way.norm() / self.closure.size

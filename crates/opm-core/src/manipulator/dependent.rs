@@ -19,7 +19,7 @@
 mod complete;
 mod constraint;
 pub(super) mod form;
-mod one_joint;
+pub(super) mod one_joint;
 mod zeros;
 
 use super::Mode;

@@ -1,6 +1,7 @@
 //! The closed forms of a manipulator as plain data, for programs that write them as code.
 
-pub use super::dependent::form::{CheckForm, JointMotion, StepForm, StepKind};
+pub use super::dependent::form::{CheckForm, StepForm, StepKind};
+pub use super::dependent::one_joint::SectionMotion;
 use super::leg::{CompiledLeg, Section};
 use super::section::CompiledSection;
 use super::{Dependent, Manipulator};

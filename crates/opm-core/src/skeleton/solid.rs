@@ -55,6 +55,20 @@ pub enum Material {
     Imaginary,
 }
 
+impl Material {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Link => "link",
+            Self::Actuated => "actuated",
+            Self::Passive => "passive",
+            Self::Platform => "platform",
+            Self::Imaginary => "imaginary",
+        }
+    }
+}
+
 /// A solid that is a part of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {

@@ -25,8 +25,7 @@ pub fn materials() -> Element {
     use Material::{Actuated, Base, Link, Passive, Platform};
     let all = [Base, Link, Actuated, Passive, Platform];
     Element::new("asset").children(all.map(|material| {
-        let (name, color) = look(material);
-        Element::new("material").with("name", name).numbers("rgba", &color)
+        Element::new("material").with("name", material.name()).numbers("rgba", &color(material))
     }))
 }
 
@@ -52,17 +51,17 @@ fn geom(part: &Part) -> Element {
                 .numbers("size", &[0.5 * width, 0.5 * width, 0.5 * length])
         }
     };
-    shape.with("material", look(part.material).0)
+    shape.with("material", part.material.name())
 }
 
-/// The name and the colour of a material.
-fn look(material: Material) -> (&'static str, [f64; 4]) {
+/// The colour of a material.
+fn color(material: Material) -> [f64; 4] {
     match material {
-        Material::Base => ("base", [0.25, 0.27, 0.3, 1.0]),
-        Material::Link => ("link", [0.7, 0.72, 0.75, 1.0]),
-        Material::Actuated => ("actuated", [0.9, 0.5, 0.1, 1.0]),
-        Material::Passive => ("passive", [0.55, 0.75, 0.9, 1.0]),
-        Material::Platform => ("platform", [0.15, 0.4, 0.75, 1.0]),
-        Material::Imaginary => ("imaginary", [0.6, 0.6, 0.6, 0.3]),
+        Material::Base => [0.25, 0.27, 0.3, 1.0],
+        Material::Link => [0.7, 0.72, 0.75, 1.0],
+        Material::Actuated => [0.9, 0.5, 0.1, 1.0],
+        Material::Passive => [0.55, 0.75, 0.9, 1.0],
+        Material::Platform => [0.15, 0.4, 0.75, 1.0],
+        Material::Imaginary => [0.6, 0.6, 0.6, 0.3],
     }
 }

@@ -988,3 +988,16 @@ static inline NAME_rotation NAME_about_third(NAME_complex e)
     r.z = NAME_vector_of(0, 0, 1);
     return r;
 }
+
+/* 0, or what is returned for a pose that has a coordinate that is no number. */
+static int NAME_check(const real pose[])
+{
+    int i;
+    for (i = 0; i < NAME_COORDINATES; ++i) {
+        /* Not true of a number that is none. */
+        if (!((double)NAME_abs(pose[i]) <= NAME_LARGEST)) {
+            return -(i + 1);
+        }
+    }
+    return 0;
+}

@@ -6,7 +6,7 @@ use super::{Writer, geometry};
 use opm_core::chain::condition::Condition;
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::Section;
-use opm_core::manipulator::form::{JointMotion, StepForm, StepKind};
+use opm_core::manipulator::form::{SectionMotion, StepForm, StepKind};
 use opm_core::numeric::Quantity;
 use std::fmt::Write;
 
@@ -232,7 +232,7 @@ impl Writer<'_> {
         &self,
         number: usize,
         step: &StepForm,
-        motion: JointMotion,
+        motion: SectionMotion,
         all: &[usize],
     ) -> String {
         let mut text = String::new();
@@ -269,7 +269,7 @@ impl Writer<'_> {
             }
         };
         let found: [String; 3] = match motion {
-            JointMotion::None => {
+            SectionMotion::None => {
                 still(&mut text);
                 match kind_of {
                     SubspaceKind::Spherical => {
@@ -280,7 +280,7 @@ impl Writer<'_> {
                     _ => coordinates_of(kind_of, "still", home),
                 }
             }
-            JointMotion::Turn(_) => {
+            SectionMotion::Turn(_) => {
                 still(&mut text);
                 let third = all[2];
                 let _ = writeln!(
@@ -295,7 +295,7 @@ impl Writer<'_> {
                 }
                 coordinates_of(kind_of, "moved", home)
             }
-            JointMotion::Slide(_, given) => {
+            SectionMotion::Slide(_, given) => {
                 let planar = kind_of == SubspaceKind::Planar;
                 let along = |s: &str| match planar {
                     true => {
@@ -328,7 +328,7 @@ impl Writer<'_> {
                 }
                 coordinates_of(kind_of, "moved", home)
             }
-            JointMotion::Third => {
+            SectionMotion::Third => {
                 let [_, xi, psi] = to_euler(self.task, [0, 1, 2].map(home));
                 let angles = of_euler(self.task, [format!("q[{}]", all[0]), xi, psi]);
                 for (coordinate, angle) in all.iter().zip(angles).skip(1) {
@@ -336,7 +336,7 @@ impl Writer<'_> {
                 }
                 return text;
             }
-            JointMotion::Axis(_) | JointMotion::LastAngle(_) => {
+            SectionMotion::Axis(_) | SectionMotion::LastAngle(_) => {
                 if tau.is_some() {
                     still(&mut text);
                 }
@@ -353,11 +353,11 @@ impl Writer<'_> {
                     step.leg + 1
                 );
                 let zeta = match (motion, tau.is_some()) {
-                    (JointMotion::LastAngle(_), _) => format!("q[{}]", all[0]),
+                    (SectionMotion::LastAngle(_), _) => format!("q[{}]", all[0]),
                     (_, true) => "(zeta + NAME_atan2(still.x.y, still.x.x))".to_owned(),
                     (_, false) => "zeta".to_owned(),
                 };
-                if matches!(motion, JointMotion::LastAngle(_)) {
+                if matches!(motion, SectionMotion::LastAngle(_)) {
                     text += "    (void)zeta;\n";
                     if tau.is_some() {
                         text += "    (void)still;\n";

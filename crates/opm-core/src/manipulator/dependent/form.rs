@@ -1,10 +1,9 @@
 //! The steps of the solution as plain data.
 
 use super::constraint::{Constraint, follows};
-use super::one_joint::{Motion, OneJoint};
+use super::one_joint::SectionMotion;
 use super::{Closed, Dependent};
 use crate::chain::condition::Condition;
-use crate::group::LocalTwist;
 use crate::manipulator::leg::{CompiledLeg, Section};
 use crate::numeric::Quantity;
 use crate::task::Task;
@@ -43,27 +42,10 @@ pub enum StepKind {
     /// They follow from the one joint of the section that moves.
     Joint {
         /// What it does.
-        motion: JointMotion,
+        motion: SectionMotion,
         /// The numbers of the section's coordinates but that of a height.
         all: Vec<usize>,
     },
-}
-
-/// The motion of a section with one joint.
-#[derive(Clone, Copy, Debug)]
-pub enum JointMotion {
-    /// It does not move.
-    None,
-    /// A rotation in a plane about this screw; the third coordinate tells the joint.
-    Turn(LocalTwist),
-    /// A translation along this screw; this coordinate of the section tells the joint.
-    Slide(LocalTwist, usize),
-    /// A rotation about the third direction, told by the first Euler angle.
-    Third,
-    /// A rotation about this axis, told by the second Euler angle.
-    Axis(LocalTwist),
-    /// Any rotation about the third direction, after one about this axis that the second Euler angle tells.
-    LastAngle(LocalTwist),
 }
 
 /// A constraint that is only checked.
@@ -108,7 +90,7 @@ impl Dependent {
                 }
             }
             Closed::Joint(joint) => {
-                StepKind::Joint { motion: joint.motion_form(), all: joint.all.clone() }
+                StepKind::Joint { motion: joint.motion, all: joint.all.clone() }
             }
         }
     }
@@ -129,18 +111,5 @@ impl Dependent {
     /// The bits of a mode on which the dependent coordinates depend.
     pub(in crate::manipulator) fn bits(&self) -> &[u32] {
         &self.bits
-    }
-}
-
-impl OneJoint {
-    fn motion_form(&self) -> JointMotion {
-        match self.motion {
-            Motion::None => JointMotion::None,
-            Motion::Turn(s) => JointMotion::Turn(s),
-            Motion::Slide(s, given) => JointMotion::Slide(s, given),
-            Motion::Third => JointMotion::Third,
-            Motion::Axis(s) => JointMotion::Axis(s),
-            Motion::LastAngle(s) => JointMotion::LastAngle(s),
-        }
     }
 }

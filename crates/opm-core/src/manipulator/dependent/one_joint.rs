@@ -33,21 +33,21 @@ pub(super) struct OneJoint {
     pub coordinates: Vec<usize>,
     /// The numbers of the section's coordinates, but that of a height.
     pub(super) all: Vec<usize>,
-    pub(super) motion: Motion,
+    pub(super) motion: SectionMotion,
 }
 
-/// The motion of the section.
+/// The motion of a section with one joint.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Motion {
+pub enum SectionMotion {
     /// It does not move.
     None,
-    /// A rotation in a plane; the third coordinate tells the joint.
+    /// A rotation in a plane about this screw; the third coordinate tells the joint.
     Turn(LocalTwist),
-    /// A translation; this coordinate of the section tells the joint.
+    /// A translation along this screw; this coordinate of the section tells the joint.
     Slide(LocalTwist, usize),
     /// A rotation about the third direction, told by the first Euler angle.
     Third,
-    /// A rotation about an axis, told by the second Euler angle.
+    /// A rotation about this axis, told by the second Euler angle.
     Axis(LocalTwist),
     /// Any rotation about the third direction, after a rotation about this axis that is told by the second
     /// Euler angle. The third Euler angle follows.
@@ -65,25 +65,25 @@ impl OneJoint {
     ) -> Option<Self> {
         let all: Vec<usize> = task.in_plane(section, task.range(section)).collect();
         let (motion, given) = match (subspace(task, section).kind, free) {
-            (_, None) => (Motion::None, None),
-            (SubspaceKind::Planar, Some(s)) if s.x != 0.0 => (Motion::Turn(s), Some(2)),
+            (_, None) => (SectionMotion::None, None),
+            (SubspaceKind::Planar, Some(s)) if s.x != 0.0 => (SectionMotion::Turn(s), Some(2)),
             (SubspaceKind::Planar, Some(s)) => {
                 let longer = usize::from(s.z.abs() > s.y.abs());
-                (Motion::Slide(s, longer), Some(longer))
+                (SectionMotion::Slide(s, longer), Some(longer))
             }
             (SubspaceKind::TranslationalSpace, Some(s)) => {
                 let longest = s.rows(0, all.len()).iamax();
                 // Along the intersection motion, no coordinate of the section changes.
                 if s[longest].abs() < ALONG {
-                    (Motion::None, None)
+                    (SectionMotion::None, None)
                 } else {
-                    (Motion::Slide(s, longest), Some(longest))
+                    (SectionMotion::Slide(s, longest), Some(longest))
                 }
             }
             (SubspaceKind::Spherical, Some(s)) if s.x.hypot(s.y) < ALONG => {
-                (Motion::Third, Some(0))
+                (SectionMotion::Third, Some(0))
             }
-            (SubspaceKind::Spherical, Some(s)) => (Motion::Axis(s), Some(1)),
+            (SubspaceKind::Spherical, Some(s)) => (SectionMotion::Axis(s), Some(1)),
             // With one joint, these have one constraint.
             (
                 SubspaceKind::Identity
@@ -100,12 +100,12 @@ impl OneJoint {
     /// A rotation about the third direction, and one about the axis `s`.
     pub fn last_angle(task: &Task, leg: usize, section: Section, s: LocalTwist) -> Self {
         let all: Vec<usize> = task.range(section).collect();
-        Self { leg, section, coordinates: vec![all[2]], all, motion: Motion::LastAngle(s) }
+        Self { leg, section, coordinates: vec![all[2]], all, motion: SectionMotion::LastAngle(s) }
     }
 
     /// Whether two displacements of the joint belong to a value of the coordinate that tells it.
     pub fn has_choice(&self) -> bool {
-        matches!(self.motion, Motion::Axis(_) | Motion::LastAngle(_))
+        matches!(self.motion, SectionMotion::Axis(_) | SectionMotion::LastAngle(_))
     }
 
     /// Chooses among the Euler angles of an orientation. Where the section only rotates about the third direction,
@@ -115,13 +115,13 @@ impl OneJoint {
         let task = manipulator.task();
         let home = |i: usize| task.coordinates[self.all[i]].home;
         match self.motion {
-            Motion::None | Motion::Turn(_) | Motion::Slide(..) => {}
-            Motion::Third => {
+            SectionMotion::None | SectionMotion::Turn(_) | SectionMotion::Slide(..) => {}
+            SectionMotion::Third => {
                 let (v, b) = task.sections(pose);
                 let displacement = if self.section == Section::Lower { v } else { b };
                 pose[self.all[0]] = near(of_displacement(&displacement, home)[0], home(0));
             }
-            Motion::Axis(s) | Motion::LastAngle(s) => {
+            SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
                 let home = task.angles.to_euler([0, 1, 2].map(home));
                 let [zeta, xi, psi] = task.angles.to_euler([0, 1, 2].map(|i| pose[self.all[i]]));
                 let other = [near(zeta + PI, home[0]), -xi, near(psi + PI, home[2])];
@@ -168,7 +168,7 @@ impl OneJoint {
         };
         let still = || shifted(subspace.kind.identity());
         let found: [f64; 3] = match self.motion {
-            Motion::None => match still() {
+            SectionMotion::None => match still() {
                 // The rotation about the third direction is that of the first Euler angle.
                 Displacement::Spherical(r) => {
                     let [zeta, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
@@ -176,7 +176,7 @@ impl OneJoint {
                 }
                 other => of_displacement(&other, home),
             },
-            Motion::Turn(s) => {
+            SectionMotion::Turn(s) => {
                 let rotation = unit(from_home(2)) * still().planar().rotation.conj();
                 let q = if s.x < 0.0 { rotation.conj() } else { rotation };
                 of_displacement(
@@ -186,7 +186,7 @@ impl OneJoint {
                     home,
                 )
             }
-            Motion::Slide(s, given) => {
+            SectionMotion::Slide(s, given) => {
                 let at = |q: f64| shifted(subspace.kind.exponential(&(s * q)));
                 let [start, end] = [0.0, 1.0].map(|q| of_displacement(&at(q), |_| 0.0)[given]);
                 let rate = end - start;
@@ -195,20 +195,20 @@ impl OneJoint {
                 }
                 of_displacement(&at((from_home(given) - start) / rate), home)
             }
-            Motion::Third => {
+            SectionMotion::Third => {
                 let [_, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
                 let angles = task.angles.of_euler([pose[self.all[0]], xi, psi]);
                 self.all.iter().zip(angles).for_each(|(&i, angle)| pose[i] = angle);
                 return Ok(());
             }
-            Motion::Axis(s) | Motion::LastAngle(s) => {
+            SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
                 let xi = pose[self.all[1]];
                 let mut found = angles(task, &s, xi, sign)?;
                 found[0] += match still() {
                     Displacement::Spherical(r) => r[(1, 0)].atan2(r[(0, 0)]),
                     _ => 0.0,
                 };
-                if let Motion::LastAngle(_) = self.motion {
+                if let SectionMotion::LastAngle(_) = self.motion {
                     found[0] = pose[self.all[0]];
                 }
                 task.angles.of_euler(found)
