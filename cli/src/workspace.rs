@@ -52,10 +52,6 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         }
         (None, _) => None,
     };
-    if args.explain && request.modes() == Modes::Any {
-        let problem = "needs one working mode, and --mode is any";
-        return Err(Failure::flag("--explain", problem));
-    }
     if args.explain && args.kind.sections() != Sections::Whole {
         let problem = format!("is of poses, and --kind {} has none", args.kind.name());
         return Err(Failure::flag("--explain", problem));

@@ -47,8 +47,9 @@ use std::path::PathBuf;
 /// these cells; where between two points the workspace ends is known to half a step, for a disc or a ball to half of a
 /// cell's diagonal. The disc in --kind dexterous is the regular dexterous workspace.
 ///
-/// --explain solves every pose of the grid in one working mode. A leg that is out of reach has no joint values, so that
-/// its limits reject nothing there.
+/// --explain solves every pose of the grid. A leg that is out of reach has no joint values, so that its limits reject
+/// nothing there. With --mode any, what rejects a pose `alone` is what would have to go in one of the modes, and a leg
+/// that reaches the pose in one of them rejects nothing.
 ///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with more than
 /// one value. It is an estimate: it may be too small by half a step at every edge of the box that the

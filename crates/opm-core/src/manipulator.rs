@@ -335,8 +335,19 @@ impl Manipulator {
         self.modes.format(mode)
     }
 
-    /// The modes with every combination of one leg's choices, and plus for all other legs.
-    pub(crate) fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
+    /// The modes with every combination of the choices that the dependent coordinates are computed with, and plus for
+    /// all others: a single mode where no coordinate is dependent.
+    pub fn pose_modes(&self) -> impl Iterator<Item = Mode> + '_ {
+        let combinations = self.dependent.as_ref().map_or(1, |dependent| dependent.combinations());
+        (0..combinations).map(|combination| match &self.dependent {
+            Some(dependent) => dependent.mode(combination),
+            None => Mode::default(),
+        })
+    }
+
+    /// The modes with every combination of the choices of one leg's sections, and plus for all others. At a pose with
+    /// all its coordinates, the joints of a leg depend on these choices alone.
+    pub fn leg_modes(&self, leg: usize) -> impl Iterator<Item = Mode> + use<> {
         self.modes.leg_modes(leg)
     }
 

@@ -105,13 +105,12 @@ impl Workspace {
     /// What rejects the poses of the grid.
     ///
     /// # Errors
-    /// Several working modes count, the kind is not one of poses of both sections, or the work was cancelled.
+    /// The kind is not one of poses of both sections, or the work was cancelled.
     pub fn rejections(&self, progress: &Progress) -> Result<Rejections, StudyError> {
-        let Modes::One(mode) = self.modes else { return Err(RequestError::ExplainModes.into()) };
         if self.kind.sections() != Sections::Whole {
             return Err(RequestError::ExplainKind { kind: self.kind }.into());
         }
-        Ok(Rejections::new(&self.manipulator, &self.grid, mode, progress)?)
+        Ok(Rejections::new(&self.manipulator, &self.grid, self.modes, progress)?)
     }
 
     /// The poses, from a sweep.

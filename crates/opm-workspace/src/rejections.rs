@@ -1,9 +1,12 @@
 //! What rejects the poses of a grid: the legs that do not reach them, and the joints that are past a limit there.
 
+mod causes;
+
+use self::causes::{Causes, Found, Part};
 use crate::grid::Grid;
 use crate::progress::{Cancelled, Progress};
-use opm_core::group::JointDisplacement;
-use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
+use crate::sweep::Modes;
+use opm_core::manipulator::{Manipulator, Section};
 use rayon::prelude::*;
 
 /// Poses between two looks at whether the work was cancelled.
@@ -27,27 +30,32 @@ pub struct Rejection {
     pub leg: usize,
     /// The cause.
     pub cause: Cause,
-    /// Poses that nothing else rejects.
+    /// Poses that would be reached without it. In any working mode, a pose may have several such causes.
     pub alone: u64,
-    /// Poses that other causes reject too.
+    /// Other poses in whose rejection it takes part.
     pub with_others: u64,
 }
 
-/// What rejects the poses of a grid in one working mode.
+/// What rejects the poses of a grid, in one working mode or in every one.
 ///
-/// Of a leg that is out of reach, the joints have no values, so that its limits reject nothing there.
+/// Of a leg that is out of reach, the joints have no values, so that its limits reject nothing there. Where every working
+/// mode counts, a cause takes part if it rejects the pose in one of them, and its leg reaches the pose in none; with
+/// dependent coordinates, in none that gives them the same values.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// use opm_workspace::opm_core::Manipulator;
-/// use opm_workspace::{Axis, Grid, Progress, Rejections};
+/// use opm_workspace::{Axis, Grid, Modes, Progress, Rejections};
 ///
 /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
 /// let axes = vec![Axis::new("x", -0.3, 0.3, 31), Axis::new("y", -0.3, 0.3, 31)];
 /// let grid = Grid::new(&manipulator, axes)?;
-/// let found = Rejections::new(&manipulator, &grid, manipulator.home_mode(), &Progress::default())?;
+/// let home = Modes::One(manipulator.home_mode());
+/// let found = Rejections::new(&manipulator, &grid, home, &Progress::default())?;
 /// let alone: u64 = found.rejections.iter().map(|rejection| rejection.alone).sum();
 /// assert!(found.reachable + alone <= found.poses);
+/// let any = Rejections::new(&manipulator, &grid, Modes::Any, &Progress::default())?;
+/// assert!(any.reachable >= found.reachable);
 /// # Ok(())
 /// # }
 /// ```
@@ -72,31 +80,30 @@ impl Rejections {
     pub fn new(
         manipulator: &Manipulator,
         grid: &Grid,
-        mode: Mode,
+        modes: Modes,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        let causes = Causes::new(manipulator);
+        let causes = Causes::new(manipulator, modes);
         let chunks = grid.poses().div_ceil(CHUNK);
         let none = || Tally::none(&causes);
-        let of_chunk = |(solution, mut tally): (Solution, Tally), chunk: u64| {
+        let of_chunk = |(mut found, mut tally): (Found, Tally), chunk: u64| {
             let first = chunk * CHUNK;
             let last = (first + CHUNK).min(grid.poses());
-            let (mut pose, mut found) = (vec![0.0; grid.axes().len()], Vec::new());
-            let mut solution = solution;
+            let mut pose = vec![0.0; grid.axes().len()];
             for number in first..last {
                 grid.pose_into(number, &mut pose);
-                causes.find(manipulator, &pose, mode, &mut solution, &mut found);
+                causes.find(&pose, &mut found);
                 tally.add(&found);
             }
             progress.advance(last - first)?;
-            Ok((solution, tally))
+            Ok((found, tally))
         };
         let tally = (0..chunks)
             .into_par_iter()
-            .try_fold(|| (manipulator.solution(), none()), of_chunk)
+            .try_fold(|| (causes.none(), none()), of_chunk)
             .map(|part| part.map(|(_, tally)| tally))
             .try_reduce(none, |a, b| Ok(a.merge(&b)))?;
-        let rejections = causes.all.iter().zip(&tally.counts);
+        let rejections = causes.all().iter().zip(&tally.counts);
         let rejections = rejections.map(|(&(leg, cause), &[alone, with_others])| Rejection {
             leg,
             cause,
@@ -111,83 +118,6 @@ impl Rejections {
     }
 }
 
-/// Every cause that there may be, with its leg.
-struct Causes {
-    all: Vec<(usize, Cause)>,
-    /// The leg of each joint coordinate.
-    legs: Vec<usize>,
-}
-
-impl Causes {
-    fn new(manipulator: &Manipulator) -> Self {
-        let legs = manipulator.mechanism().legs.iter().enumerate();
-        let legs: Vec<usize> = legs
-            .flat_map(|(number, leg)| {
-                let coordinates = leg.joints.iter().map(|joint| joint.coordinates.len()).sum();
-                std::iter::repeat_n(number, coordinates)
-            })
-            .collect();
-        let mut all = Vec::new();
-        for leg in 0..manipulator.mechanism().legs.len() {
-            all.extend(
-                [Section::Lower, Section::Upper].map(|section| (leg, Cause::Reach(section))),
-            );
-            for joint in (0..legs.len()).filter(|&joint| legs[joint] == leg) {
-                all.extend([(leg, Cause::Lowest(joint)), (leg, Cause::Highest(joint))]);
-            }
-        }
-        Self { all, legs }
-    }
-
-    /// Finds the numbers of the causes that reject a pose.
-    fn find(
-        &self,
-        manipulator: &Manipulator,
-        pose: &[f64],
-        mode: Mode,
-        solution: &mut Solution,
-        found: &mut Vec<usize>,
-    ) {
-        found.clear();
-        let number = |leg: usize, cause: Cause| {
-            self.all.iter().position(|known| *known == (leg, cause)).unwrap_or_default()
-        };
-        let reached = manipulator.inverse(pose, mode, solution).expect("a pose of the grid");
-        if reached.is_some_and(Solution::within_limits) {
-            return;
-        }
-        for missed in solution.unreachable() {
-            found.push(number(missed.leg, Cause::Reach(missed.section)));
-        }
-        let tied = !manipulator.dependent_coordinates().is_empty() && !found.is_empty();
-        if tied && !matches!(manipulator.dependent_values(pose, mode), Ok(Some(_))) {
-            // Without its dependent coordinates, the pose says nothing of the joints.
-            return;
-        }
-        let closed = |leg: usize| solution.unreachable().iter().all(|missed| missed.leg != leg);
-        let mut nearest = (f64::INFINITY, None);
-        for (joint, limits) in manipulator.limits().iter().enumerate() {
-            let leg = self.legs[joint];
-            let value = solution.joints()[joint] - manipulator.coordinates()[joint].home;
-            let (low, high) = limits.range();
-            if !closed(leg) {
-                continue;
-            }
-            let past = [(low - value, Cause::Lowest(joint)), (value - high, Cause::Highest(joint))];
-            let (by, cause) = if past[0].0 > past[1].0 { past[0] } else { past[1] };
-            if !limits.admits(JointDisplacement::Value(value)) {
-                found.push(number(leg, cause));
-            } else if by.abs() < nearest.0 {
-                nearest = (by.abs(), Some(number(leg, cause)));
-            }
-        }
-        if found.is_empty() {
-            // It is past a limit by rounding of an angle alone.
-            found.extend(nearest.1);
-        }
-    }
-}
-
 /// Sums over poses.
 #[derive(Clone)]
 struct Tally {
@@ -197,15 +127,14 @@ struct Tally {
 }
 
 impl Tally {
-    fn none(causes: &Causes) -> Self {
-        Self { reachable: 0, counts: vec![[0; 2]; causes.all.len()] }
+    fn none(causes: &Causes<'_>) -> Self {
+        Self { reachable: 0, counts: vec![[0; 2]; causes.all().len()] }
     }
 
-    fn add(&mut self, found: &[usize]) {
-        match found {
-            [] => self.reachable += 1,
-            [only] => self.counts[*only][0] += 1,
-            several => several.iter().for_each(|&cause| self.counts[cause][1] += 1),
+    fn add(&mut self, found: &Found) {
+        self.reachable += u64::from(found.causes().next().is_none());
+        for (cause, part) in found.causes() {
+            self.counts[cause][usize::from(part == Part::WithOthers)] += 1;
         }
     }
 

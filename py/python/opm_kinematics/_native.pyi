@@ -1244,8 +1244,9 @@ class Sweep:
     def rejections(self) -> list[Rejection]:
         """What rejects the other poses of the grid: each leg that does not reach them, and each limit.
 
-        Every pose is solved in the working mode. A leg that is out of reach has no joint values, so that its limits reject
-        nothing there.
+        Every pose is solved in the working mode, or in all of them. A leg that is out of reach has no joint values, so that
+        its limits reject nothing there. With mode ``"any"``, what rejects a pose alone is what would have to go in one of
+        the modes, and a leg that reaches the pose in one of them rejects nothing.
 
         Returns
         -------
@@ -1255,7 +1256,7 @@ class Sweep:
         Raises
         ------
         OpmError
-            The mode is ``"any"``, or the kind has no poses of both sections.
+            The kind has no poses of both sections.
         """
     def inscribed(
         self,

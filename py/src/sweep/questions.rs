@@ -84,8 +84,9 @@ impl Inscribed {
 impl Sweep {
     /// What rejects the other poses of the grid: each leg that does not reach them, and each limit.
     ///
-    /// Every pose is solved in the working mode. A leg that is out of reach has no joint values, so that its limits reject
-    /// nothing there.
+    /// Every pose is solved in the working mode, or in all of them. A leg that is out of reach has no joint values, so that
+    /// its limits reject nothing there. With mode ``"any"``, what rejects a pose alone is what would have to go in one of
+    /// the modes, and a leg that reaches the pose in one of them rejects nothing.
     ///
     /// Returns
     /// -------
@@ -95,7 +96,7 @@ impl Sweep {
     /// Raises
     /// ------
     /// OpmError
-    ///     The mode is ``"any"``, or the kind has no poses of both sections.
+    ///     The kind has no poses of both sections.
     fn rejections(&self, py: Python<'_>) -> PyResult<Vec<Rejection>> {
         let progress = Progress::default();
         let threads = few(self.threads, self.workspace.grid().poses() / POSES + 1);

@@ -55,7 +55,7 @@ impl Mode {
 
     /// This mode with the minus signs of another one added.
     #[must_use]
-    pub(crate) fn with(self, other: Self) -> Self {
+    pub fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 }

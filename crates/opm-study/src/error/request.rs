@@ -86,8 +86,6 @@ pub enum SetPart {
 #[error("{}: {}", self.option().name(), self.problem(RequestOption::name))]
 #[non_exhaustive]
 pub enum RequestError {
-    /// Several working modes count, of which each rejects poses for reasons of its own.
-    ExplainModes,
     /// The kind has no poses of both sections to explain.
     ExplainKind {
         /// The kind.
@@ -261,7 +259,7 @@ impl RequestError {
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
-            Self::ExplainModes | Self::ExplainKind { .. } => RequestOption::Explain,
+            Self::ExplainKind { .. } => RequestOption::Explain,
             Self::NoSet { .. } | Self::Inscribed(_) | Self::Round { .. } => {
                 RequestOption::Inscribed
             }
@@ -289,9 +287,6 @@ impl RequestError {
             Self::MaxCondition(most) => format!("{most:?}, expected a number of at least 1"),
             Self::Length(length) => {
                 format!("{length:?} m, expected a positive length, 1e-75 to 1e75 m")
-            }
-            Self::ExplainModes => {
-                format!("needs one working mode, and {} is any", spell(RequestOption::Mode))
             }
             Self::ExplainKind { kind } => {
                 format!("is of poses, and {} {kind} has none", spell(RequestOption::Kind))
