@@ -49,7 +49,8 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     if let Some(recording) = recording {
         let mechanism = loaded.attachment();
         let (workspace, analysis) = (&workspace, &analysis);
-        let findings = Findings { mechanism, workspace, poses, analysis, inscribed: None };
+        let findings =
+            Findings { mechanism, workspace, poses, analysis, inscribed: None, rejections: None };
         work.record(recording, &findings)?;
     }
     let effort = Effort::Merged { shards: args.parts.len() as u64 };

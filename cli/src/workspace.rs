@@ -81,7 +81,8 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         let mechanism = loaded.attachment();
         let inscribed = inscribed.as_ref().and_then(inscribed::Found::shape);
         let (workspace, analysis) = (&workspace, &analysis);
-        let findings = Findings { mechanism, workspace, poses, analysis, inscribed };
+        let rejections = rejections.as_ref();
+        let findings = Findings { mechanism, workspace, poses, analysis, inscribed, rejections };
         work.record(recording, &findings)?;
     }
     let units = loaded.file.units;

@@ -2,10 +2,12 @@
 
 import math
 import pickle
+from pathlib import Path
 
 import numpy as np
 import opm_kinematics as opm
 import pytest
+from mcap.reader import make_reader
 
 GRID = {"x": (-0.3, 0.3, 31), "y": (-0.3, 0.3, 31)}
 
@@ -60,6 +62,28 @@ def test_rejections_are_those_of_inverse_kinematics() -> None:
     again = {(one.leg, one.section): one.alone + one.with_others for one in anywhere.rejections() if one.section}
     assert anywhere.poses - anywhere.count <= rejected
     assert again.items() <= missed.items()
+
+
+def test_a_recording_holds_what_rejects_and_what_fits_inside(tmp_path: Path) -> None:
+    m = opm.examples.load("plano-spherical-5dof")
+    sweep = opm.sweep(m, kind="constant-orientation", **GRID)
+    disc = sweep.inscribed("disc")
+    path = tmp_path / "all.mcap"
+    sweep.write(path, inscribed=disc, explain=True)
+    with open(path, "rb") as file:
+        reader = make_reader(file)
+        records = {record.name: record.metadata for record in reader.iter_metadata()}
+        topics = {channel.topic for channel in reader.get_summary().channels.values()}
+    assert "/workspace/rejected" in topics
+    assert int(records["rejected"]["points"]) == sweep.poses - sweep.count
+    assert disc is not None and records["result"]["inscribed"] == "disc"
+    centre, radius, _ = map(float, records["result"]["inscribed.x"].split(":"))
+    assert (centre, radius) == (disc.centre["x"], disc.radii["x"])
+    with pytest.raises(opm.OpmError, match=r"explain is for a path that ends in \.mcap"):
+        sweep.write(tmp_path / "all.npy", explain=True)
+    other = opm.sweep(m, xi=(-0.2, 0.2, 5), psi=(-0.2, 0.2, 5))
+    with pytest.raises(opm.OpmError, match="inscribed is a shape in x, y, expected one in xi, psi"):
+        other.write(tmp_path / "other.mcap", inscribed=disc)
 
 
 def test_the_largest_disc_is_inside_and_no_point_allows_a_larger_one() -> None:

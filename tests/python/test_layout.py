@@ -18,6 +18,7 @@ RECORDINGS = {
     "workspace": ["workspace", "plano-spherical-5dof", "--grid", "x=-0.2:0.2:21", "--grid", "y=-0.2:0.2:21"]
     + ["--grid", "xi=-0.6:0.6:5", "--shape"],
     "plane": ["workspace", "planar-3rrr", "--grid", "x=-0.1:0.1:21", "--grid", "y=-0.1:0.1:21"],
+    "explained": ["workspace", "planar-3rrr", "--grid", "x=-0.3:0.3:21", "--grid", "y=-0.1:0.3:21", "--explain"],
     "set": ["workspace", "planar-3rrr", "--kind", "reachable", "--grid", "x=-0.1:0.1:21", "--grid", "y=-0.1:0.1:21"]
     + ["--grid", "theta=-10deg:10deg:5"],
 }
@@ -54,14 +55,14 @@ def leaves(tree):
     return [*leaves(tree["first"]), *leaves(tree["second"])]
 
 
-def shown(recorded):
-    """Every point in space, in the frame of the view."""
+def shown(recorded, *, rejected=False):
+    """Every point in space, in the frame of the view: of what is there, or of what is rejected."""
     clouds = {
         topic: np.stack([points(message)[axis] for axis in "xyz"], axis=-1)
         for topic, messages in recorded.topics.items()
         if topic.startswith(("/workspace/", "/scene/bodies/")) and topic != "/workspace/boundary_points"
         for _, message in messages
-        if message.DESCRIPTOR.name == "PointCloud"
+        if message.DESCRIPTOR.name == "PointCloud" and (topic == "/workspace/rejected") == rejected
     }
     if "/tf" not in recorded.topics:
         return np.concatenate(list(clouds.values()))
@@ -84,9 +85,9 @@ def test_a_layout_shows_the_recording(opm, recordings, name):
     assert sorted(leaves(layout["layout"])) == sorted(panels)
 
     views = [panel for key, panel in panels.items() if key.startswith("3D!")]
-    assert len(views) == (2 if name == "workspace" else 1)
-    at = shown(recorded)
+    assert len(views) == (2 if name in ("workspace", "explained") else 1)
     for view in views:
+        at = shown(recorded, rejected=view["topics"].get("/workspace/rejected", {}).get("visible", False))
         assert (view["followMode"], view["followTf"]) == ("follow-none", "base" if "/tf" in recorded.topics else "task")
         camera = view["cameraState"]
         assert camera["target"] == camera["targetOffset"]
@@ -142,7 +143,7 @@ def test_a_script_shows_the_recording_in_rerun(opm, recordings, name):
         assert descriptor.full_name == schema
         assert set(names) <= {field.name for field in descriptor.fields}
     views = [tuple(map(ast.literal_eval, call.args)) for call in calls if call.func.id == "space"]
-    assert len(views) == (2 if name == "workspace" else 1)
+    assert len(views) == (2 if name in ("workspace", "explained") else 1)
     for _, topics, _, _ in views:
         assert all(topic in recorded.topics or topic in ("/scene/bodies/**", "/box/**") for topic in topics)
     pytest.importorskip("rerun", reason="rerun-sdk is not installed")

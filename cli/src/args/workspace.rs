@@ -49,7 +49,8 @@ use std::path::PathBuf;
 ///
 /// --explain solves every pose of the grid. A leg that is out of reach has no joint values, so that its limits reject
 /// nothing there. With --mode any, what rejects a pose `alone` is what would have to go in one of the modes, and a leg
-/// that reaches the pose in one of them rejects nothing.
+/// that reaches the pose in one of them rejects nothing. With -o OUT.mcap the rejected points are recorded too, coloured by
+/// what rejects them, and `opm plot` draws them; a place has the cause of most of its orientations.
 ///
 /// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with more than
 /// one value. It is an estimate: it may be too small by half a step at every edge of the box that the
@@ -68,7 +69,8 @@ Examples:
   opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid theta=-10deg:10deg:5
   opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid y=-0.1:0.1:41 \\
       --grid theta=-10deg:10deg:5 --inscribed disc
-  opm workspace plano-spherical-5dof --grid x=-0.3:0.3:61 --grid y=-0.3:0.3:61 --explain
+  opm workspace plano-spherical-5dof --grid x=-0.3:0.3:61 --grid y=-0.3:0.3:61 --explain \\
+      -o rejected.mcap
   opm workspace plano-spherical-5dof --grid x=-0.3:0.3:61 --vary h=100mm:160mm:7
   opm workspace plano-spherical-5dof --coordinates tilt-torsion --kind dexterous \\
       --grid tilt=20deg --grid azimuth=-180deg:170deg:36 --grid x=-0.2:0.2:81 --grid y=-0.2:0.2:81

@@ -116,7 +116,8 @@ impl JointCloud {
             tiles => tiles.min(3),
         };
         let tiles = self.content.into_iter().map(tile).collect();
-        let mut section = Section { title, columns, shared: false, tiles, bar: None };
+        let mut section =
+            Section { title, columns, shared: false, tiles, bar: None, legend: vec![] };
         let densest = section.densest();
         section.bar = (densest > 1).then(|| Bar {
             measure: Measure::count(&format!("{points} in one place")),

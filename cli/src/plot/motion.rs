@@ -74,7 +74,7 @@ impl Wanted {
                 PanelName::Positions => rates.push(Rate::Position),
                 PanelName::Velocities => rates.push(Rate::Velocity),
                 PanelName::Accelerations => rates.push(Rate::Acceleration),
-                PanelName::Slices => {
+                PanelName::Slices | PanelName::Rejected => {
                     let problem = format!("{} are of a workspace, not of a motion", panel.name());
                     return Err(Failure::flag("--panels", problem));
                 }
@@ -113,7 +113,8 @@ fn rows_of(panel: PanelName) -> &'static [Group] {
         PanelName::Positions
         | PanelName::Velocities
         | PanelName::Accelerations
-        | PanelName::Slices => &[],
+        | PanelName::Slices
+        | PanelName::Rejected => &[],
     }
 }
 

@@ -26,6 +26,8 @@ pub enum PanelName {
     Accelerations,
     /// Slices of a workspace
     Slices,
+    /// Slices of what is not in a workspace, coloured by what rejects it (`opm workspace --explain`)
+    Rejected,
 }
 
 impl PanelName {

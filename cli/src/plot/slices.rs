@@ -9,9 +9,10 @@ use super::source::{Rate, Source, Stop};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_mcap::Cloud as Points;
-use opm_mcap::SliceReader;
+use opm_mcap::rejected::{CAUSE, MAX_CAUSES, SLICE};
 use opm_mcap::workspace::SLICES_TOPIC;
-use opm_plot::color::Map;
+use opm_mcap::{RejectedCause, SliceReader};
+use opm_plot::color::{INK, Map};
 use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
 use opm_study::WorkspaceKind;
 use opm_workspace::{Axis, mask_boundary};
@@ -43,6 +44,17 @@ pub struct Slices<'a> {
     empty: usize,
     /// The largest shape inside, if the recording has it.
     shape: Option<Shape>,
+    /// What rejects the points, if those that are rejected are shown.
+    causes: Option<Vec<RejectedCause>>,
+}
+
+/// The slices that points are in.
+#[derive(Clone, Copy)]
+pub enum In<'a> {
+    /// All in one.
+    Slice(u64),
+    /// Each in its own.
+    Slices(&'a [u64]),
 }
 
 struct Colored {
@@ -115,6 +127,7 @@ impl<'a> Slices<'a> {
             chosen: false,
             empty: 0,
             shape: Shape::of(source),
+            causes: None,
         };
         let values =
             match (varied, selected.into_iter().find(|(number, _)| Some(*number) == varied)) {
@@ -135,6 +148,37 @@ impl<'a> Slices<'a> {
         Ok(slices)
     }
 
+    /// The same slices of the points that are rejected, for these reasons.
+    pub fn rejected(&self, causes: Vec<RejectedCause>, source: &Source<'_>) -> Self {
+        let seen = |seen: &Seen| Seen { measure: seen.measure.clone(), ..*seen };
+        let mut rejected = Self {
+            layout: self.layout,
+            view: self.view.each_ref().map(seen),
+            held: self.held.clone(),
+            varied: self.varied,
+            tiles: vec![],
+            color: None,
+            home: self.home,
+            chosen: self.chosen,
+            empty: 0,
+            shape: None,
+            causes: Some(causes),
+        };
+        let content = |value: u64| (value, rejected.content(&source.recording.extents));
+        rejected.tiles = self.tiles.iter().map(|tile| content(tile.0)).collect();
+        rejected
+    }
+
+    /// Whether the slices are cells of a grid, and not clouds of points.
+    pub fn are_cells(&self) -> bool {
+        self.tiles.iter().all(|tile| matches!(tile.1, Content::Cells(..)))
+    }
+
+    /// Keeps only the slices that others keep, too.
+    pub fn keep_those_of(&mut self, others: &Self) {
+        self.tiles.retain(|tile| others.tiles.iter().any(|other| other.0 == tile.0));
+    }
+
     /// Values of a coordinate, evenly spread over those at which anything is reachable.
     fn spread(&self, source: &Source<'_>, varied: usize) -> Result<Vec<u64>, Failure> {
         let mut ends: Option<[u64; 2]> = None;
@@ -149,7 +193,7 @@ impl<'a> Slices<'a> {
                 return Ok::<(), Stop>(());
             }
             if let (Some(cloud), Some(slice)) = (message.cloud()?, slice) {
-                self.each(&cloud, slice, Some(varied), |_, value| extend(value));
+                self.each(&cloud, In::Slice(slice), Some(varied), |_, value| extend(value));
             }
             Ok(())
         })?;
@@ -180,15 +224,23 @@ impl<'a> Slices<'a> {
             false => spacing(b),
         };
         if let (Some(x), Some(y)) = (spacing(a), across) {
-            let paint = match &self.color {
-                Some(color) => Paint::Values(Map::Viridis, color.range),
-                None => Paint::Plain([0; 3]),
+            return match (&self.causes, &self.color) {
+                (Some(causes), _) => {
+                    let most = causes.iter().map(|cause| cause.number).max().unwrap_or(0);
+                    let mut colors = vec![INK; 1 + most.min(MAX_CAUSES)];
+                    for cause in causes {
+                        if let Some(color) = colors.get_mut(cause.number) {
+                            *color = cause.color;
+                        }
+                    }
+                    Content::Cells(Cells::with_classes(x, y), Paint::Classes(colors))
+                }
+                (None, Some(color)) => {
+                    let paint = Paint::Values(Map::Viridis, color.range);
+                    Content::Cells(Cells::with_values(x, y), paint)
+                }
+                (None, None) => Content::Cells(Cells::plain(x, y), Paint::Plain([0; 3])),
             };
-            let cells = match self.color {
-                Some(_) => Cells::with_values(x, y),
-                None => Cells::plain(x, y),
-            };
-            return Content::Cells(cells, paint);
         }
         let range = |seen: &Seen| {
             let (field, scale) = match &self.layout.coordinates[seen.number].place {
@@ -202,8 +254,16 @@ impl<'a> Slices<'a> {
         Content::Cloud(Cloud::new(range(a), range(b)))
     }
 
-    /// Adds the points of a message of slice `slice`.
-    pub fn add(&mut self, cloud: &Points<'_>, slice: u64) {
+    /// Adds the points of a message, each of which has the number of its slice.
+    pub fn add_rejected(&mut self, cloud: &Points<'_>) {
+        // A cast saturates; a number that is none is slice zero.
+        let slices: Option<Vec<u64>> =
+            cloud.column(SLICE).map(|column| column.map(|number| number as u64).collect());
+        self.add(cloud, slices.as_deref().map_or(In::Slice(0), In::Slices));
+    }
+
+    /// Adds the points of a message.
+    pub fn add(&mut self, cloud: &Points<'_>, slice: In<'_>) {
         let mut tiles = std::mem::take(&mut self.tiles);
         let bar = self.is_bar();
         let [a, b] = &self.view;
@@ -212,9 +272,12 @@ impl<'a> Slices<'a> {
             self.tiles = tiles;
             return;
         };
-        let color = self.color.as_ref().and_then(|color| {
-            let column: Vec<f64> = cloud.column(&color.field)?.map(|v| v / color.factor).collect();
-            Some(column)
+        let color = match (&self.causes, &self.color) {
+            (Some(_), _) => Some((CAUSE, 1.0)),
+            (None, color) => color.as_ref().map(|color| (&*color.field, color.factor)),
+        };
+        let color: Option<Vec<f64>> = color.and_then(|(field, factor)| {
+            Some(cloud.column(field)?.map(|value| value / factor).collect())
         });
         self.each(cloud, slice, self.varied, |point, value| {
             let Some((_, content)) = tiles.iter_mut().find(|tile| tile.0 == value) else { return };
@@ -237,7 +300,7 @@ impl<'a> Slices<'a> {
     fn each(
         &self,
         cloud: &Points<'_>,
-        slice: u64,
+        slice: In<'_>,
         varied: Option<usize>,
         mut visit: impl FnMut(usize, u64),
     ) {
@@ -267,11 +330,16 @@ impl<'a> Slices<'a> {
     }
 
     /// The index of a coordinate's grid value at every point.
-    fn numbers(&self, cloud: &Points<'_>, slice: u64, number: usize) -> Option<Numbers> {
+    fn numbers(&self, cloud: &Points<'_>, slice: In<'_>, number: usize) -> Option<Numbers> {
         let coordinate = &self.layout.coordinates[number];
         let axis = coordinate.axis.as_ref()?;
         match &coordinate.place {
-            Place::Slice(divisor) => Some(Numbers::All(slice / divisor % axis.count)),
+            Place::Slice(divisor) => Some(match slice {
+                In::Slice(slice) => Numbers::All(slice / divisor % axis.count),
+                In::Slices(slices) => {
+                    Numbers::Each(slices.iter().map(|slice| slice / divisor % axis.count).collect())
+                }
+            }),
             Place::Field(field, scale) => {
                 let column = cloud.column(field)?;
                 Some(Numbers::Each(column.map(|value| nearest(axis, value / scale)).collect()))
@@ -279,12 +347,18 @@ impl<'a> Slices<'a> {
         }
     }
 
-    fn values(&self, cloud: &Points<'_>, slice: u64, number: usize) -> Option<Values> {
+    fn values(&self, cloud: &Points<'_>, slice: In<'_>, number: usize) -> Option<Values> {
         let coordinate = &self.layout.coordinates[number];
         match &coordinate.place {
             Place::Slice(divisor) => {
                 let axis = coordinate.axis.as_ref()?;
-                Some(Values::All(axis.value(slice / divisor % axis.count)))
+                let value = |slice: u64| axis.value(slice / divisor % axis.count);
+                Some(match slice {
+                    In::Slice(slice) => Values::All(value(slice)),
+                    In::Slices(slices) => {
+                        Values::Each(slices.iter().map(|&slice| value(slice)).collect())
+                    }
+                })
             }
             Place::Field(field, scale) => {
                 Some(Values::Each(cloud.column(field)?.map(|value| value / scale).collect()))
@@ -316,7 +390,7 @@ impl<'a> Slices<'a> {
             format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
         };
         let kind = self.layout.kind;
-        let reached = kind.member_name();
+        let reached = if self.causes.is_some() { "rejected" } else { kind.member_name() };
         let reached = format!("{}{}", reached[..1].to_uppercase(), &reached[1..]);
         let mut title = format!("{reached} {}", kind.point_name());
         if !self.held.is_empty() {
@@ -324,7 +398,9 @@ impl<'a> Slices<'a> {
             title = format!("{reached} at {}", held.join(", "));
         }
         let positions = self.view.iter().all(|seen| coordinates[seen.number].axis.is_some());
-        if let Some((first, rest)) = self.layout.lost.split_first().filter(|_| positions) {
+        if self.causes.is_some() {
+            title.push_str(", by what rejects them");
+        } else if let Some((first, rest)) = self.layout.lost.split_first().filter(|_| positions) {
             let names = rest.iter().fold(first.clone(), |text, name| format!("{text}, {name}"));
             title.push_str(&format!(", at any {names}"));
         }
@@ -369,7 +445,9 @@ impl<'a> Slices<'a> {
             scale: Scale::Linear,
         });
         let tiles = tiles.into_iter().zip(marks).map(tile).collect();
-        Section { title, columns, shared: true, tiles, bar: colors.filter(|_| cells) }
+        let causes = self.causes.unwrap_or_default().into_iter().filter(|_| cells);
+        let legend = causes.map(|cause| (cause.text, cause.color)).collect();
+        Section { title, columns, shared: true, tiles, bar: colors.filter(|_| cells), legend }
     }
 
     /// Number of tiles in a row: fewer if tiles that are much wider than high would be too small.
@@ -396,7 +474,7 @@ impl<'a> Slices<'a> {
         };
         let [a, b] = &self.view;
         let (x, y) = (axis(a)?, axis(b).filter(|_| !self.is_bar())?);
-        let inside = cells.hits().filter(|_| self.layout.bounded)?;
+        let inside = cells.hits().filter(|_| self.layout.bounded && self.causes.is_none())?;
         let rings = mask_boundary(&x, &y, &inside).expect("one value for each cell");
         Some(rings.into_iter().map(|ring| ring.points).collect())
     }

@@ -5,14 +5,15 @@ use super::label::value_label;
 use super::layout::Layout;
 use super::options::PanelName;
 use super::sized::drawn;
-use super::slices::{Slices, rounded};
+use super::slices::{In, Slices, rounded};
 use super::source::{Rate, Source, Stop};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
 use crate::text::count;
 use opm_core::Quantity;
-use opm_mcap::SliceReader;
+use opm_mcap::rejected::{REJECTED_RECORD, REJECTED_TOPIC};
 use opm_mcap::workspace::SLICES_TOPIC;
+use opm_mcap::{RejectedCause, SliceReader};
 use opm_plot::{Drawing, Heading, TileFigure};
 use opm_study::WorkspaceKind;
 use opm_workspace::Axis;
@@ -20,7 +21,7 @@ use opm_workspace::Axis;
 pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
     let wanted = |panel: PanelName| args.panels.contains(&panel);
     for panel in &args.panels {
-        if !matches!(panel, PanelName::Slices | PanelName::Imaginary) {
+        if !matches!(panel, PanelName::Slices | PanelName::Rejected | PanelName::Imaginary) {
             let problem = format!("{} are of a motion, not of a workspace", panel.name());
             return Err(Failure::flag("--panels", problem));
         }
@@ -35,10 +36,28 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let (view, joints) = chosen(&layout, source, args)?;
     // A set without an axis on a grid has no slices, unless they are requested.
     let default = args.panels.is_empty() && layout.kind != WorkspaceKind::Imaginary;
-    let mut slices = match default || wanted(PanelName::Slices) {
+    let has_rejected = source.recording.topic(REJECTED_TOPIC).is_some();
+    if wanted(PanelName::Rejected) && !has_rejected {
+        let problem = "rejected: the recording has no rejected points; record with --explain";
+        return Err(Failure::flag("--panels", problem));
+    }
+    let mut slices = match default || wanted(PanelName::Slices) || wanted(PanelName::Rejected) {
         true => Some(Slices::new(&layout, source, args, view)?),
         false => None,
     };
+    let shown = slices.as_ref().filter(|_| default && has_rejected || wanted(PanelName::Rejected));
+    let cells = shown.filter(|slices| slices.are_cells());
+    if shown.is_some() && cells.is_none() {
+        let problem =
+            "rejected points are drawn over coordinates of the grid; record without --axes tip";
+        if wanted(PanelName::Rejected) {
+            return Err(Failure::flag("--panels", problem));
+        }
+        output.note(format_args!("{}: {problem}", source.label));
+    }
+    let mut rejected = cells.map(|slices| {
+        slices.rejected(RejectedCause::read(&source.metadata(REJECTED_RECORD)), source)
+    });
     let mut cloud = JointCloud::new(layout.kind, source, &joints);
     let meant = args.panels.is_empty() && layout.kind.is_of_poses();
     if cloud.is_none() && (meant || wanted(PanelName::Imaginary)) {
@@ -55,6 +74,12 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let mut reader = SliceReader::default();
     source.messages(|message| {
         let slice = reader.slice(message)?;
+        if let (REJECTED_TOPIC, Some(rejected)) = (message.topic, &mut rejected) {
+            if let Some(found) = message.cloud()? {
+                rejected.add_rejected(&found);
+            }
+            return Ok(());
+        }
         if message.topic != SLICES_TOPIC {
             return Ok::<(), Stop>(());
         }
@@ -62,7 +87,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
             return Ok(());
         };
         if let Some(slices) = &mut slices {
-            slices.add(&found, slice);
+            slices.add(&found, In::Slice(slice));
         }
         if let Some(cloud) = &mut cloud {
             cloud.add(&found);
@@ -74,8 +99,25 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let mut sections = vec![];
     if let Some(mut slices) = slices {
         slices.drop_empty();
-        heading.notes.extend(slices.notes());
-        sections.push(slices.section(source));
+        if let Some(rejected) = &mut rejected {
+            rejected.keep_those_of(&slices);
+        }
+        if default || wanted(PanelName::Slices) {
+            heading.notes.extend(slices.notes());
+            sections.push(slices.section(source));
+        }
+    }
+    if let Some(rejected) = rejected {
+        let every =
+            source.metadata(REJECTED_RECORD).get("every").and_then(|text| text.parse().ok());
+        if let Some(every) = every.filter(|every: &u64| *every > 1) {
+            heading.notes.push(format!(
+                "One in {} rejected {} is drawn.",
+                count(every),
+                layout.kind.point_name()
+            ));
+        }
+        sections.push(rejected.section(source));
     }
     if let Some(cloud) = cloud {
         heading.notes.extend(cloud.notes());

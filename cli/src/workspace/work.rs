@@ -115,7 +115,7 @@ impl Work<'_> {
         recording: WorkspaceRecording,
         findings: &Findings<'_>,
     ) -> Result<(), Failure> {
-        let poses = recording.work(findings.workspace);
+        let poses = recording.work(findings);
         let job = || recording.write(findings, self.progress);
         let path = self.watch("recording", poses, job)?;
         let points = count(findings.analysis.count.reachable);

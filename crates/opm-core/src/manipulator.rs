@@ -338,7 +338,7 @@ impl Manipulator {
     /// The modes with every combination of the choices that the dependent coordinates are computed with, and plus for
     /// all others: a single mode where no coordinate is dependent.
     pub fn pose_modes(&self) -> impl Iterator<Item = Mode> + '_ {
-        let combinations = self.dependent.as_ref().map_or(1, |dependent| dependent.combinations());
+        let combinations = self.dependent.as_ref().map_or(1, Dependent::combinations);
         (0..combinations).map(|combination| match &self.dependent {
             Some(dependent) => dependent.mode(combination),
             None => Mode::default(),

@@ -327,6 +327,13 @@ impl CloudEncoder {
         Ok(Self { packer, template, head_room, buffer })
     }
 
+    /// Gives the points these colours instead of those of the colour map: the range of the colour's values is divided
+    /// into as many parts.
+    pub fn paint(&mut self, colors: &[[u8; 3]]) {
+        let of = |i: usize| colors.get(i * colors.len() / SHADES).copied().unwrap_or([GREY; 3]);
+        self.packer.shades = (0..SHADES).map(of).map(|[r, g, b]| [r, g, b, u8::MAX]).collect();
+    }
+
     /// The packer of its points.
     pub fn packer(&self) -> &Packer {
         &self.packer

@@ -21,13 +21,15 @@ mod foxglove;
 mod plots;
 mod rerun;
 
+use crate::cloud::POSITION_FIELDS;
 use crate::reader::{Recording, read};
+use crate::rejected::REJECTED_TOPIC;
 use crate::scene::end_labels;
 use crate::trajectory::{BODIES_TOPIC, VIOLATIONS_TOPIC};
 use crate::workspace::{
     AXES_TOPIC, BOUNDARY_POINTS_TOPIC, BOUNDARY_TOPIC, LABEL_TOPIC, OVERVIEW_TOPIC, SLICES_TOPIC,
 };
-use crate::{Message, Metadata, ReadError};
+use crate::{Cloud, Message, Metadata, ReadError};
 use extent::{Extent, Frames};
 use plots::{Flats, Plot};
 use std::path::Path;
@@ -84,12 +86,16 @@ impl Layout {
     /// [`LayoutError::Read`]: it cannot be read; [`LayoutError::Nothing`]: it is neither of a workspace nor of a motion.
     pub fn of(path: &Path) -> Result<Self, LayoutError> {
         let (mut frames, mut flats) = (Frames::default(), Flats::default());
-        let mut frame_id = None;
+        let (mut frame_id, mut rejected) = (None, None);
         let recording = read(path, |message: &Message<'_>| -> Result<(), ReadError> {
             if matches!(message.topic, OVERVIEW_TOPIC | SLICES_TOPIC) {
                 if let Some(cloud) = message.cloud()? {
                     frame_id.get_or_insert(cloud.frame_id);
                 }
+                return Ok(());
+            }
+            if message.topic == REJECTED_TOPIC {
+                rejected = message.cloud()?.and_then(|cloud| box_of(&cloud));
                 return Ok(());
             }
             frames.add(message)?;
@@ -98,7 +104,11 @@ impl Layout {
         })?;
         let plots = flats.plots(&recording);
         let views = match frame_id {
-            Some(frame) => workspace(&recording, &frame),
+            Some(frame) => {
+                let mut views = workspace(&recording, &frame);
+                views.extend(rejected.map(|extent| rejected_view(&recording, frame, extent)));
+                views
+            }
             None => frames.extent().map_or_else(Vec::new, |extent| motion(&recording, extent)),
         };
         if views.is_empty() && plots.is_empty() {
@@ -128,6 +138,7 @@ fn workspace(recording: &Recording, frame: &str) -> Vec<View> {
     // In a view, and in none.
     let boundary = recording.topic(BOUNDARY_TOPIC).map(|topic| topic.name.clone());
     let dots = recording.topic(BOUNDARY_POINTS_TOPIC).map(|topic| topic.name.clone());
+    let rejected = recording.topic(REJECTED_TOPIC).map(|topic| topic.name.clone());
     let axes = recording.topic(AXES_TOPIC).map(|topic| topic.name.clone());
     let words = recording.topic(LABEL_TOPIC).map(|topic| topic.name.clone());
     let view = |title: &str, topic: &str, size, hidden: &str, with_slice: bool| {
@@ -142,7 +153,12 @@ fn workspace(recording: &Recording, frame: &str) -> Vec<View> {
             shown: shown
                 .chain(axes.iter().cloned().chain(on).map(|name| (name, NO_POINTS)))
                 .collect(),
-            hidden: [hidden.to_owned()].into_iter().chain(off).chain(dots.clone()).collect(),
+            hidden: [hidden.to_owned()]
+                .into_iter()
+                .chain(off)
+                .chain(dots.clone())
+                .chain(rejected.clone())
+                .collect(),
             labels: labels.clone(),
         }
     };
@@ -152,6 +168,39 @@ fn workspace(recording: &Recording, frame: &str) -> Vec<View> {
             view("Slice", SLICES_TOPIC, SLICE_POINTS, OVERVIEW_TOPIC, true),
         ],
         _ => vec![view("Workspace", OVERVIEW_TOPIC, OVERVIEW_POINTS, SLICES_TOPIC, true)],
+    }
+}
+
+/// The box round the points of a cloud, if there are any.
+fn box_of(cloud: &Cloud<'_>) -> Option<Extent> {
+    let mut extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+    for (i, name) in POSITION_FIELDS.into_iter().enumerate() {
+        for value in cloud.column(name)? {
+            extent.low[i] = extent.low[i].min(value);
+            extent.high[i] = extent.high[i].max(value);
+        }
+    }
+    (!cloud.is_empty()).then_some(extent)
+}
+
+/// What is rejected, round the workspace.
+fn rejected_view(recording: &Recording, frame: String, extent: Extent) -> View {
+    let others = [
+        OVERVIEW_TOPIC,
+        SLICES_TOPIC,
+        AXES_TOPIC,
+        BOUNDARY_TOPIC,
+        BOUNDARY_POINTS_TOPIC,
+        LABEL_TOPIC,
+    ];
+    let others = others.into_iter().filter(|name| recording.topic(name).is_some());
+    View {
+        title: "Rejected".to_owned(),
+        frame,
+        extent,
+        shown: vec![(REJECTED_TOPIC.to_owned(), OVERVIEW_POINTS)],
+        hidden: others.map(str::to_owned).collect(),
+        labels: labels(recording, &extent),
     }
 }
 

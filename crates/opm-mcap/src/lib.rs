@@ -60,6 +60,7 @@
 //! | [`table`] | points as NPY for NumPy and PLY for mesh tools |
 //! | [`cloud`] | the layout of the points of a cloud, and how they are packed |
 //! | [`scene`] | bodies made of simple solids |
+//! | [`rejected`] | points that are not in a workspace, coloured by what rejects them |
 //! | [`joints`] | messages that consist of named numbers |
 //! | [`layout`] | what a viewer shows of a recording |
 //!
@@ -84,6 +85,7 @@ pub mod joints;
 pub mod layout;
 mod log;
 mod reader;
+pub mod rejected;
 pub mod scene;
 pub mod shard;
 pub mod slices;
@@ -101,6 +103,7 @@ pub use layout::{Layout, LayoutError};
 pub use log::COMPRESSION_LEVEL;
 pub use log::Metadata;
 pub use reader::{AttachmentInfo, Extent, Message, Recording, TopicInfo, read};
+pub use rejected::{RejectedCause, RejectedPoints};
 pub use scene::{Body, ClosedLine, Shape, Solid};
 pub use shard::{Shard, ShardRecorder};
 pub use slices::{SliceAxis, SliceReader, Slices};

@@ -13,6 +13,7 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 use crate::cloud::COLOR_FIELDS;
 use crate::decode::Cloud;
 use crate::flat::Flat;
+use crate::rejected::REJECTED_TOPIC;
 use crate::shard::{self, RUNS_SCHEMA};
 use crate::workspace::BOUNDARY_POINTS_TOPIC;
 use crate::{Metadata, ReadError};
@@ -300,8 +301,8 @@ impl Contents {
         let message = Message { topic: &topic, schema: &schema.name, time, data, flat };
         if let Some(cloud) = message.cloud()? {
             *channel.points.get_or_insert(0) += cloud.len() as u64;
-            // A boundary is between points of the grid, and has no values of its own.
-            if &*topic != BOUNDARY_POINTS_TOPIC {
+            // A boundary is between points of the grid, and has no values of its own; what is rejected is elsewhere.
+            if !matches!(&*topic, BOUNDARY_POINTS_TOPIC | REJECTED_TOPIC) {
                 self.extend(&cloud);
             }
         }

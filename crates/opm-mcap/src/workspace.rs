@@ -9,6 +9,7 @@
 //! | `/workspace/axes` | one `foxglove.SceneUpdate`: a box round the points, with the values at its ends |
 //! | `/workspace/boundary` | `foxglove.SceneUpdate`, if the boundary is known: its closed lines, with their slice |
 //! | `/workspace/boundary_points` | `foxglove.PointCloud`: the same lines as points, for viewers without scenes |
+//! | `/workspace/rejected` | one `foxglove.PointCloud`, if it is known what rejects the other points: these, each with the number of its slice and of its cause; the record `rejected` has the causes in words, with their colours |
 //!
 //! A viewer shows the newest message of a topic. So the overview, which comes first, is always in view, and
 //! moving the playhead walks through the slices. Beside slices, its colours are faint. A slice without points has no messages, and
@@ -29,6 +30,7 @@ use foxglove::messages::{PointCloud, SceneUpdate, Timestamp};
 use crate::cloud::CloudEncoder;
 use crate::joints::JointsTopic;
 use crate::log::{Log, Topic};
+use crate::rejected::{self, REJECTED_RECORD, REJECTED_TOPIC, RejectedCause, RejectedPoints};
 use crate::scene::{ClosedLine, dots, labelled_box, lines, slice_label};
 pub use crate::slices::SLICE_TOPIC;
 use crate::slices::Slices;
@@ -234,6 +236,21 @@ impl<W: Sink> WorkspaceRecorder<W> {
         self.settle(result)
     }
 
+    /// Records points that are rejected, too: one of `every` of all of them, with what the numbers of their causes mean.
+    /// It has to come before the points of the slices.
+    ///
+    /// # Errors
+    /// [`RecordError::OverviewClosed`] after the first slice, or a failed write.
+    pub fn rejected(
+        &mut self,
+        points: RejectedPoints,
+        causes: &[RejectedCause],
+        every: u64,
+    ) -> Result<(), RecordError> {
+        let result = self.try_rejected(points, causes, every);
+        self.settle(result)
+    }
+
     /// Adds points of the overview, as rows of [`CloudLayout::columns`].
     ///
     /// # Errors
@@ -315,6 +332,20 @@ impl<W: Sink> WorkspaceRecorder<W> {
         let points = self.log.topic::<PointCloud>(BOUNDARY_POINTS_TOPIC)?;
         self.boundary = Some(Boundary { topic, points, left: lines.into_iter() });
         Ok(())
+    }
+
+    fn try_rejected(
+        &mut self,
+        mut points: RejectedPoints,
+        causes: &[RejectedCause],
+        every: u64,
+    ) -> Result<(), RecordError> {
+        if self.open.is_some() {
+            return Err(RecordError::OverviewClosed);
+        }
+        self.log.metadata(REJECTED_RECORD, &rejected::describe(causes, points.len(), every))?;
+        let mut topic = self.log.topic::<PointCloud>(REJECTED_TOPIC)?;
+        self.log.message(&mut topic, START, points.encoder.message(stamp(START)?)?)
     }
 
     fn try_overview(&mut self, rows: &[f64]) -> Result<(), RecordError> {

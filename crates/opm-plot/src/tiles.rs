@@ -4,6 +4,7 @@ mod bar;
 mod cells;
 mod cloud;
 mod histogram;
+mod legend;
 
 pub use bar::Bar;
 pub use cells::{Cells, Paint, Spacing};
@@ -11,6 +12,7 @@ pub use cloud::Cloud;
 pub use histogram::Histogram;
 
 use crate::axis::{self, Axis, Steps, Unit};
+use crate::color::Color;
 use crate::color::{FAINT, INK, WHITE};
 use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
 use crate::font::Face;
@@ -18,6 +20,7 @@ use crate::frame::{BELOW, Frame, NAME, fits, left_of, ticks_in};
 use crate::heading::{Heading, MARGIN};
 use crate::{MOST, TooSmall};
 use cloud::Density;
+use legend::Legend;
 
 /// A figure of tiles, in sections from top to bottom.
 ///
@@ -50,6 +53,7 @@ use cloud::Density;
 ///         shared: true,
 ///         tiles: vec![tile],
 ///         bar: None,
+///         legend: vec![],
 ///     }],
 /// };
 /// assert!(figure.draw(None)?.to_svg()?.contains("A workspace"));
@@ -76,6 +80,8 @@ pub struct Section {
     pub tiles: Vec<Tile>,
     /// The meaning of the colours, if they have one.
     pub bar: Option<Bar>,
+    /// The meaning of the colours of classes.
+    pub legend: Vec<(String, Color)>,
 }
 
 /// A tile: a box with points.
@@ -174,6 +180,7 @@ struct Laid<'a> {
     left: [f64; 2],
     /// The room for the colours.
     bar: f64,
+    legend: Legend<'a>,
     /// The size of a tile.
     width: f64,
     height: f64,
@@ -280,7 +287,9 @@ impl<'a> Laid<'a> {
         let height = width * steepest.min(tallest);
         let width = if section.shared { height / steepest } else { width };
         let density = section.density();
-        Self { section, columns, ranges, density, left, bar, width, height }
+        // No figure is narrower, unless its size is given.
+        let legend = Legend::new(&section.legend, room.min(NARROW) - 2.0 * MARGIN);
+        Self { section, columns, ranges, density, left, bar, legend, width, height }
     }
 
     fn rows(&self) -> usize {
@@ -316,7 +325,8 @@ impl<'a> Laid<'a> {
     /// The height of everything except the tiles.
     fn around(&self) -> f64 {
         let rows = self.rows() as f64;
-        TITLE_ROOM + rows * self.above() + (rows - 1.0).max(0.0) * self.below() + BELOW
+        let between = (rows - 1.0).max(0.0) * self.below();
+        TITLE_ROOM + rows * self.above() + between + BELOW + self.legend.height()
     }
 
     fn draw(&self, top: f64) -> Shape {
@@ -342,6 +352,8 @@ impl<'a> Laid<'a> {
             .min(320.0);
             shapes.push(bar.draw([x, start + self.above()], height));
         }
+        let below = top + self.around() + self.tiles() - self.legend.height();
+        shapes.push(self.legend.draw([MARGIN, below]));
         Shape::Group { kind: "section", label: section.title.clone(), shapes }
     }
 
@@ -357,7 +369,7 @@ impl<'a> Laid<'a> {
         let frame = Frame { place, x: &x, y: &y };
         let mut shapes = vec![frame.grid()];
         let content = match &tile.content {
-            Content::Cells(cells, paint) => cells.draw(&frame, *paint),
+            Content::Cells(cells, paint) => cells.draw(&frame, paint),
             Content::Cloud(cloud) => cloud.draw(&frame, self.density),
             Content::Histogram(histogram) => histogram.draw(&frame),
         };

@@ -44,7 +44,7 @@
 //! let mechanism = Attachment { name: "plano-spherical-5dof.toml", text: example.text };
 //! let poses = &workspace.poses();
 //! let (workspace, analysis) = (&workspace, &analysis);
-//! let findings = Findings { mechanism, workspace, poses, analysis, inscribed: None };
+//! let findings = Findings { mechanism, workspace, poses, analysis, inscribed: None, rejections: None };
 //! recording.write(&findings, &progress)?;
 //! assert!(path.is_file());
 //! # Ok(())

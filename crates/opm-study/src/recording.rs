@@ -7,6 +7,7 @@ mod describe;
 mod linkage;
 mod motion;
 mod points;
+mod rejected;
 mod scale;
 mod scene;
 mod set;

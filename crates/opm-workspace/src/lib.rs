@@ -74,7 +74,7 @@ pub use grid::{Axis, Coordinate, Grid, GridError, Sections};
 pub use inscribed::{Inscribed, InscribedError, InscribedShape, inscribed};
 pub use poses::Poses;
 pub use progress::{Cancelled, Progress};
-pub use rejections::{Cause, Rejection, Rejections};
+pub use rejections::{Cause, PointsOf, RejectedPoint, Rejection, Rejections};
 pub use replay::replay;
 pub use set::{GridSet, SetAxis, SetError};
 pub use sweep::{Count, Hits, Modes, Run, Shard, ShardError, Sweep};

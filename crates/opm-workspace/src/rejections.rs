@@ -4,10 +4,12 @@ mod causes;
 
 use self::causes::{Causes, Found, Part};
 use crate::grid::Grid;
+use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::Modes;
 use opm_core::manipulator::{Manipulator, Section};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Poses between two looks at whether the work was cancelled.
 const CHUNK: u64 = 1024;
@@ -116,6 +118,114 @@ impl Rejections {
             rejections: rejections.filter(|r| r.alone + r.with_others > 0).collect(),
         })
     }
+}
+
+/// A point of a set that is rejected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RejectedPoint {
+    /// Its number among the points of the set.
+    pub point: u64,
+    /// The number of the first of its poses in the grid.
+    pub pose: u64,
+    /// The number of its poses that are reached.
+    pub reached: u64,
+    /// What rejects most of the others: its number in [`Rejections::rejections`], or `None` where most of them have several
+    /// causes.
+    pub cause: Option<usize>,
+}
+
+/// A set of points, each of which stands for the poses of a grid that have the same coordinates there.
+#[derive(Clone, Debug)]
+pub struct PointsOf<'a> {
+    /// The grid.
+    pub grid: &'a Grid,
+    /// The axes whose coordinates the points have.
+    pub axes: Range<usize>,
+    /// The number of poses that have to be reached for a point to be in the set.
+    pub required: u64,
+}
+
+impl PointsOf<'_> {
+    fn counts(&self, axes: Range<usize>) -> u64 {
+        self.grid.axes()[axes].iter().map(|axis| axis.count).product()
+    }
+
+    /// The number of points.
+    pub fn points(&self) -> u64 {
+        self.counts(self.axes.clone())
+    }
+
+    /// The numbers of a point's poses.
+    fn poses(&self, point: u64) -> impl Iterator<Item = u64> + use<> {
+        let (before, points) = (self.counts(0..self.axes.start), self.points());
+        let after = self.counts(self.axes.end..self.grid.axes().len());
+        (0..after).flat_map(move |slow| {
+            (0..before).map(move |fast| fast + before * (point + points * slow))
+        })
+    }
+}
+
+impl Rejections {
+    /// Visits each point of a set that is rejected, in the order of their numbers. The poses are solved once more.
+    ///
+    /// # Errors
+    /// The first error of `visit`, or the work was cancelled.
+    pub fn points<E: From<Cancelled> + Send>(
+        &self,
+        manipulator: &Manipulator,
+        modes: Modes,
+        set: &PointsOf<'_>,
+        progress: &Progress,
+        visit: impl FnMut(RejectedPoint) -> Result<(), E> + Send,
+    ) -> Result<(), E> {
+        let causes = Causes::new(manipulator, modes);
+        let row = |&(leg, cause): &(usize, Cause)| {
+            self.rejections.iter().position(|known| (known.leg, known.cause) == (leg, cause))
+        };
+        let rows: Vec<Option<usize>> = causes.all().iter().map(row).collect();
+        let (points, each) = (set.points(), set.grid.poses() / set.points().max(1));
+        let together = (CHUNK / each.max(1)).max(1);
+        let chunks = (0..points.div_ceil(together)).map(Ok);
+        let made = || (causes.none(), vec![0.0; set.grid.axes().len()]);
+        let make = |(found, pose): &mut (Found, Vec<f64>), chunk: u64| {
+            let (first, last) = (chunk * together, ((chunk + 1) * together).min(points));
+            let mut rejected = Vec::new();
+            for point in first..last {
+                // The poses with several causes, then those with each cause alone.
+                let (mut reached, mut votes) = (0, vec![0_u64; 1 + self.rejections.len()]);
+                for number in set.poses(point) {
+                    set.grid.pose_into(number, pose);
+                    causes.find(pose, found);
+                    match only(found) {
+                        None => reached += 1,
+                        Some(cause) => {
+                            votes[cause.and_then(|i| rows[i]).map_or(0, |row| 1 + row)] += 1;
+                        }
+                    }
+                }
+                if reached >= set.required {
+                    continue;
+                }
+                let most = votes.iter().copied().max().unwrap_or_default();
+                let cause = votes.iter().position(|&count| count == most).unwrap_or_default();
+                let pose = set.poses(point).next().unwrap_or_default();
+                rejected.push(RejectedPoint { point, pose, reached, cause: cause.checked_sub(1) });
+            }
+            progress.advance((last - first) * each)?;
+            Ok(rejected)
+        };
+        let mut visit = visit;
+        in_order(chunks, made, make, |rejected: Vec<RejectedPoint>| {
+            rejected.into_iter().try_for_each(&mut visit)
+        })
+    }
+}
+
+/// The only cause of a pose, or `None` within where it has several; `None` where it is reached.
+fn only(found: &Found) -> Option<Option<usize>> {
+    let mut causes = found.causes();
+    let (first, _) = causes.next()?;
+    Some(causes.next().is_none().then_some(first))
 }
 
 /// Sums over poses.

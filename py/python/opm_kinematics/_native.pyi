@@ -1085,10 +1085,10 @@ class Rejection:
         """``"lowest"`` or ``"highest"``; None for a leg that does not reach."""
     @property
     def alone(self) -> int:
-        """Number of poses that nothing else rejects."""
+        """Number of poses that would be reached without it."""
     @property
     def with_others(self) -> int:
-        """Number of poses that other causes reject too."""
+        """Number of other poses in whose rejection it takes part."""
 
 @final
 class Inscribed:
@@ -1360,6 +1360,8 @@ class Sweep:
         scalars: Sequence[str] | None = None,
         color: str | None = None,
         scale: Literal["comparable", "none"] = "comparable",
+        inscribed: Inscribed | None = None,
+        explain: bool = False,
     ) -> None:
         """Record the points as ``opm workspace -o`` does, byte for byte.
 
@@ -1382,6 +1384,10 @@ class Sweep:
         scale : {"comparable", "none"}, optional
             The scale of the cloud's axes in an MCAP file: those of another unit than the first are multiplied by 1, 2 or 5
             times a power of ten, so that the extents are comparable, or no axis is.
+        inscribed : Inscribed, optional
+            A shape in the set, from :meth:`inscribed`; ``opm plot`` draws it. In MCAP only.
+        explain : bool, optional
+            Also record the points that are rejected, with their causes (:meth:`rejections`) as colours. In MCAP only.
 
         Raises
         ------
@@ -1396,6 +1402,8 @@ class Sweep:
         scalars: Sequence[str] | None = None,
         color: str | None = None,
         scale: Literal["comparable", "none"] = "comparable",
+        inscribed: Inscribed | None = None,
+        explain: bool = False,
     ) -> None:
         """Like :meth:`write` for a path that ends in ``.mcap``.
 
@@ -1410,6 +1418,10 @@ class Sweep:
         color : str, optional
             As for :meth:`write`.
         scale : {"comparable", "none"}, optional
+            As for :meth:`write`.
+        inscribed : Inscribed, optional
+            As for :meth:`write`.
+        explain : bool, optional
             As for :meth:`write`.
         """
 

@@ -6,6 +6,7 @@ use crate::error::{study, wrong};
 use crate::interrupt::{self, few};
 use crate::parts::Parts;
 use crate::pickle::pickled;
+use opm_study::Workspace;
 use opm_workspace::{Cause, InscribedShape, Progress};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -25,9 +26,9 @@ pub struct Rejection {
     joint: Option<String>,
     /// ``"lowest"`` or ``"highest"``; None for a leg that does not reach.
     limit: Option<String>,
-    /// Number of poses that nothing else rejects.
+    /// Number of poses that would be reached without it.
     alone: u64,
-    /// Number of poses that other causes reject too.
+    /// Number of other poses in whose rejection it takes part.
     with_others: u64,
 }
 
@@ -69,6 +70,27 @@ pub struct Inscribed {
 }
 
 pickled!(Inscribed { shape, centre, radii, error, measure, at_edge });
+
+impl Inscribed {
+    /// The shape in a set of this workspace.
+    pub fn of(&self, workspace: &Workspace) -> PyResult<opm_workspace::Inscribed> {
+        let names: Vec<String> = workspace.varying().into_iter().map(|(name, _)| name).collect();
+        let values = |of: &BTreeMap<String, f64>| -> Option<Vec<f64>> {
+            let known = of.len() == names.len();
+            names.iter().map(|name| of.get(name).copied()).collect::<Option<_>>().filter(|_| known)
+        };
+        let parts = (values(&self.centre), values(&self.radii), values(&self.error));
+        let (Some(centre), Some(radii), Some(error)) = parts else {
+            let has: Vec<&str> = self.centre.keys().map(|name| &**name).collect();
+            let (has, names) = (has.join(", "), names.join(", "));
+            return Err(wrong(format!("inscribed is a shape in {has}, expected one in {names}")));
+        };
+        let shape = InscribedShape::from_name(&self.shape)
+            .ok_or_else(|| wrong(format!("inscribed is a {:?}", self.shape)))?;
+        let at_edge = self.at_edge;
+        Ok(opm_workspace::Inscribed { shape, names, centre, radii, error, at_edge })
+    }
+}
 
 #[pymethods]
 impl Inscribed {

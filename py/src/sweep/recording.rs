@@ -1,6 +1,7 @@
 //! Recordings of a sweep's points.
 
 use super::Sweep;
+use super::questions::Inscribed;
 use crate::arguments;
 use crate::error::{request, study, wrong};
 use crate::interrupt;
@@ -33,12 +34,17 @@ impl Sweep {
     /// scale : {"comparable", "none"}, optional
     ///     The scale of the cloud's axes in an MCAP file: those of another unit than the first are multiplied by 1, 2 or 5
     ///     times a power of ten, so that the extents are comparable, or no axis is.
+    /// inscribed : Inscribed, optional
+    ///     A shape in the set, from :meth:`inscribed`; ``opm plot`` draws it. In MCAP only.
+    /// explain : bool, optional
+    ///     Also record the points that are rejected, with their causes (:meth:`rejections`) as colours. In MCAP only.
     ///
     /// Raises
     /// ------
     /// OpmError
     ///     A name is unknown, or the file cannot be written.
-    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None, scale = "comparable"))]
+    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None, scale = "comparable", inscribed = None, explain = false))]
     fn write(
         &self,
         py: Python<'_>,
@@ -47,6 +53,8 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
         scale: &str,
+        inscribed: Option<PyRef<'_, Inscribed>>,
+        explain: bool,
     ) -> PyResult<()> {
         let (of, workspace) = (self.of.get(), &self.workspace);
         let scale = AxisScale::from_name(scale).ok_or_else(|| {
@@ -55,6 +63,13 @@ impl Sweep {
         let points = PointOptions { axes: axes.unwrap_or_default(), scalars, color, scale };
         let points = points.choose(workspace.kind(), workspace.manipulator());
         let points = points.map_err(|error| request(&error))?;
+        let is_mcap = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"));
+        if !is_mcap && (explain || inscribed.is_some()) {
+            let what = if explain { "explain" } else { "inscribed" };
+            let path = path.display();
+            return Err(wrong(format!("{what} is for a path that ends in .mcap, not for {path}")));
+        }
+        let inscribed = inscribed.map(|found| found.of(workspace)).transpose()?;
         let name = of.file_name();
         let mechanism = Attachment { name: &name, text: of.text() };
         let progress = Progress::default();
@@ -62,7 +77,10 @@ impl Sweep {
             let recording = WorkspaceRecording::of_workspace(&path, workspace, points)?;
             let (poses, count) = (&workspace.poses(), self.count.clone());
             let analysis = &Analysis::of_points(workspace, count, poses, &progress)?;
-            let findings = Findings { mechanism, workspace, poses, analysis, inscribed: None };
+            let rejections = explain.then(|| workspace.rejections(&progress)).transpose()?;
+            let (inscribed, rejections) = (inscribed.as_ref(), rejections.as_ref());
+            let findings =
+                Findings { mechanism, workspace, poses, analysis, inscribed, rejections };
             recording.write(&findings, &progress)
         };
         interrupt::run(py, self.threads, work, || progress.cancel())?.map_err(study)?;
@@ -83,7 +101,12 @@ impl Sweep {
     ///     As for :meth:`write`.
     /// scale : {"comparable", "none"}, optional
     ///     As for :meth:`write`.
-    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None, scale = "comparable"))]
+    /// inscribed : Inscribed, optional
+    ///     As for :meth:`write`.
+    /// explain : bool, optional
+    ///     As for :meth:`write`.
+    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (path, *, axes = None, scalars = None, color = None, scale = "comparable", inscribed = None, explain = false))]
     fn write_mcap(
         &self,
         py: Python<'_>,
@@ -92,11 +115,13 @@ impl Sweep {
         #[pyo3(from_py_with = arguments::scalars)] scalars: Option<Vec<String>>,
         color: Option<String>,
         scale: &str,
+        inscribed: Option<PyRef<'_, Inscribed>>,
+        explain: bool,
     ) -> PyResult<()> {
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
             let path = path.display();
             return Err(wrong(format!("{path}, expected a name that ends in .mcap")));
         }
-        self.write(py, path, axes, scalars, color, scale)
+        self.write(py, path, axes, scalars, color, scale, inscribed, explain)
     }
 }

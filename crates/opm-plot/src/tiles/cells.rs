@@ -51,21 +51,32 @@ pub struct Cells {
     together: [usize; 2],
     cells: [usize; 2],
     counts: Vec<u32>,
-    /// The sums of the values that colour the cells.
-    sums: Option<Vec<f64>>,
+    values: CellValues,
     /// Closed lines over the cells.
     lines: Vec<Vec<[f64; 2]>>,
     /// Closed lines over the cells that stand out.
     inside: Vec<Vec<[f64; 2]>>,
 }
 
+/// The values that colour cells.
+#[derive(Clone, Debug)]
+enum CellValues {
+    None,
+    /// The sum over the hits of each cell.
+    Sums(Vec<f64>),
+    /// The class of each cell: the first one if its hits have several.
+    Classes(Vec<usize>),
+}
+
 /// The colours of cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Paint {
     /// All cells have this colour.
     Plain(Color),
     /// The colour of a cell shows the mean of its values, between the two ends.
     Values(Map, [f64; 2]),
+    /// The colour of a cell is that of its class, by number. The first class is that of several.
+    Classes(Vec<Color>),
 }
 
 impl Cells {
@@ -74,13 +85,20 @@ impl Cells {
         let together = [x, y].map(|s| s.count.div_ceil(MOST_CELLS).max(1));
         let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
         let counts = vec![0; cells[0] * cells[1]];
-        Self { spacing: [x, y], together, cells, counts, sums: None, lines: vec![], inside: vec![] }
+        let values = CellValues::None;
+        Self { spacing: [x, y], together, cells, counts, values, lines: vec![], inside: vec![] }
     }
 
     /// Cells of which none was hit, and which will be coloured by the values of the hits.
     pub fn with_values(x: Spacing, y: Spacing) -> Self {
         let plain = Self::plain(x, y);
-        Self { sums: Some(vec![0.0; plain.counts.len()]), ..plain }
+        Self { values: CellValues::Sums(vec![0.0; plain.counts.len()]), ..plain }
+    }
+
+    /// Cells of which none was hit, and whose hits have whole numbers as values: their classes.
+    pub fn with_classes(x: Spacing, y: Spacing) -> Self {
+        let plain = Self::plain(x, y);
+        Self { values: CellValues::Classes(vec![0; plain.counts.len()]), ..plain }
     }
 
     /// Adds a hit to the cell of the nearest grid values. A point outside the grid hits no cell.
@@ -89,10 +107,17 @@ impl Cells {
             return;
         };
         let cell = j / self.together[1] * self.cells[0] + i / self.together[0];
-        self.counts[cell] = self.counts[cell].saturating_add(1);
-        if let Some(sums) = &mut self.sums {
-            sums[cell] += value;
+        match &mut self.values {
+            CellValues::None => {}
+            CellValues::Sums(sums) => sums[cell] += value,
+            CellValues::Classes(classes) => {
+                // A cast saturates.
+                let class = value.round() as usize;
+                let same = self.counts[cell] == 0 || classes[cell] == class;
+                classes[cell] = if same { class } else { 0 };
+            }
         }
+        self.counts[cell] = self.counts[cell].saturating_add(1);
     }
 
     /// Whether several values of the grid share a cell.
@@ -140,14 +165,14 @@ impl Cells {
     }
 
     /// The cells that were hit.
-    pub(crate) fn draw(&self, frame: &Frame<'_>, paint: Paint) -> Vec<Shape> {
+    pub(crate) fn draw(&self, frame: &Frame<'_>, paint: &Paint) -> Vec<Shape> {
         let Some(hit) = self.hit() else { return vec![] };
         let mut shapes = match paint {
             Paint::Plain(color) => match self.outline(frame) {
-                Some(path) => vec![Shape::Area(path, color)],
+                Some(path) => vec![Shape::Area(path, *color)],
                 None => vec![self.image(frame, hit, paint)],
             },
-            Paint::Values(..) => vec![self.image(frame, hit, paint)],
+            Paint::Values(..) | Paint::Classes(_) => vec![self.image(frame, hit, paint)],
         };
         // Two lines each, which are seen on every background.
         for (lines, color, width) in [(&self.lines, INK, 1.1), (&self.inside, ALARM, 2.2)] {
@@ -193,7 +218,7 @@ impl Cells {
         Rect { x, y, width: right - x, height: bottom - y }
     }
 
-    fn image(&self, frame: &Frame<'_>, hit: [[usize; 2]; 2], paint: Paint) -> Shape {
+    fn image(&self, frame: &Frame<'_>, hit: [[usize; 2]; 2], paint: &Paint) -> Shape {
         let [[i0, i1], [j0, j1]] = hit;
         let fine = |cells: usize| (FINE / cells).max(1);
         let [columns, rows] = [i1 + 1 - i0, j1 + 1 - j0];
@@ -211,18 +236,22 @@ impl Cells {
         Shape::Image { place: self.place(frame, [i0, i1 + 1], [j0, j1 + 1]), image }
     }
 
-    fn color(&self, cell: usize, paint: Paint) -> Option<Color> {
+    fn color(&self, cell: usize, paint: &Paint) -> Option<Color> {
         let count = self.counts[cell];
         if count == 0 {
             return None;
         }
-        Some(match (paint, &self.sums) {
-            (Paint::Values(map, [low, high]), Some(sums)) => {
+        Some(match (paint, &self.values) {
+            (Paint::Values(map, [low, high]), CellValues::Sums(sums)) => {
                 let mean = sums[cell] / f64::from(count);
                 map.color((mean - low) / (high - low).max(f64::MIN_POSITIVE))
             }
-            (Paint::Values(map, _), None) => map.color(0.0),
-            (Paint::Plain(color), _) => color,
+            (Paint::Values(map, _), _) => map.color(0.0),
+            (Paint::Classes(colors), CellValues::Classes(classes)) => {
+                colors.get(classes[cell]).copied().unwrap_or(INK)
+            }
+            (Paint::Classes(colors), _) => colors.first().copied().unwrap_or(INK),
+            (Paint::Plain(color), _) => *color,
         })
     }
 }

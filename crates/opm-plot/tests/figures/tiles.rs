@@ -21,7 +21,7 @@ fn tile(title: &str, content: Content) -> Tile {
 }
 
 fn section(tiles: Vec<Tile>) -> Section {
-    Section { title: "Section".into(), columns: 3, shared: true, tiles, bar: None }
+    Section { title: "Section".into(), columns: 3, shared: true, tiles, bar: None, legend: vec![] }
 }
 
 fn figure(sections: Vec<Section>) -> TileFigure {

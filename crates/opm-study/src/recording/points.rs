@@ -106,6 +106,11 @@ impl<'a> Cloud<'a> {
         std::array::from_fn(|i| scale[i] * at[i])
     }
 
+    /// The values that are shown, by name.
+    pub fn shown(&self) -> &PointColumns {
+        &self.shown
+    }
+
     /// The values of a row, in the order of [`CloudLayout::columns`].
     pub fn columns(&self) -> Vec<Column> {
         self.shown.columns()
@@ -400,7 +405,7 @@ impl<'a> Points<'a> {
 
 /// The platform's reference point at a pose in reach. Where some coordinates depend on those of the pose, it is the
 /// one of the first mode that reaches the pose within the limits.
-fn tip(manipulator: &Manipulator, modes: Modes, pose: &[f64]) -> Point3<f64> {
+pub fn tip(manipulator: &Manipulator, modes: Modes, pose: &[f64]) -> Point3<f64> {
     let reference = manipulator.mechanism().platform;
     if manipulator.dependent_coordinates().is_empty() {
         return manipulator.task().displacement(pose) * reference;

@@ -53,6 +53,16 @@ impl<'a> SetCloud<'a> {
         Ok(Self { workspace, analysis, set, shown, slice, held })
     }
 
+    /// The values that are shown, by name.
+    pub fn shown(&self) -> &PointColumns {
+        &self.shown
+    }
+
+    /// The number of the slice that the point of this number is in.
+    pub fn slice_of(&self, number: u64) -> u64 {
+        number / self.slice
+    }
+
     /// The slices.
     pub fn slices(&self) -> Slices {
         let Workspace { grid, kind, .. } = self.workspace;
@@ -130,7 +140,7 @@ impl<'a> SetCloud<'a> {
                     }
                 };
             }
-            visit(number / self.slice, &row)?;
+            visit(self.slice_of(number), &row)?;
         }
         Ok(())
     }

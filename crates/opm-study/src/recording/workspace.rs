@@ -2,6 +2,7 @@
 
 use super::describe::{describe, result};
 use super::points::{Cloud, Packing, Points, Portion};
+use super::rejected::Rejected;
 use super::set::{SetCloud, pose_boundary};
 use super::slices::{slices_of, slices_together};
 use super::{Attachment, check_mcap, create, partial, refuse_standard_output};
@@ -16,7 +17,7 @@ use opm_mcap::{
     CloudLayout, MAX_SLICES, PartialFile, RecordError, TableFormat, TableRecorder,
     WorkspaceRecorder, table_columns,
 };
-use opm_workspace::{Grid, Hits, Inscribed, Poses, Progress};
+use opm_workspace::{Grid, Hits, Inscribed, Poses, Progress, RejectedPoint, Rejections};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -48,6 +49,9 @@ pub struct Findings<'a> {
     pub analysis: &'a Analysis,
     /// The largest shape in the set of points, if it was asked for ([`Workspace::inscribed`]).
     pub inscribed: Option<&'a Inscribed>,
+    /// What rejects the other poses, if it was asked for ([`Workspace::rejections`]). The rejected points are recorded
+    /// too, in MCAP.
+    pub rejections: Option<&'a Rejections>,
 }
 
 /// The file format of points.
@@ -118,14 +122,17 @@ impl WorkspaceRecording {
 
     /// The number of poses that are tested again to write it. Every pass visits the whole grid. Where an overview has
     /// every point, its pass counts twice, because it is that of the slices, too.
-    pub fn work(&self, workspace: &Workspace) -> u64 {
+    pub fn work(&self, findings: &Findings<'_>) -> u64 {
+        let workspace = findings.workspace;
+        let rejected = findings.rejections.filter(|_| self.format == Format::Mcap);
+        let rejected = rejected.map_or(0, |rejections| rejections.poses);
         if !workspace.kind.is_of_poses() {
-            return 0;
+            return rejected;
         }
         let shown = PointColumns::of_poses(self.points.clone(), &workspace.grid);
         let passes = Cloud::new(workspace, shown).passes();
         let passes = if self.format == Format::Mcap { passes } else { passes - 1 };
-        passes * workspace.grid.poses()
+        rejected + passes * workspace.grid.poses()
     }
 
     /// Writes the recording of a workspace, and returns its path.
@@ -166,6 +173,14 @@ impl WorkspaceRecording {
     }
 }
 
+/// The error for a recording that was cancelled. It names the unfinished file.
+fn interrupted(path: &Path, error: StudyError) -> StudyError {
+    match error {
+        StudyError::Cancelled => StudyError::CancelledRecording { partial: partial(path) },
+        other => other,
+    }
+}
+
 /// Records a set in memory: an overview, then every point.
 fn record_set(
     findings: &Findings<'_>,
@@ -174,7 +189,7 @@ fn record_set(
     path: &Path,
     progress: &Progress,
 ) -> Result<(), StudyError> {
-    let Findings { mechanism, workspace, analysis, inscribed, .. } = *findings;
+    let Findings { mechanism, workspace, analysis, inscribed, rejections, .. } = *findings;
     let failed = |error: RecordError| StudyError::record(path.display(), error);
     let mut run = describe(workspace, mechanism);
     run.insert("poses".to_owned(), analysis.count.poses.to_string());
@@ -190,6 +205,13 @@ fn record_set(
     let mut recorder = WorkspaceRecorder::new(file, &header).map_err(failed)?;
     if let Some(lines) = set.boundary() {
         recorder.boundary(lines).map_err(failed)?;
+    }
+    if let Some(rejections) = rejections {
+        let (shown, layout, held) = (set.shown(), &set.layout(), analysis.count.reachable);
+        let rejected = Rejected { workspace, rejections, shown, layout, held };
+        let slice = |point: &RejectedPoint| set.slice_of(point.point);
+        let recorded = rejected.record(&mut recorder, slice, progress, failed);
+        recorded.map_err(|error| interrupted(path, error))?;
     }
     let every = recorder.overview_every();
     let going = |number: u64| match progress.is_cancelled() && number.is_multiple_of(PORTION) {
@@ -266,12 +288,8 @@ impl PoseRecording<'_> {
         table.finish().map_err(failed)
     }
 
-    /// The error for a recording that was cancelled. It names the unfinished file.
     fn interrupted(&self, error: StudyError) -> StudyError {
-        match error {
-            StudyError::Cancelled => StudyError::CancelledRecording { partial: partial(self.path) },
-            other => other,
-        }
+        interrupted(self.path, error)
     }
 
     /// A recording: an overview, then all points.
@@ -294,6 +312,14 @@ impl PoseRecording<'_> {
         let mut recorder = WorkspaceRecorder::new(file, &header).map_err(failed)?;
         if let Some(lines) = pose_boundary(grid, analysis, together, |pose| cloud.place(pose)) {
             recorder.boundary(lines).map_err(failed)?;
+        }
+        if let Some(rejections) = findings.rejections {
+            let (shown, layout, held) = (cloud.shown(), &self.layout, count.reachable);
+            let rejected = Rejected { workspace, rejections, shown, layout, held };
+            let within = grid.poses() / grid.slices() * together;
+            let slice = |point: &RejectedPoint| point.pose / within;
+            let recorded = rejected.record(&mut recorder, slice, progress, failed);
+            recorded.map_err(|error| self.interrupted(error))?;
         }
         let each_point = |write: &mut (dyn FnMut(Portion) -> Result<(), StudyError> + Send)| {
             let made = || Points::new(cloud, &columns, Some(&packing));
