@@ -157,7 +157,8 @@ pub struct Violation {
 ///     column for each task coordinate, through which a cubic spline passes. Angles are brought within π of the
 ///     preceding waypoint, as those of a table are.
 /// times : (w,) sequence of float, optional
-///     Times of the waypoints, seconds, increasing; at least two.
+///     Times of the waypoints, seconds, increasing; at least two. With `time_optimal` they may be left out: the curve is
+///     then that of waypoints one second apart.
 /// rate : float, optional
 ///     Samples per second; if not given, the rate of the file, or 100. The last sample is at the end of the motion.
 /// mode : str, optional
@@ -194,7 +195,11 @@ pub fn trajectory(
     let (motion, file_name, text) = match times {
         Some(times) => {
             let times = arguments::list(times, "times")?;
-            through(manipulator, motion, &times, ends.unwrap_or_default())?
+            through(manipulator, motion, Some(&times), ends.unwrap_or_default())?
+        }
+        // The fastest timing does not ask when, only along which curve.
+        None if time_optimal && motion.extract::<PathBuf>().is_err() => {
+            through(manipulator, motion, None, ends.unwrap_or_default())?
         }
         None => read(manipulator, motion, ends)?,
     };
@@ -223,15 +228,17 @@ pub fn trajectory(
 /// A motion, the name of its file, and the text of that.
 type Read = (PlatformMotion, String, String);
 
-/// Waypoints as a table of poses.
+/// Waypoints as a table of poses, one second apart if they have no times.
 fn through(
     manipulator: &Manipulator,
     poses: &Bound<'_, PyAny>,
-    times: &[f64],
+    times: Option<&[f64]>,
     ends: Ends,
 ) -> PyResult<Read> {
     let poses = arguments::rows(poses, "motion", &manipulator.pose_names())?;
     let poses = Rows::new(&poses)?;
+    let seconds: Vec<f64> = (0..poses.count).map(|row| row as f64).collect();
+    let times = times.unwrap_or(&seconds);
     if poses.count != times.len() {
         let (poses, times) = (poses.count, times.len());
         return Err(wrong(format!("{times} times for {poses} poses, expected one for each pose")));

@@ -209,6 +209,11 @@ def test_the_fastest_timing_keeps_the_limits_and_the_poses(tmp_path):
     actuated = [found.joint_names.index(f"S{i}") for i in (1, 2, 3)]
     assert np.abs(found.joint_rates[:, actuated]).max() <= 0.4 * (1 + 1e-9)
     assert np.abs(found.joint_accelerations[:, actuated]).max() <= 2 * (1 + 1e-9)
+    # The trapezoid does not depend on the times, which may be left out.
+    untimed = opm.trajectory(fast, poses, rate=1000, time_optimal=True)
+    assert untimed.times[-1] == pytest.approx(found.times[-1], rel=5e-4)
+    with pytest.raises(opm.OpmError, match="motion: expected a path, the name of a shipped motion, or poses with times"):
+        opm.trajectory(fast, poses)
     again = pickle.loads(pickle.dumps(found))
     assert again == found
     one, other = tmp_path / "one.csv", tmp_path / "other.csv"

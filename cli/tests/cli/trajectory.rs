@@ -229,7 +229,10 @@ fn wrong_points_are_told_with_their_places() {
         ),
         (
             "ends = \"periodic\"\n[points]\nt = [0, 1, 2]\nx = [0, 5, 10]\n",
-            &["x is 0 m at the first point and 0.01 m at the last, expected the same"],
+            &[
+                "x is 0 mm at the first point and 10 mm at the last, expected the same",
+                "they differ by 10 mm",
+            ],
         ),
         (
             "ends = \"soft\"\n[points]\nt = [0, 1, 1]\nx = [0, 1]\nyaw = 2\n",

@@ -1722,7 +1722,8 @@ def trajectory(
         column for each task coordinate, through which a cubic spline passes. Angles are brought within π of the
         preceding waypoint, as those of a table are.
     times : (w,) sequence of float, optional
-        Times of the waypoints, seconds, increasing; at least two.
+        Times of the waypoints, seconds, increasing; at least two. With `time_optimal` they may be left out: the curve is
+        then that of waypoints one second apart.
     rate : float, optional
         Samples per second; if not given, the rate of the file, or 100. The last sample is at the end of the motion.
     mode : str, optional

@@ -228,7 +228,8 @@ fn read_points(
         Some(value) => read_column(&value, c.quantity, count),
     };
     let values = all(manipulator.task_coordinates().iter().map(column));
-    let motion = through(name, times?, values?, ends?, manipulator);
+    let units = table.reader.units();
+    let motion = through(name, times?, values?, ends?, manipulator, |_| units);
     motion.map_err(|error| table.reader.report(table.location_of("t"), error.to_string())).ok()
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Ends, Path, PlatformMotion, Spline, SplineError};
 use crate::manipulator::Manipulator;
+use crate::mechanism::file::FileUnits;
 use crate::numeric::Quantity;
 use crate::numeric::angle::near;
 use crate::task::TaskCoordinate;
@@ -17,30 +18,33 @@ pub(super) enum PointsError {
     Spline(#[from] SplineError),
     /// The ends are periodic, and the last point is not the first one.
     #[error(
-        "{name} is {first} {unit} at the first point and {last} {unit} at the last, expected the same where \
-         the ends are periodic"
+        "{name} is {first} at the first point and {last} at the last, expected the same where the ends are periodic; \
+         they differ by {by}"
     )]
     NotPeriodic {
         /// The coordinate.
         name: &'static str,
-        /// The SI unit of its values.
-        unit: &'static str,
-        /// Its first value.
-        first: f64,
+        /// Its first value, in the unit in which it was given.
+        first: String,
         /// Its last value.
-        last: f64,
+        last: String,
+        /// The difference.
+        by: String,
     },
 }
 
-/// The motion through points. `values` has a column for each task coordinate; an empty one stays at home.
+/// The motion through points. `values` has a column for each task coordinate; an empty one stays at home. `units` are those
+/// in which the values of a coordinate were given.
 pub(super) fn through(
     name: &str,
     times: Vec<f64>,
     mut values: Vec<Vec<f64>>,
     ends: Ends,
     manipulator: &Manipulator,
+    units: impl Fn(usize) -> FileUnits,
 ) -> Result<PlatformMotion, PointsError> {
-    for (coordinate, values) in manipulator.task_coordinates().iter().zip(&mut values) {
+    let coordinates = manipulator.task_coordinates().iter().enumerate();
+    for ((number, coordinate), values) in coordinates.zip(&mut values) {
         if values.is_empty() {
             values.resize(times.len(), coordinate.home);
         }
@@ -48,8 +52,9 @@ pub(super) fn through(
             // Whole revolutions may be between them, unless something follows these.
             let end = if wraps(manipulator, coordinate) { near(last, first) } else { last };
             if (end - first).abs() > SAME {
-                let (name, unit) = (coordinate.name, coordinate.quantity.unit());
-                return Err(PointsError::NotPeriodic { name, unit, first, last });
+                let show = |value| units(number).show(value, coordinate.quantity).to_string();
+                let [first, last, by] = [first, last, end - first].map(show);
+                return Err(PointsError::NotPeriodic { name: coordinate.name, first, last, by });
             }
         }
     }

@@ -125,7 +125,11 @@ fn read_table(
             unwrap(values);
         }
     }
-    let motion = through(name, times, values, ends, manipulator);
+    let units = |number: usize| {
+        let column = columns.iter().find(|column| column.coordinate == Some(number));
+        column.map_or(FileUnits::SI, |column| column.units)
+    };
+    let motion = through(name, times, values, ends, manipulator, units);
     motion.map_err(|error| problems.report(last, 1, error.to_string())).ok()
 }
 
