@@ -56,12 +56,12 @@ def test_rejections_are_those_of_inverse_kinematics() -> None:
         alone = np.count_nonzero(solved.reachable & where & (count == 1))
         assert sum(one.alone for one in found if one.joint == name) == alone
     assert pickle.loads(pickle.dumps(found[0])) == found[0]
-    # In any mode, the same leg does not reach the pose, whatever the signs of the others.
+    # In any mode, no cause rejects more poses than are rejected.
     anywhere = opm.sweep(m, mode="any", **GRID)
-    missed = {(one.leg, one.section): one.alone + one.with_others for one in found if one.section}
-    again = {(one.leg, one.section): one.alone + one.with_others for one in anywhere.rejections() if one.section}
-    assert anywhere.poses - anywhere.count <= rejected
-    assert again.items() <= missed.items()
+    everywhere = anywhere.rejections()
+    assert 0 < anywhere.poses - anywhere.count <= rejected
+    most = max(one.alone + one.with_others for one in everywhere)
+    assert 0 < most <= anywhere.poses - anywhere.count <= sum(one.alone + one.with_others for one in everywhere)
 
 
 def test_a_recording_holds_what_rejects_and_what_fits_inside(tmp_path: Path) -> None:
