@@ -11,7 +11,8 @@ import { fromAddress, initial, toAddress, type State } from "./state";
 import type {
   Assembly, AxisRequest, Colours, Counted, Description, Example, Fitted, Posture, Problem, Slice,
 } from "./types";
-import { COLOURS, PARTS, PART_NAMES, View } from "./view";
+import { COLOURS, PARTS, PART_NAMES } from "./colours";
+import { View } from "./view";
 
 /** The mechanism file that the page carries. */
 interface PageFile {
