@@ -40,18 +40,19 @@ const licences = [
   "The standard library of Rust: MIT OR Apache-2.0",
 ].join("\n");
 
-const packed = gzipSync(readFileSync(library), { level: 9 }).toString("base64");
+const packed = (content) => gzipSync(content, { level: 9 }).toString("base64");
 // Nothing that is put into a script may look like the end of one.
 const harmless = (content) => content.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
 const parts = {
   "/*STYLE*/": await style("src/style.css"),
-  LIBRARY: packed,
+  LIBRARY: packed(readFileSync(library)),
   WORKER: harmless(await script("src/worker.ts")),
   LICENCES: harmless(licences),
-  SCRIPT: harmless(await script("src/main.ts")),
+  SCRIPT: packed(await script("src/main.ts")),
+  START: harmless(await script("src/start.ts")),
 };
 const template = text("src/index.html").replaceAll("VERSION", version);
-const page = template.replace(/\/\*STYLE\*\/|\b(?:LIBRARY|WORKER|LICENCES|SCRIPT)\b/g, (name) => parts[name]);
+const page = template.replace(/\/\*STYLE\*\/|\b(?:LIBRARY|WORKER|LICENCES|SCRIPT|START)\b/g, (name) => parts[name]);
 if (Buffer.byteLength(page) > MOST) throw new Error(`the page has ${Buffer.byteLength(page)} bytes, expected at most ${MOST}`);
 
 const folder = new URL("../crates/opm-export/page/", import.meta.url);

@@ -17,7 +17,8 @@ export class View {
   private readonly materials = new Materials();
   private readonly solids = new Solids(this.materials);
   private readonly motions = new Motions(this.materials);
-  private size = 1;
+  /** The radius of the mechanism, metres. */
+  size = 1;
   private readonly centre = new Vector3();
   private drawn = false;
 
