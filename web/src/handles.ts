@@ -46,6 +46,7 @@ export class HandleSet {
   readonly group = new Group();
   private handles: Handle[] = [];
   private drag: Drag | null = null;
+  private hovered: Handle | undefined;
   private key = "";
   private at = new Vector3();
   private readonly rays = new Raycaster();
@@ -148,6 +149,8 @@ export class HandleSet {
     }
     if (event.buttons) return;
     const handle = this.under(event);
+    if (handle === this.hovered) return;
+    this.hovered = handle;
     const names = handle?.moves.map(({ coordinate }) => coordinate.name).join(", ");
     this.view.canvas.style.cursor = handle ? "grab" : "";
     this.view.canvas.title = names ? `Drag to change ${names}` : "";

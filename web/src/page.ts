@@ -3,6 +3,7 @@
 
 import { Assemblies } from "./assemblies";
 import { BodyMesh, BodyPanel } from "./body";
+import { Calm } from "./calm";
 import { DimensionPanel } from "./dimensions";
 import { byId, element, save, short } from "./dom";
 import { Refused } from "./engine";
@@ -60,6 +61,7 @@ export class Page {
     pose: () => this.fullPose(),
   });
   private readonly assemblies = new Assemblies((assembly) => this.assemble(assembly));
+  private readonly table = new Calm(() => this.joints.update(this.posture, this.counted));
   private readonly undo = new Undo();
   private readonly posing = new Loop(() => this.stepPose(), (error) => this.fail(error), () => this.settle());
   private readonly sweeping = new Loop(() => this.stepSweep(), (error) => this.fail(error), () => this.settle());
@@ -90,7 +92,7 @@ export class Page {
       counted: (counted) => {
         this.counted = counted;
         this.slice.setWhole(counted);
-        this.joints.update(this.posture, counted);
+        this.table.ask();
       },
       embodied: (body, bytes) => {
         this.body.set(body, bytes);
@@ -149,6 +151,8 @@ export class Page {
 
   /** Puts the state into the address, as a new step or in place of the last one. */
   private async remember(instead = false): Promise<void> {
+    // In a frame of a notebook, the page has no address of its own.
+    if (location.protocol === "about:") return;
     const address = await toAddress(this.state);
     if (address === this.address) return;
     this.address = address;
@@ -189,7 +193,9 @@ export class Page {
 
   /** Says that all that was asked for has been computed, where this is so. */
   private settle(): void {
-    document.body.dataset["ready"] = String(!this.posing.running && !this.sweeping.running && !this.driving);
+    const ready = !this.posing.running && !this.sweeping.running && !this.driving;
+    if (ready) this.table.flush();
+    document.body.dataset["ready"] = String(ready);
   }
 
   /** The mechanism file of the state. */
@@ -269,7 +275,10 @@ export class Page {
       this.player.build(description, this.shippedMotions);
       byId("mode").replaceChildren(...description.modes.map((mode) => element("option", { value: mode }, mode || "the only one")));
     }
-    if (rebuilt) this.joints.build(description);
+    if (rebuilt) {
+      this.joints.build(description);
+      this.joints.update(this.posture, this.counted);
+    }
     this.view.setMechanism(description);
     this.show();
   }
@@ -296,7 +305,7 @@ export class Page {
     if (!description) return;
     showStatus(posture, description);
     showModes(posture);
-    this.joints.update(this.posture, this.counted);
+    this.table.ask();
     if (posture.handles) this.handles.set(description.coordinates, posture.handles, this.view.size);
     this.placeBody();
     description.dependent.forEach(({ name }, number) => {
@@ -390,6 +399,7 @@ export class Page {
 
   private connect(): void {
     connectView(this.view);
+    byId("share").hidden = location.protocol === "about:";
     const handles = byId<HTMLInputElement>("handles");
     handles.addEventListener("change", () => {
       this.handles.group.visible = handles.checked;

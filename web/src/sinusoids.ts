@@ -25,10 +25,10 @@ export class Sinusoids {
       });
       return { coordinate, fields };
     });
-    const head = ["", "amplitude", "Hz", "phase, deg"].map((name) => element("th", { scope: "col" }, name));
+    const head = ["amplitude", "Hz", "phase, deg"].map((name) => element("th", { scope: "col" }, name));
     const rows = this.rows.map(({ coordinate: { name, unit }, fields }) =>
       element("tr", {}, element("th", { scope: "row" }, `${name} (${unit})`), ...fields.map((field) => element("td", {}, field))));
-    byId("sinusoids").replaceChildren(element("table", { className: "sinusoids" }, element("tr", {}, ...head), ...rows));
+    byId("sinusoids").replaceChildren(element("table", { className: "sinusoids" }, element("tr", {}, element("td"), ...head), ...rows));
   }
 
   /** The motion as a file, about a pose. */
