@@ -92,6 +92,7 @@ export class HandleSet {
     // They are seen through everything else.
     [material.depthTest, material.transparent] = [false, true];
     const object = new Group();
+    object.renderOrder = 2;
     let target: Mesh;
     if (moves.length > 1) {
       object.add(new Mesh(knob, material));
