@@ -413,7 +413,7 @@ def test_a_motion_is_played_and_its_violations_are_those_of_the_command_line(exp
     explorer.page.set_input_files("#file", table)
     explorer.page.wait_for_selector("#violations li")
     explorer.ready()
-    command = [opm, "trajectory", PLANO, table, "--format", "json", "--quiet"]
+    command = [opm, "trajectory", PLANO, "--motion", table, "--format", "json", "--quiet"]
     told = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
     count = told["violation_count"]
     assert f"{count} violation" in explorer.text("motion-summary")
@@ -427,7 +427,7 @@ def test_a_motion_is_played_and_its_violations_are_those_of_the_command_line(exp
 
     # A broken table is told with line and column.
     table.write_text("t,y\n0,zero\n1,0\n")
-    told = subprocess.run([opm, "trajectory", PLANO, table], capture_output=True, text=True).stderr
+    told = subprocess.run([opm, "trajectory", PLANO, "--motion", table], capture_output=True, text=True).stderr
     explorer.page.set_input_files("#file", table)
     explorer.page.wait_for_selector("#problems:not([hidden])")
     [place] = re.findall(r"away\.csv(:\d+:\d+): ", told)

@@ -34,6 +34,8 @@ type Pose = Record<string, number>;
 export class Page {
   private state: State = initial();
   private description: Description | null = null;
+  /** The text of the file that is described. */
+  private described: string | null = null;
   private posture: Posture | null = null;
   private counted: Counted | null = null;
   private examples: Example[] = [];
@@ -223,6 +225,7 @@ export class Page {
       this.kept = [];
       if (!this.problems.length) this.name = "";
       const kinds = another ? (await this.poser.engine.ask<Kind[]>({ do: "kinds" })).value : null;
+      this.described = this.poser.text;
       this.take(description, kinds);
       // The other worker may have come to it before its coordinates were known here.
       void this.sweeping.start();
@@ -244,8 +247,9 @@ export class Page {
 
   private async stepSweep(): Promise<void> {
     const { state, description } = this;
-    if (!description) return;
     const { text } = this.file();
+    // Its coordinates have to be known; the other worker is told when they are.
+    if (!description || this.described !== text) return;
     const body = this.bodyPanel.wanted ? this.bodyPanel.chosen() : null;
     const wanted = { state, description, text, body, kind: this.kinds.wanted, motion: this.player.file };
     await this.sweeper.step(wanted, () => this.sweeping.again);
