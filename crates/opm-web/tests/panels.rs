@@ -67,7 +67,7 @@ fn a_body_at_a_pose_has_the_points_that_are_reached() {
 /// With other coordinates at any value, it is the projection that the library knows for places.
 #[test]
 fn a_body_at_any_other_values_is_the_projection() {
-    for name in ["schoenflies-4dof", "translational-helical-3dof"] {
+    for name in ["cartesian-wrist-6dof", "translational-helical-3dof"] {
         let (mut session, manipulator) = opened(name);
         ask(&mut session, &json!({ "do": "fit" }));
         let modes = Modes::One(manipulator.home_mode());
