@@ -1,12 +1,13 @@
-// Puts the page together: node build.mjs LIBRARY.wasm CRATES.txt. It writes one HTML file, compressed, to the crate that
-// carries it. The same sources give the same bytes.
+// Puts the page together: node build.mjs LIBRARY.wasm CRATES.txt PAGE.html.gz. It writes one HTML file, compressed. The same
+// sources give the same bytes.
 
 import { build } from "esbuild";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { dirname } from "node:path";
 import { gzipSync } from "node:zlib";
 
-const [library, crates] = process.argv.slice(2);
-if (!library || !crates) throw new Error("expected the compiled library and the list of its crates");
+const [library, crates, target] = process.argv.slice(2);
+if (!target) throw new Error("expected the compiled library, the list of its crates, and the file to write");
 const MOST = 2.5e6;
 
 const text = (path) => readFileSync(new URL(path, import.meta.url), "utf8");
@@ -40,24 +41,24 @@ const licences = [
   "The standard library of Rust: MIT OR Apache-2.0",
 ].join("\n");
 
-const packed = gzipSync(readFileSync(library), { level: 9 }).toString("base64");
+const packed = (content) => gzipSync(content, { level: 9 }).toString("base64");
 // Nothing that is put into a script may look like the end of one.
 const harmless = (content) => content.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
 const parts = {
   "/*STYLE*/": await style("src/style.css"),
-  LIBRARY: packed,
+  LIBRARY: packed(readFileSync(library)),
   WORKER: harmless(await script("src/worker.ts")),
   LICENCES: harmless(licences),
-  SCRIPT: harmless(await script("src/main.ts")),
+  SCRIPT: packed(await script("src/main.ts")),
+  START: harmless(await script("src/start.ts")),
 };
 const template = text("src/index.html").replaceAll("VERSION", version);
-const page = template.replace(/\/\*STYLE\*\/|\b(?:LIBRARY|WORKER|LICENCES|SCRIPT)\b/g, (name) => parts[name]);
+const page = template.replace(/\/\*STYLE\*\/|\b(?:LIBRARY|WORKER|LICENCES|SCRIPT|START)\b/g, (name) => parts[name]);
 if (Buffer.byteLength(page) > MOST) throw new Error(`the page has ${Buffer.byteLength(page)} bytes, expected at most ${MOST}`);
 
-const folder = new URL("../crates/opm-export/page/", import.meta.url);
-mkdirSync(folder, { recursive: true });
+mkdirSync(dirname(target), { recursive: true });
 const small = gzipSync(page, { level: 9 });
 // The header of a gzip file names the system that wrote it; this is the number for unknown.
 small[9] = 255;
-writeFileSync(new URL("explorer.html.gz", folder), small);
-console.log(`explorer.html: ${Buffer.byteLength(page)} bytes, ${small.length} compressed`);
+writeFileSync(target, small);
+console.log(`${target}: ${Buffer.byteLength(page)} bytes, ${small.length} compressed`);

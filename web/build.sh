@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Builds the explorer's page: crates/opm-web to WebAssembly, then web/src to one HTML file, which `opm explore` carries.
+# Builds the explorer's page: crates/opm-web to WebAssembly, then web/src to one HTML file. It is written, compressed, to the
+# file that is given, or to the place from which `opm explore` takes it.
 # Needs node with npm, and a compiler for wasm32-unknown-unknown: the toolchain at hand with that target, or, where rustup
 # cannot download it, Debian's packages rustc-web, rust-web-src and lld-19.
 set -euo pipefail
+page=$(realpath -m "${1:-$(dirname "${BASH_SOURCE[0]}")/../crates/opm-export/page/explorer.html.gz}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 target=wasm32-unknown-unknown
@@ -35,6 +37,9 @@ cargo tree --locked -p opm-web --target "$target" -e normal --prefix none --form
   | sed -e 's/ (\/[^)]*)//' -e 's/ (\*)$//' | grep -v '^opm-' | sort -u > "$folder/crates.txt"
 
 cd web
-npm ci --no-audit --no-fund --silent
+# Nothing is fetched where the packages of the lock file are there already.
+if ! npm ls --silent >/dev/null 2>&1; then
+  npm ci --no-audit --no-fund --silent
+fi
 npm run --silent check
-node build.mjs "$wasm" "$folder/crates.txt"
+node build.mjs "$wasm" "$folder/crates.txt" "$page"

@@ -12,6 +12,7 @@ mod columns;
 mod command;
 mod decomposition;
 mod error;
+mod explorer;
 mod forward;
 mod html;
 mod interrupt;
@@ -40,6 +41,8 @@ mod _native {
     use crate::decomposition::{Decomposition, Intersection, LegSplit};
     #[pymodule_export]
     use crate::error::OpmError;
+    #[pymodule_export]
+    use crate::explorer::{Explorer, explore};
     #[pymodule_export]
     use crate::forward::Assembly;
     #[pymodule_export]

@@ -3,6 +3,7 @@
 use crate::arguments::{self, Array, mjcf_options};
 use crate::decomposition::Decomposition;
 use crate::error::{failed, wrong};
+use crate::explorer::{self, Explorer};
 use crate::html;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables, no_memory};
@@ -459,6 +460,16 @@ impl Manipulator {
     fn to_c(&self, py: Python<'_>) -> PyResult<BTreeMap<String, String>> {
         let code = py.detach(|| opm_generate::c(&self.inner)).map_err(|error| failed(&error))?;
         Ok(code.files().map(|(name, text)| (name, text.to_owned())).into())
+    }
+
+    /// A page that shows the mechanism and its workspace in a browser, or as the value of a cell in a notebook.
+    ///
+    /// Returns
+    /// -------
+    /// Explorer
+    ///     :meth:`Explorer.save` writes it to a file, as ``opm explore`` does.
+    fn explore(&self, py: Python<'_>) -> PyResult<Explorer> {
+        explorer::explore(py, self)
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from html.parser import HTMLParser
 from xml.etree import ElementTree
 
 import opm_kinematics as opm
@@ -37,3 +38,35 @@ def test_code_is_that_of_the_command(tmp_path):
     subprocess.run(command, check=True)
     assert mechanism.to_c() == {path.name: path.read_text() for path in tmp_path.iterdir()}
     assert "int plano_spherical_5dof_inverse(" in mechanism.to_c()["plano_spherical_5dof.h"]
+
+
+def test_a_page_is_that_of_the_command(tmp_path):
+    mechanism = opm.examples.plano_spherical()
+    command = [sys.executable, "-m", "opm_kinematics", "explore", mechanism.name, "-q", "-o", tmp_path / "a.html"]
+    subprocess.run(command, check=True)
+    page = mechanism.explore()
+    page.save(tmp_path / "b.html")
+    assert (tmp_path / "b.html").read_bytes() == (tmp_path / "a.html").read_bytes()
+    assert opm.explore(mechanism).html == page.html == (tmp_path / "a.html").read_text()
+    assert {path.name for path in tmp_path.iterdir()} == {"a.html", "b.html"}
+    assert (page.name, repr(page)) == (mechanism.name, f"<Explorer of {mechanism.name}: {len(page.html.encode())} bytes of HTML>")
+
+
+def test_a_page_shows_itself_in_a_notebook():
+    class Frame(HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            self.tag, self.attributes = tag, dict(attrs)
+
+    page = opm.examples.plano_spherical().with_parameters({"leg1.h": 0.13}).explore()
+    frame = Frame()
+    frame.feed(page._repr_html_())
+    assert frame.tag == "iframe"
+    # A browser reads the page that the file has.
+    assert frame.attributes["srcdoc"] == page.html
+    assert "0.13" in page.html
+
+
+def test_a_page_that_cannot_be_written_says_where(tmp_path):
+    with pytest.raises(OSError, match="nowhere"):
+        opm.examples.plano_spherical().explore().save(tmp_path / "nowhere" / "a.html")
+    assert list(tmp_path.iterdir()) == []

@@ -1,7 +1,7 @@
 // The table of joints: values, and bars inside the limits.
 
 import { byId, element, field, numberIn, short, show } from "./dom";
-import { COLOURS } from "./view";
+import { COLOURS } from "./colours";
 import type { Counted, Description, Joint, Posture } from "./types";
 
 export interface JointEvents {

@@ -2,7 +2,7 @@
 
 import { byId, element, grouped, numberIn, short, show } from "./dom";
 import { POINTS, type SliceState } from "./state";
-import type { AxisRequest, Colours, Counted, Description, Slice } from "./types";
+import type { AxisRequest, Colours, Counted, Description, KindCount, Slice } from "./types";
 
 export interface SliceEvents {
   /** The slice is to be another one. */
@@ -40,6 +40,8 @@ export class SlicePanel {
   private state!: SliceState;
   private description!: Description;
   private shown: Shown | null = null;
+  /** A kind of workspace whose boundary is drawn too, where it has the coordinates of the slice. */
+  private kind: KindCount | null = null;
   private pose: Record<string, number> = {};
   private drawing = false;
   /** The pixels of a slice, and what they were made of. */
@@ -140,6 +142,12 @@ export class SlicePanel {
   setWhole(counted: Counted | null): void {
     this.whole.textContent = counted ? `${grouped(counted.reachable)} of ${grouped(counted.poses)}` : "counting…";
     this.wholeShare.textContent = counted ? `${short(counted.measure)} ${counted.unit}` : "";
+  }
+
+  setKind(kind: KindCount | null): void {
+    if (kind === this.kind) return;
+    this.kind = kind;
+    this.draw();
   }
 
   /** The slice as a table with a row for each of its reachable poses. */
@@ -274,14 +282,27 @@ ${ticks.join("\n")}
     context.beginPath();
     context.rect(left, top, width, height);
     context.clip();
-    context.beginPath();
-    for (const ring of slice.rings) {
-      for (let i = 0; i + 1 < ring.length; i += 2) context[i ? "lineTo" : "moveTo"](across(ring[i]!), upwards(ring[i + 1]!));
-      context.closePath();
-    }
+    const outline = (rings: number[][], swapped: boolean) => {
+      context.beginPath();
+      for (const ring of rings) {
+        for (let i = 0; i + 1 < ring.length; i += 2) {
+          const [a, b] = swapped ? [ring[i + 1]!, ring[i]!] : [ring[i]!, ring[i + 1]!];
+          context[i ? "lineTo" : "moveTo"](across(a), upwards(b));
+        }
+        context.closePath();
+      }
+      context.stroke();
+    };
     context.strokeStyle = ink("edge");
     context.lineWidth = 1.4;
-    context.stroke();
+    outline(slice.rings, false);
+    if (this.kind && same([...this.kind.varying].sort(), [x.name, y.name].sort())) {
+      context.strokeStyle = ink("kind");
+      context.lineWidth = 2;
+      context.setLineDash([7, 4]);
+      outline(this.kind.rings, this.kind.varying[0] !== x.name);
+      context.setLineDash([]);
+    }
     // The pose.
     const [px, py] = [across(this.pose[x.name] ?? 0), upwards(this.pose[y.name] ?? 0)];
     context.strokeStyle = ink("mark");
@@ -338,6 +359,10 @@ ${ticks.join("\n")}
   }
 }
 
+function same(one: string[], other: string[]): boolean {
+  return one.join() === other.join();
+}
+
 /** Red, green and blue as the pixel of a canvas. */
 function pixel([red = 0, green = 0, blue = 0]: number[]): number {
   return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
@@ -349,7 +374,7 @@ function valueOf(axis: AxisRequest, number: number): number {
 }
 
 /** Round numbers between two ends, about five of them. */
-function nice(low: number, high: number): number[] {
+export function nice(low: number, high: number): number[] {
   if (!(high > low)) return [low];
   const rough = (high - low) / 5;
   const power = 10 ** Math.floor(Math.log10(rough));

@@ -10,6 +10,8 @@ export interface State {
   /** The working mode; nothing for that of home. */
   mode: string | null;
   slice: SliceState;
+  body: BodyState;
+  kind: KindState;
 }
 
 /** The slice: its coordinates, and what is not the default of the mechanism. */
@@ -23,6 +25,19 @@ export interface SliceState {
   colour: string;
 }
 
+/** The workspace as a body: its coordinates, where they were set, and what the others are. */
+export interface BodyState {
+  show: boolean;
+  axes: string[] | null;
+  others: "pose" | "any";
+}
+
+/** The kind of workspace that is counted, and how far its orientations are from that of the pose. */
+export interface KindState {
+  name: string;
+  turn: number | null;
+}
+
 export const POINTS = 201;
 
 export function initial(): State {
@@ -32,6 +47,8 @@ export function initial(): State {
     pose: {},
     mode: null,
     slice: { x: null, y: null, nx: POINTS, ny: POINTS, ends: {}, colour: "none" },
+    body: { show: false, axes: null, others: "pose" },
+    kind: { name: "grid", turn: null },
   };
 }
 
@@ -55,6 +72,11 @@ export async function toAddress(state: State): Promise<string> {
   if (ny !== POINTS) query.set("slice.ny", String(ny));
   for (const end of ENDS) if (ends[end] !== undefined) query.set(`slice.${end}`, String(ends[end]));
   if (colour !== "none") query.set("slice.colour", colour);
+  const { body, kind } = state;
+  if (body.show) query.set("body", body.others);
+  if (body.axes) query.set("body.axes", body.axes.join(":"));
+  if (kind.name !== "grid") query.set("kind", kind.name);
+  if (kind.turn !== null) query.set("kind.turn", String(kind.turn));
   return query.toString();
 }
 
@@ -83,6 +105,10 @@ export async function fromAddress(hash: string): Promise<State> {
     if (Number.isFinite(value)) slice.ends[end] = value;
   }
   slice.colour = query.get("slice.colour") ?? "none";
+  const body = query.get("body");
+  state.body = { show: body !== null, axes: query.get("body.axes")?.split(":") ?? null, others: body === "any" ? "any" : "pose" };
+  const turn = number(query.get("kind.turn"));
+  state.kind = { name: query.get("kind") ?? "grid", turn: Number.isFinite(turn) ? turn : null };
   const [example, file] = [query.get("example"), query.get("file")];
   if (example !== null) state.source = { kind: "example", name: example };
   if (file !== null) {

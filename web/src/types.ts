@@ -94,6 +94,7 @@ export interface Posture {
   dependent: number[];
   out_of_reach: OutOfReach[];
   modes: { mode: string; within: boolean }[];
+  handles: Handles | null;
 }
 
 export interface FittedAxis {
@@ -145,4 +146,60 @@ export interface AxisRequest {
   min: number;
   max: number;
   count: number;
+}
+
+export interface Move {
+  shift: Vector;
+  turn: Vector;
+}
+
+export interface Handles {
+  at: Vector;
+  moves: (Move | null)[];
+}
+
+export interface WorkspaceBody {
+  inside: number;
+  points: number;
+  poses: number;
+  corners: number;
+  triangles: number;
+  ranges: [number, number][];
+}
+
+export interface Kind {
+  name: string;
+  description: string;
+  turns: boolean;
+  refused: string | null;
+}
+
+export interface KindCount {
+  points: number;
+  members: number;
+  point_name: string;
+  member_name: string;
+  measure: number | null;
+  unit: string;
+  varying: string[];
+  rings: number[][];
+  options: string[];
+}
+
+export interface ShippedMotion {
+  name: string;
+  mechanism: string;
+  description: string;
+  text: string;
+}
+
+export interface Followed {
+  name: string;
+  mode: string;
+  samples: number;
+  reached: number;
+  valid: number;
+  columns: number;
+  violations: { kind: string; joint: string | null; start: number; end: number; text: string }[];
+  violation_count: number;
 }

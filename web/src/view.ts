@@ -1,60 +1,24 @@
-// The mechanism in space: its bodies, the motions of its sections, and what the pointer does.
+// The space that the mechanism is in: camera, light, and what the pointer does.
 
-import {
-  AmbientLight, BoxGeometry, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, DoubleSide,
-  Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial, MeshLambertMaterial, Object3D, PerspectiveCamera,
-  Scene, SphereGeometry, Vector3, WebGLRenderer,
-} from "three";
+import { AmbientLight, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Body, Description, Solid, Subspace, Vector } from "./types";
+import type { PartName } from "./colours";
+import { Materials } from "./materials";
+import { Motions } from "./motions";
+import { Solids } from "./solids";
+import type { Description } from "./types";
 
-/** The parts that have a colour, as the legend lists them. */
-export const PARTS = ["base", "lower", "upper", "platform", "actuated", "passive", "imaginary", "motions"] as const;
-export type PartName = (typeof PARTS)[number];
-
-export const PART_NAMES: Record<PartName, string> = {
-  base: "Base",
-  lower: "Links of the lower section",
-  upper: "Links of the upper section",
-  platform: "Platform",
-  actuated: "Actuated joints",
-  passive: "Passive joints",
-  imaginary: "Imaginary joints",
-  motions: "Motions of the sections",
-};
-
-/** Colours that people with colour blindness tell apart, by Okabe and Ito, and greys. */
-export const COLOURS: Record<PartName, string> = {
-  base: "#70727a",
-  lower: "#b9bec6",
-  upper: "#c9b98f",
-  platform: "#0072b2",
-  actuated: "#d55e00",
-  passive: "#56b4e9",
-  imaginary: "#cc79a7",
-  motions: "#009e73",
-};
-
-const round = new CylinderGeometry(1, 1, 1, 24);
-const ball = new SphereGeometry(1, 24, 16);
-const block = new BoxGeometry(2, 1, 2);
-const disc = new CircleGeometry(1, 64);
-const dashed = new BufferGeometry().setFromPoints([new Vector3(0, -0.5, 0), new Vector3(0, 0.5, 0)]);
-const UP = new Vector3(0, 1, 0);
-
-/** How dim the other parts are while one is pointed at. */
-const DIM = 0.12;
 
 export class View {
-  private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(35, 1, 0.01, 1000);
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(35, 1, 0.01, 1000);
+  readonly controls: OrbitControls;
   private readonly renderer: WebGLRenderer;
-  private readonly controls: OrbitControls;
-  private readonly materials = new Map<PartName, MeshLambertMaterial | MeshBasicMaterial>();
-  private readonly dashes = new LineDashedMaterial({ color: COLOURS.motions, dashSize: 0.035, gapSize: 0.018 });
-  private bodies: Group[] = [];
-  private readonly mechanism = new Group();
-  private size = 1;
+  private readonly materials = new Materials();
+  private readonly solids = new Solids(this.materials);
+  private readonly motions = new Motions(this.materials);
+  /** The radius of the mechanism, metres. */
+  size = 1;
   private readonly centre = new Vector3();
   private drawn = false;
 
@@ -68,57 +32,34 @@ export class View {
     const sun = new DirectionalLight("#ffffff", 2);
     sun.position.set(0.4, -0.6, 1);
     this.camera.add(sun);
-    this.scene.add(this.camera, new AmbientLight("#ffffff", 1.4), this.mechanism);
-    for (const part of PARTS) {
-      const color = new Color(COLOURS[part]);
-      const seeThrough = part === "imaginary" || part === "motions";
-      const material = part === "motions"
-        ? new MeshBasicMaterial({ color, side: DoubleSide, depthWrite: false })
-        : new MeshLambertMaterial({ color });
-      material.transparent = seeThrough;
-      material.opacity = opacity(part);
-      this.materials.set(part, material);
-    }
+    const light = new AmbientLight("#ffffff", 1.4);
+    this.scene.add(this.camera, light, this.solids.group, this.motions.fixed, this.motions.carried);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
 
+  /** What has been drawn on. */
+  get canvas(): HTMLCanvasElement {
+    return this.renderer.domElement;
+  }
+
   /** Shows the bodies of a mechanism; `place` puts them where they are. */
   setMechanism(description: Description): void {
-    this.mechanism.clear();
-    this.bodies = description.bodies.map((body) => {
-      const group = new Group();
-      group.matrixAutoUpdate = false;
-      group.matrix.setPosition(new Vector3(...body.origin));
-      for (const solid of body.solids) group.add(this.solid(solid, body));
-      this.mechanism.add(group);
-      return group;
-    });
-    this.addMotions(description);
+    this.solids.set(description.bodies);
+    this.motions.set(description);
     this.draw();
   }
 
   /** Moves the bodies: 16 numbers of a matrix for each, column by column. */
   place(bytes: Uint8Array<ArrayBuffer>): void {
-    const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
-    this.bodies.forEach((group, number) => {
-      group.matrix.fromArray(numbers, 16 * number);
-      group.matrixWorldNeedsUpdate = true;
-    });
+    this.solids.place(new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4));
+    this.motions.place((number) => this.solids.body(number));
     this.draw();
   }
 
   /** Looks at the whole mechanism, from the direction of the camera or from the first one. */
   fit(again = true): void {
-    const points: Vector3[] = [];
-    this.bodies.forEach((group) => {
-      group.updateMatrixWorld(true);
-      group.children.forEach((solid) => {
-        if (solid.userData["measured"]) {
-          for (const end of [-0.5, 0.5]) points.push(new Vector3(0, end, 0).applyMatrix4(solid.matrixWorld));
-        }
-      });
-    });
+    const points = this.solids.ends();
     if (!points.length) return;
     const sum = points.reduce((sum, point) => sum.add(point), new Vector3());
     this.centre.copy(sum.divideScalar(points.length));
@@ -151,12 +92,7 @@ export class View {
 
   /** Makes all parts but one dim; nothing shows all of them. */
   highlight(part: PartName | null): void {
-    for (const [name, material] of this.materials) {
-      const dim = part !== null && part !== name;
-      material.opacity = opacity(name) * (dim ? DIM : 1);
-      material.transparent = dim || name === "imaginary" || name === "motions";
-      material.needsUpdate = true;
-    }
+    this.materials.highlight(part);
     this.draw();
   }
 
@@ -188,72 +124,6 @@ export class View {
     this.renderer.setSize(width, height);
     this.draw();
   }
-
-  private material(part: PartName): MeshLambertMaterial | MeshBasicMaterial {
-    return this.materials.get(part)!;
-  }
-
-  private solid(solid: Solid, body: Body): Mesh {
-    const part: PartName = solid.material === "link" ? (body.section ?? "lower") : solid.material;
-    const [from, to] = [new Vector3(...solid.from), new Vector3(...solid.to)];
-    const axis = to.clone().sub(from);
-    const length = axis.length();
-    const geometry = { cylinder: round, ball, block }[solid.shape];
-    const mesh = new Mesh(geometry, this.material(part));
-    mesh.position.copy(from).lerp(to, 0.5);
-    if (length > 0) mesh.quaternion.setFromUnitVectors(UP, axis.divideScalar(length));
-    mesh.scale.set(solid.radius, solid.shape === "ball" ? solid.radius : length, solid.radius);
-    mesh.userData["measured"] = part !== "imaginary";
-    return mesh;
-  }
-
-  /** Draws the motions of the sections: that of the lower one on the base, the others on the body that it moves. */
-  private addMotions({ bodies, lower, upper, intersection }: Description): void {
-    const number = bodies.findIndex((body) => body.name === "lower_platform");
-    const carrier = number < 0 ? this.mechanism : this.bodies[number]!;
-    const origin = number < 0 ? new Vector3() : new Vector3(...bodies[number]!.origin);
-    const size = this.measure(bodies);
-    const platform = bodies.find((body) => body.name === "platform")?.origin ?? [0, 0, 0];
-    const draw = (on: Group, space: Subspace, at: Vector3, size: number) => {
-      for (const object of this.motion(space, at, size)) on.add(object);
-    };
-    if (lower.dimension > 1) draw(this.mechanism, lower, new Vector3(...platform), size);
-    const at = new Vector3(...platform).sub(origin);
-    if (upper.dimension > 1) draw(carrier, shifted(upper, origin), at, 0.8 * size);
-    if (intersection.direction) draw(carrier, shifted(intersection, origin), at, 1.2 * size);
-  }
-
-  private measure(bodies: Body[]): number {
-    const origins = bodies.filter((body) => body.solids.length).map((body) => new Vector3(...body.origin));
-    const widest = Math.max(...origins.map((origin) => origin.distanceTo(origins[0] ?? origin)), 0);
-    return widest > 0 ? 0.5 * widest : 0.1;
-  }
-
-  /** A disc for a plane, a ball for a centre, a dashed line for an axis. */
-  private motion(space: Subspace, platform: Vector3, size: number): Object3D[] {
-    const made: Object3D[] = [];
-    const at = space.point ? new Vector3(...space.point) : platform;
-    if (space.name === "spherical") {
-      const centre = new Mesh(ball, this.material("motions"));
-      centre.scale.setScalar(0.08 * size);
-      centre.position.copy(at);
-      made.push(centre);
-    } else if (space.direction && /plan|schoenflies/.test(space.name)) {
-      const plane = new Mesh(disc, this.material("motions"));
-      plane.scale.setScalar(0.6 * size);
-      plane.position.copy(at);
-      plane.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...space.direction));
-      made.push(plane);
-    } else if (space.direction) {
-      const line = new Line(dashed, this.dashes);
-      line.computeLineDistances();
-      line.scale.setScalar(1.2 * size);
-      line.position.copy(at);
-      line.quaternion.setFromUnitVectors(UP, new Vector3(...space.direction));
-      made.push(line);
-    }
-    return made;
-  }
 }
 
 /** Whether there is no graphics card: smooth edges would take four times as long. */
@@ -265,13 +135,3 @@ function drawnByProcessor(): boolean {
   context?.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|software/i.test(name + more);
 }
-
-function opacity(part: PartName): number {
-  return part === "imaginary" ? 0.5 : part === "motions" ? 0.16 : 1;
-}
-
-function shifted(space: Subspace, origin: Vector3): Subspace {
-  const point = space.point ? (new Vector3(...space.point).sub(origin).toArray() as Vector) : null;
-  return { ...space, point };
-}
-

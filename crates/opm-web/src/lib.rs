@@ -22,20 +22,25 @@
 //! assert!((s1 - 168.806).abs() < 1e-3); // millimetres
 //! ```
 
+mod body;
 mod changes;
 mod description;
 mod explorer;
 #[cfg(target_arch = "wasm32")]
 mod exports;
 mod forward;
+mod handles;
+mod kinds;
+mod motion;
 mod pose;
 mod problem;
 mod request;
 mod scene;
 mod session;
+mod surface;
 mod units;
 mod workspace;
 
 pub use problem::{Problem, Problems};
-pub use request::{AxisRequest, Request};
+pub use request::{AxisRequest, Others, Request};
 pub use session::{Reply, Session};

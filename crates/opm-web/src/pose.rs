@@ -1,6 +1,7 @@
 //! The joints at a pose, and the bodies.
 
 use crate::explorer::Explorer;
+use crate::handles::{Handles, handles};
 use crate::problem::Problems;
 use crate::request::Coordinates;
 use crate::scene;
@@ -29,6 +30,8 @@ struct Posture<'a> {
     out_of_reach: Vec<OutOfReach<'a>>,
     /// The modes that reach the pose.
     modes: Vec<Reaching>,
+    /// The handles of the platform, if the pose is reached.
+    handles: Option<Handles>,
 }
 
 /// A leg that does not reach the pose.
@@ -70,6 +73,7 @@ pub fn solve(
         dependent: vec![],
         out_of_reach: vec![],
         modes: reaching(manipulator, &pose)?,
+        handles: if reached { handles(explorer, &pose, mode) } else { None },
     };
     if !reached {
         let missed = solution.unreachable().iter();

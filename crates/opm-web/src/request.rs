@@ -85,6 +85,53 @@ pub enum Request {
         /// `condition` for the condition number, or the name of a joint.
         by: String,
     },
+    /// The workspace as a body in three coordinates of the fitted grid.
+    Body {
+        /// The names of the coordinates.
+        axes: [String; 3],
+        /// What the other coordinates are.
+        others: Others,
+        /// The pose.
+        #[serde(default)]
+        pose: Coordinates,
+        /// The working mode.
+        mode: Option<String>,
+    },
+    /// The kinds of workspace, and which of them the mechanism has.
+    Kinds {},
+    /// Counts and measures a workspace of one kind. The session fits a grid to it once.
+    Kind {
+        /// The name of the kind.
+        kind: String,
+        /// Held coordinates are those of this pose.
+        #[serde(default)]
+        pose: Coordinates,
+        /// The working mode.
+        mode: Option<String>,
+        /// Of places: how far the orientations are from that of the pose, in the file's unit of angles.
+        turn: Option<f64>,
+    },
+    /// The motions that opm ships.
+    Motions {},
+    /// Follows a motion.
+    Motion {
+        /// The name of its file: a table of poses if it ends in `.csv`.
+        name: String,
+        /// The text of its file.
+        text: String,
+        /// The working mode, if the file gives none.
+        mode: Option<String>,
+    },
+}
+
+/// What the coordinates are in which a body is not drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Others {
+    /// Those of the pose.
+    Pose,
+    /// Any values of the fitted grid.
+    Any,
 }
 
 /// One axis of a plane grid: both ends are on the grid.

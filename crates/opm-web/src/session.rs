@@ -3,7 +3,7 @@
 use crate::explorer::Explorer;
 use crate::problem::Problems;
 use crate::request::Request;
-use crate::{description, forward, pose, workspace};
+use crate::{body, description, forward, kinds, motion, pose, workspace};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_workspace::Axis;
 use serde::Serialize;
@@ -46,6 +46,8 @@ pub struct Session {
     explorer: Option<Explorer>,
     /// The grid that was fitted last, for the mechanism as it was then.
     fitted: Vec<Axis>,
+    /// The grids that were fitted to kinds of workspace.
+    kinds: kinds::Grids,
 }
 
 impl Session {
@@ -64,6 +66,7 @@ impl Session {
             Request::Open { text, changes } => {
                 let explorer = self.explorer.insert(Explorer::open(&text, &changes)?);
                 self.fitted.clear();
+                self.kinds.clear();
                 Ok(description::describe(explorer))
             }
             Request::Change { changes } => {
@@ -89,12 +92,29 @@ impl Session {
             Request::Colours { x, y, pose, mode, by } => {
                 workspace::colours(self.explorer()?, [&x, &y], &pose, mode.as_deref(), &by)
             }
+            Request::Body { axes, others, pose, mode } => {
+                let (explorer, mode) = (self.explorer()?, mode.as_deref());
+                body::body(explorer, &self.fitted, &axes, others, &pose, mode)
+            }
+            Request::Kinds {} => Ok(kinds::kinds(self.explorer()?)),
+            Request::Kind { kind, pose, mode, turn } => {
+                let explorer = self.explorer.as_ref().ok_or_else(nothing_open)?;
+                kinds::count(explorer, &mut self.kinds, &kind, &pose, mode.as_deref(), turn)
+            }
+            Request::Motions {} => Ok(motion::shipped()),
+            Request::Motion { name, text, mode } => {
+                motion::follow(self.explorer()?, &name, &text, mode.as_deref())
+            }
         }
     }
 
     fn explorer(&self) -> Result<&Explorer, Problems> {
-        self.explorer.as_ref().ok_or_else(|| Problems::one("no mechanism is open"))
+        self.explorer.as_ref().ok_or_else(nothing_open)
     }
+}
+
+fn nothing_open() -> Problems {
+    Problems::one("no mechanism is open")
 }
 
 /// The mechanisms that opm ships.

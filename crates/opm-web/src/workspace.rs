@@ -91,7 +91,7 @@ pub fn whole(explorer: &Explorer, fitted: &[Axis], mode: Option<&str>) -> Result
     if fitted.is_empty() {
         return Err(Problems::one("no grid was fitted"));
     }
-    let workspace = workspace(explorer, fitted.to_vec(), mode)?;
+    let workspace = grid(explorer, fitted.to_vec(), mode)?;
     let count =
         workspace.sweep().count(&Progress::default()).map_err(|error| Problems::of(&error))?;
     let (measure, unit) = measure(explorer, &workspace, &count);
@@ -224,7 +224,7 @@ impl Plane {
             let number = coordinates.iter().position(|c| c.name == name)?;
             Some(Axis::fixed(&**name, at[number]))
         });
-        let workspace = workspace(explorer, given.into_iter().chain(fixed).collect(), mode)?;
+        let workspace = grid(explorer, given.into_iter().chain(fixed).collect(), mode)?;
         let [Some(x), Some(y)] = axes.map(number) else {
             return Err(Problems::one("an axis is not a task coordinate"));
         };
@@ -252,7 +252,7 @@ impl Plane {
 }
 
 /// The workspace over some axes in one mode.
-fn workspace(
+pub fn grid(
     explorer: &Explorer,
     axes: Vec<Axis>,
     mode: Option<&str>,

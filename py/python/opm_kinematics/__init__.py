@@ -2,7 +2,8 @@
 
 From a mechanism file :class:`Manipulator` finds the decomposition with imaginary joints, and solves inverse kinematics in
 closed form; :func:`sweep` finds which poses of a grid are reachable, :func:`trajectory` follows motions, :mod:`plot`
-draws, and :mod:`design` optimises. Arrays are float64, numbers SI units and radians.
+draws, :mod:`design` optimises, and :func:`explore` shows a mechanism in
+a browser or a notebook. Arrays are float64, numbers SI units and radians.
 
 >>> import opm_kinematics as opm
 >>> m = opm.examples.load("plano-spherical-5dof")
@@ -17,6 +18,7 @@ from ._native import (
     Assembly,
     Conditioning,
     Decomposition,
+    Explorer,
     Inscribed,
     Intersection,
     LegSplit,
@@ -36,6 +38,7 @@ from ._native import (
     Trajectory,
     Violation,
     __version__,
+    explore,
     measure,
     sweep,
     trajectory,
@@ -45,6 +48,7 @@ __all__ = [
     "Assembly",
     "Conditioning",
     "Decomposition",
+    "Explorer",
     "Inscribed",
     "Intersection",
     "LegSplit",
@@ -66,6 +70,7 @@ __all__ = [
     "__version__",
     "design",
     "examples",
+    "explore",
     "measure",
     "plot",
     "sweep",

@@ -10,6 +10,7 @@ __all__ = [
     "Assembly",
     "Conditioning",
     "Decomposition",
+    "Explorer",
     "Inscribed",
     "Intersection",
     "LegSplit",
@@ -32,6 +33,7 @@ __all__ = [
     "command",
     "example",
     "examples",
+    "explore",
     "measure",
     "sweep",
     "trajectory",
@@ -134,6 +136,34 @@ class TaskCoordinate:
         """``"m"`` or ``"rad"``."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Explorer:
+    """A page that shows a mechanism and its workspace in a browser, without a network: the file that ``opm explore`` writes.
+
+    In a notebook it shows itself, as the last value of a cell.
+    """
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+    @property
+    def html(self) -> str:
+        """The whole page: the text of an HTML file."""
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the page to a file, which is replaced if it exists.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Name of the file, which browsers want to end in ``.html``.
+
+        Raises
+        ------
+        OSError
+            The file cannot be written.
+        """
+    def _repr_html_(self) -> str: ...
 
 @final
 class Linkage:
@@ -570,6 +600,14 @@ class Manipulator:
         ------
         OpmError
             The mechanism has more than 32 two-valued choices.
+        """
+    def explore(self) -> Explorer:
+        """A page that shows the mechanism and its workspace in a browser, or as the value of a cell in a notebook.
+
+        Returns
+        -------
+        Explorer
+            :meth:`Explorer.save` writes it to a file, as ``opm explore`` does.
         """
     def _repr_html_(self) -> str: ...
     def inverse(self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None) -> Solutions:
@@ -1744,6 +1782,20 @@ def trajectory(
         message gives the index of the waypoint, counted from zero).
     """
 
+def explore(manipulator: Manipulator) -> Explorer:
+    """A page that shows a mechanism and its workspace in a browser: the mechanism in space, to be moved; slices and kinds of its
+    workspace, which follow every dimension; motions. The page needs no network.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+        The mechanism.
+
+    Returns
+    -------
+    Explorer
+        It shows itself in a notebook; :meth:`Explorer.save` writes it to a file.
+    """
 def examples() -> list[str]:
     """Names of the mechanisms that come with the package."""
 

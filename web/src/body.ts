@@ -1,0 +1,169 @@
+// The workspace as a body in three coordinates, in the space of the mechanism.
+
+import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, Vector3 } from "three";
+import { byId, element, grouped } from "./dom";
+import { lit } from "./materials";
+import type { BodyState } from "./state";
+import type { Description, Handles, WorkspaceBody } from "./types";
+import { factor } from "./units";
+
+/** How high the range of an angle is drawn, as a share of the size of the mechanism. */
+const HEIGHT = 0.9;
+
+/** The directions for coordinates that are no positions, in the order in which they are taken. */
+const FREE = [new Vector3(0, 0, 1), new Vector3(1, 0, 0), new Vector3(0, 1, 0)];
+
+export class BodyMesh {
+  readonly mesh: Mesh<BufferGeometry>;
+  private ranges: [number, number][] = [];
+
+  constructor() {
+    const material = lit("#009e73", DoubleSide);
+    material.uniforms["opacity"]!.value = 0.42;
+    material.transparent = true;
+    material.depthWrite = false;
+    this.mesh = new Mesh(new BufferGeometry(), material);
+    this.mesh.matrixAutoUpdate = false;
+    this.mesh.frustumCulled = false;
+    this.mesh.visible = false;
+  }
+
+  /** Takes a surface; the buffers stay the same where they are large enough. */
+  set({ corners, triangles, ranges }: WorkspaceBody, bytes: Uint8Array<ArrayBuffer>): void {
+    this.ranges = ranges;
+    const positions = new Float32Array(bytes.buffer, bytes.byteOffset, 3 * corners);
+    const numbers = new Uint32Array(bytes.buffer, bytes.byteOffset + 12 * corners, 3 * triangles);
+    const { geometry } = this.mesh;
+    this.room("position", corners).set(positions);
+    normals(positions, numbers, this.room("normal", corners));
+    let index = geometry.index;
+    if (!index || index.count < numbers.length) geometry.setIndex(index = new BufferAttribute(new Uint32Array(Math.ceil(1.5 * numbers.length)), 1));
+    (index.array as Uint32Array).set(numbers);
+    index.needsUpdate = true;
+    geometry.setDrawRange(0, numbers.length);
+  }
+
+  /** Puts the body where its coordinates are positions, and tells how the others are drawn. */
+  place(names: string[], description: Description, pose: Record<string, number>, handles: Handles, size: number): string {
+    const directions: (Vector3 | null)[] = names.map((name) => {
+      const move = handles.moves[description.coordinates.findIndex((coordinate) => coordinate.name === name)];
+      const shift = new Vector3(...(move?.shift ?? [0, 0, 0]));
+      return move && Math.hypot(...move.turn) < 1e-6 && Math.abs(shift.length() - 1) < 1e-6 ? shift : null;
+    });
+    const notes: string[] = [];
+    const used = directions.filter((direction) => direction !== null);
+    const columns = names.map((name, i) => {
+      const known = directions[i];
+      if (known) return known;
+      const free = FREE.map((axis) => used.reduce((rest, one) => rest.addScaledVector(one, -rest.dot(one)), axis.clone()));
+      const direction = (free.find((rest) => rest.length() > 0.3) ?? free[0]!).normalize();
+      used.push(direction);
+      const [low, high] = this.ranges[i] ?? [0, 1];
+      const { unit } = description.coordinates.find((coordinate) => coordinate.name === name)!;
+      notes.push(`${name} (${unit}) ${Math.abs(direction.z) > 0.7 ? "upwards" : "sideways"}`);
+      return direction.multiplyScalar((HEIGHT * size) / (high - low || 1));
+    });
+    const [a, b, c] = columns as [Vector3, Vector3, Vector3];
+    const at = new Vector3(...handles.at);
+    names.forEach((name, i) => {
+      const { home, unit } = description.coordinates.find((coordinate) => coordinate.name === name)!;
+      at.addScaledVector(columns[i]!, -(pose[name] ?? home) * factor(unit));
+    });
+    this.mesh.matrix = new Matrix4().makeBasis(a, b, c).setPosition(at);
+    this.mesh.matrixWorldNeedsUpdate = true;
+    if (!notes.length) return "It is in the base frame, for the platform's point.";
+    const others = names.filter((_, i) => directions[i]);
+    const where = others.length ? `${others.join(" and ")} in the base frame; ` : "";
+    return `${where}${notes.join(", ")}: no position, so that it has no place of its own there. The platform is at the present values.`;
+  }
+
+  /** The array of an attribute with room for this many vectors. */
+  private room(name: string, count: number): Float32Array {
+    const { geometry } = this.mesh;
+    let attribute = geometry.getAttribute(name) as BufferAttribute | undefined;
+    if (!attribute || attribute.count < count) {
+      attribute = new BufferAttribute(new Float32Array(Math.ceil(4.5 * count) + 3 - (Math.ceil(4.5 * count) % 3)), 3);
+      geometry.setAttribute(name, attribute);
+    }
+    attribute.needsUpdate = true;
+    return attribute.array as Float32Array;
+  }
+}
+
+/** The normals at the corners, as long as the triangles around them are large. */
+function normals(positions: Float32Array, triangles: Uint32Array, out: Float32Array): void {
+  out.fill(0);
+  for (let i = 0; i < triangles.length; i += 3) {
+    const [a, b, c] = [3 * triangles[i]!, 3 * triangles[i + 1]!, 3 * triangles[i + 2]!];
+    const u0 = positions[b]! - positions[a]!, u1 = positions[b + 1]! - positions[a + 1]!, u2 = positions[b + 2]! - positions[a + 2]!;
+    const v0 = positions[c]! - positions[a]!, v1 = positions[c + 1]! - positions[a + 1]!, v2 = positions[c + 2]! - positions[a + 2]!;
+    const n0 = u1 * v2 - u2 * v1, n1 = u2 * v0 - u0 * v2, n2 = u0 * v1 - u1 * v0;
+    for (const corner of [a, b, c]) {
+      out[corner]! += n0;
+      out[corner + 1]! += n1;
+      out[corner + 2]! += n2;
+    }
+  }
+}
+
+/** The controls of the body. */
+export class BodyPanel {
+  private readonly show = byId<HTMLInputElement>("body-show");
+  private readonly others = byId<HTMLSelectElement>("body-others");
+  private readonly axes = [0, 1, 2].map((i) => byId<HTMLSelectElement>(`body-${i}`));
+  private state!: BodyState;
+
+  constructor(changed: (body: BodyState) => void) {
+    this.show.addEventListener("change", () => changed({ ...this.state, show: this.show.checked }));
+    this.others.addEventListener("change", () => changed({ ...this.state, others: this.others.value as BodyState["others"] }));
+    this.axes.forEach((select, i) => select.addEventListener("change", () => {
+      const names = this.axes.map(({ value }) => value);
+      // A coordinate cannot be on two axes: they change places.
+      const before = this.chosen();
+      const twice = names.findIndex((name, other) => other !== i && name === select.value);
+      if (twice >= 0) names[twice] = before[i]!;
+      changed({ ...this.state, axes: names });
+    }));
+  }
+
+  private names: string[] = [];
+
+  build({ coordinates }: Description): void {
+    this.names = coordinates.map(({ name }) => name);
+    byId("body-panel").hidden = this.names.length < 3;
+    for (const select of this.axes) select.replaceChildren(...this.names.map((name) => element("option", { value: name }, name)));
+  }
+
+  /** The coordinates of the body: what was set, and else the first three. */
+  chosen(): string[] {
+    const { axes } = this.state;
+    const usable = axes && axes.length === 3 && new Set(axes).size === 3 && axes.every((name) => this.names.includes(name));
+    return usable ? axes : this.names.slice(0, 3);
+  }
+
+  /** Whether there is a body to show. */
+  get wanted(): boolean {
+    return this.state.show && this.names.length >= 3;
+  }
+
+  get over(): BodyState["others"] {
+    return this.state.others;
+  }
+
+  update(state: BodyState): void {
+    this.state = state;
+    this.show.checked = state.show;
+    this.others.value = state.others;
+    this.chosen().forEach((name, i) => (this.axes[i]!.value = name));
+    byId("body-facts").hidden = !this.wanted;
+  }
+
+  setBody({ inside, points, poses }: WorkspaceBody): void {
+    byId("body-count").textContent = `${inside} of ${points} points, from ${grouped(poses)} poses`;
+  }
+
+  setNote(note: string): void {
+    const box = byId("body-note");
+    if (box.textContent !== note) box.textContent = note;
+  }
+}

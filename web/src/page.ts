@@ -1,0 +1,469 @@
+// The page: what was asked for is the state, and two workers follow it. One solves poses, the other counts workspaces, so
+// that a long count never holds up the view.
+
+import { Assemblies } from "./assemblies";
+import { BodyMesh, BodyPanel } from "./body";
+import { Calm } from "./calm";
+import { DimensionPanel } from "./dimensions";
+import { byId, element, save, short } from "./dom";
+import { Refused } from "./engine";
+import { Follower, Loop } from "./follower";
+import { HandleSet } from "./handles";
+import { JointTable } from "./joints";
+import { KindPanel } from "./kinds";
+import { Player } from "./play";
+import { PosePanel } from "./pose";
+import { showProblems } from "./problems";
+import { SlicePanel } from "./slice";
+import { fromAddress, initial, toAddress, type State } from "./state";
+import { showModes, showStatus } from "./status";
+import { known, sliceAxes, Sweeper } from "./sweeper";
+import { connectToolbar, connectView } from "./toolbar";
+import type { Assembly, Counted, Description, Example, Kind, Posture, Problem, ShippedMotion } from "./types";
+import { Undo } from "./undo";
+import { View } from "./view";
+
+/** The mechanism file that the page carries. */
+export interface PageFile {
+  name: string;
+  text: string;
+}
+
+type Pose = Record<string, number>;
+
+export class Page {
+  private state: State = initial();
+  private description: Description | null = null;
+  /** The text of the file that is described. */
+  private described: string | null = null;
+  private posture: Posture | null = null;
+  private counted: Counted | null = null;
+  private examples: Example[] = [];
+  private shippedMotions: ShippedMotion[] = [];
+  private readonly poser: Follower;
+  private readonly sweeper: Sweeper;
+  private readonly view = new View(byId("view"));
+  private readonly handles = new HandleSet(this.view, byId("view"), {
+    pose: () => this.fullPose(), moved: (values, final) => this.move(values, final),
+  });
+  private readonly body = new BodyMesh();
+  private readonly pose = new PosePanel({ moved: (name, value, final) => this.move({ [name]: value }, final) });
+  private readonly joints = new JointTable({ driven: (name, value) => void this.drive(name, value) });
+  private readonly dimensions = new DimensionPanel({
+    changed: (name, values, final) => this.change({ ...this.state.changes, [name]: values }, final),
+  });
+  private readonly slice = new SlicePanel({
+    sliced: (slice, final) => this.set({ slice }, final), placed: (values, final) => this.move(values, final),
+  });
+  private readonly bodyPanel = new BodyPanel((body) => this.set({ body }, true));
+  private readonly kinds = new KindPanel((kind) => this.set({ kind }, true));
+  private readonly player = new Player({
+    chosen: () => this.follow(),
+    placed: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
+    pose: () => this.fullPose(),
+  });
+  private readonly assemblies = new Assemblies((assembly) => this.assemble(assembly));
+  private readonly table = new Calm(() => this.joints.update(this.posture, this.counted));
+  private readonly undo = new Undo();
+  private readonly posing = new Loop(() => this.stepPose(), (error) => this.fail(error), () => this.settle());
+  private readonly sweeping = new Loop(() => this.stepSweep(), (error) => this.fail(error), () => this.settle());
+  /** The number of joints that are being driven. */
+  private driving = 0;
+  private address = "";
+  /** The pose that was solved last, as a key. */
+  private solved = "";
+  private problems: Problem[] = [];
+  /** Problems that are still to be shown after the next mechanism is. */
+  private kept: Problem[] = [];
+  /** The name of the file that could not be opened. */
+  private name = "";
+  /** The state with which the mechanism that is shown was opened or changed. */
+  private good: State | null = null;
+
+  constructor(private readonly carried: PageFile | null, worker: string, library: ArrayBuffer) {
+    this.poser = new Follower(worker, library);
+    this.sweeper = new Sweeper(new Follower(worker, library), {
+      fitted: (fitted) => {
+        if (fitted) {
+          this.pose.setRanges(fitted.axes);
+          this.player.setRanges(fitted.axes);
+        } else this.slice.setWhole(this.counted = null);
+        this.show();
+      },
+      sliced: (shown) => this.slice.setSlice(shown),
+      counted: (counted) => {
+        this.counted = counted;
+        this.slice.setWhole(counted);
+        this.table.ask();
+      },
+      embodied: (body, bytes) => {
+        this.body.set(body, bytes);
+        this.bodyPanel.setBody(body);
+        this.placeBody();
+      },
+      kindCounted: (count) => {
+        this.kinds.setCount(count);
+        this.slice.setKind(count);
+      },
+      followed: (about, bytes) => this.player.set(about, bytes),
+      refused: (error) => this.fail(error),
+    });
+  }
+
+  async start(): Promise<void> {
+    this.view.scene.add(this.body.mesh);
+    this.connect();
+    const { engine } = this.poser;
+    this.examples = (await engine.ask<Example[]>({ do: "examples" })).value;
+    this.shippedMotions = (await engine.ask<ShippedMotion[]>({ do: "motions" })).value;
+    byId("examples").append(...this.examples.map(({ name, description }) => element("option", { value: name, title: description }, name)));
+    this.state = await fromAddress(location.hash);
+    this.undo.reset(this.state.changes);
+    this.follow();
+  }
+
+  // The state, and how it changes.
+
+  /** Sets a part of the state. A final one is a step that the browser goes back to. */
+  private set(patch: Partial<State>, final: boolean): void {
+    this.state = { ...this.state, ...patch };
+    if (final) void this.remember();
+    this.follow();
+  }
+
+  private move(values: Pose, final: boolean): void {
+    this.set({ pose: { ...this.state.pose, ...values } }, final);
+  }
+
+  private change(changes: State["changes"], final: boolean): void {
+    if (final) this.undo.step(changes);
+    this.set({ changes }, final);
+  }
+
+  private go(back: boolean): void {
+    const changes = this.undo.go(back);
+    if (changes) this.set({ changes }, true);
+  }
+
+  private open(source: State["source"]): void {
+    this.undo.reset({});
+    this.player.stop();
+    this.set({ ...initial(), source }, true);
+  }
+
+  /** Puts the state into the address, as a new step or in place of the last one. */
+  private async remember(instead = false): Promise<void> {
+    // In a frame of a notebook, the page has no address of its own.
+    if (location.protocol === "about:") return;
+    const address = await toAddress(this.state);
+    if (address === this.address) return;
+    this.address = address;
+    if (instead) history.replaceState(null, "", `#${address}`);
+    else history.pushState(null, "", `#${address}`);
+  }
+
+  /** Takes the state from the address, where the browser has gone back or forward. */
+  private async recall(): Promise<void> {
+    const hash = location.hash.replace(/^#/, "");
+    if (hash === this.address) return;
+    this.address = hash;
+    this.state = await fromAddress(hash);
+    this.undo.settled = this.state.changes;
+    this.follow();
+  }
+
+  /** Every coordinate of the pose. */
+  private fullPose(): Pose {
+    const home = this.description?.coordinates.map(({ name, home }) => [name, home]) ?? [];
+    return { ...(Object.fromEntries(home) as Pose), ...this.state.pose };
+  }
+
+  /** A working mode as the state has it: nothing for that of home. */
+  private asState(mode: string): string | null {
+    return mode === this.description?.home_mode ? null : mode;
+  }
+
+  // The workers follow the state.
+
+  /** Shows the state, and lets both workers go after it. */
+  private follow(): void {
+    document.body.dataset["ready"] = "false";
+    this.show();
+    void this.posing.start();
+    void this.sweeping.start();
+  }
+
+  /** Says that all that was asked for has been computed, where this is so. */
+  private settle(): void {
+    const ready = !this.posing.running && !this.sweeping.running && !this.driving;
+    if (ready) this.table.flush();
+    document.body.dataset["ready"] = String(ready);
+  }
+
+  /** The mechanism file of the state. */
+  private file(): PageFile {
+    const { source } = this.state;
+    if (source.kind === "text") return { name: source.name, text: source.text };
+    const wanted = source.kind === "example" ? source.name : undefined;
+    const example = this.examples.find(({ name }) => name === wanted) ?? this.examples[0];
+    if (wanted === undefined && this.carried) return this.carried;
+    return { name: `${example?.name ?? "mechanism"}.toml`, text: example?.text ?? "" };
+  }
+
+  private async stepPose(): Promise<void> {
+    const before = this.poser.text;
+    const asked = this.state;
+    const description = await this.poser.agree(this.file().text, asked.changes).catch((error: unknown) => {
+      if (!(error instanceof Refused) || this.poser.text === this.file().text) throw error;
+      this.stay(error.problems);
+      return null;
+    });
+    const another = before !== this.poser.text;
+    if (description) {
+      this.good = asked;
+      this.problems = this.kept;
+      this.kept = [];
+      if (!this.problems.length) this.name = "";
+      const kinds = another ? (await this.poser.engine.ask<Kind[]>({ do: "kinds" })).value : null;
+      this.described = this.poser.text;
+      this.take(description, kinds);
+      // The other worker may have come to it before its coordinates were known here.
+      void this.sweeping.start();
+    }
+    if (!this.description) return;
+    const pose = known(this.state.pose, this.description);
+    const key = JSON.stringify([this.poser.text, this.poser.changes, pose, this.state.mode]);
+    if (key === this.solved) return;
+    this.solved = key;
+    const { value, bytes } = await this.poser.engine.ask<Posture>({ do: "pose", pose, mode: this.state.mode });
+    if (value.reached) {
+      this.posture = value;
+      this.view.place(bytes);
+    }
+    if (description && another) this.view.fit(false);
+    this.showPosture(value);
+    this.showProblems();
+  }
+
+  private async stepSweep(): Promise<void> {
+    const { state, description } = this;
+    const { text } = this.file();
+    // Its coordinates have to be known; the other worker is told when they are.
+    if (!description || this.described !== text) return;
+    const body = this.bodyPanel.wanted ? this.bodyPanel.chosen() : null;
+    const wanted = { state, description, text, body, kind: this.kinds.wanted, motion: this.player.file };
+    await this.sweeper.step(wanted, () => this.sweeping.again);
+  }
+
+  // What is shown.
+
+  /** Takes a mechanism: another one, with its kinds of workspace, or the same one with other dimensions. */
+  private take(description: Description, kinds: Kind[] | null): void {
+    const names = ({ coordinates, joints, dimensions }: Description) =>
+      JSON.stringify([coordinates, dimensions.map(({ name, values }) => [name, values.length]), joints.map(({ name, limits }) => [name, limits])]);
+    const rebuilt = kinds || !this.description || names(this.description) !== names(description);
+    this.description = description;
+    const { name, lower, upper, intersection, mobility, imaginary_joints: imaginary } = description;
+    const motions = upper.dimension ? `${lower.name} and ${upper.name}, sharing a ${intersection.name}` : lower.name;
+    byId("summary").textContent = `Mobility ${mobility}: ${motions}; ${imaginary} imaginary joint${imaginary === 1 ? "" : "s"}`;
+    if (kinds) {
+      document.title = `${name} – opm explorer`;
+      byId("title").textContent = name;
+      this.posture = null;
+      this.assemblies.set([]);
+      this.pose.build(description);
+      this.dimensions.build(description);
+      this.slice.build(description);
+      this.bodyPanel.build(description);
+      this.kinds.build(kinds, description.angle);
+      this.player.build(description, this.shippedMotions);
+      byId("mode").replaceChildren(...description.modes.map((mode) => element("option", { value: mode }, mode || "the only one")));
+    }
+    if (rebuilt) {
+      this.joints.build(description);
+      this.joints.update(this.posture, this.counted);
+    }
+    this.view.setMechanism(description);
+    this.show();
+  }
+
+  private show(): void {
+    if (!this.description) return;
+    const { pose, changes, slice, body, kind, mode } = this.state;
+    this.pose.update(pose);
+    this.dimensions.update(this.description, changes);
+    this.slice.update(slice, sliceAxes(slice, this.sweeper.fitted, this.description), this.fullPose());
+    this.bodyPanel.update(body);
+    this.kinds.update(kind);
+    if (!this.kinds.wanted) this.slice.setKind(null);
+    this.placeBody();
+    byId<HTMLSelectElement>("mode").value = mode ?? this.description.home_mode;
+    byId<HTMLButtonElement>("undo").disabled = !this.undo.canUndo;
+    byId<HTMLButtonElement>("redo").disabled = !this.undo.canRedo;
+    byId<HTMLButtonElement>("reset").disabled = Object.keys(changes).length === 0;
+  }
+
+  /** Shows a posture. One out of reach leaves the last one that was reached, and says what is missing. */
+  private showPosture(posture: Posture): void {
+    const { description } = this;
+    if (!description) return;
+    showStatus(posture, description);
+    showModes(posture);
+    this.table.ask();
+    if (posture.handles) this.handles.set(description.coordinates, posture.handles, this.view.size);
+    this.placeBody();
+    description.dependent.forEach(({ name }, number) => {
+      const value = this.posture?.dependent[number];
+      byId(`dependent-${name}`).textContent = value === undefined ? "" : short(value);
+    });
+  }
+
+  /** Puts the body of the workspace beside the mechanism. */
+  private placeBody(): void {
+    const { posture, description, body, bodyPanel } = this;
+    const ready = bodyPanel.wanted && description && posture?.handles && this.sweeper.fitted;
+    body.mesh.visible = Boolean(ready);
+    // Where the pose is out of reach, the platform and the body stay.
+    if (ready && posture.reached) {
+      const note = body.place(bodyPanel.chosen(), description, this.fullPose(), posture.handles!, this.view.size);
+      bodyPanel.setNote(note);
+    }
+    this.view.draw();
+  }
+
+  private fail(error: unknown): void {
+    const problems = error instanceof Refused ? error.problems : [{ message: `The computation failed: ${String(error)}` }];
+    // Both workers refuse the same change.
+    if (same(problems, this.problems)) return;
+    this.problems = problems;
+    this.showProblems();
+    // An unknown mode is that of home.
+    if (this.state.mode !== null && problems.some(({ message }) => message.includes("mode"))) this.set({ mode: null }, false);
+    if (!this.description) byId("status").textContent = "No mechanism is shown.";
+  }
+
+  /** Stays at the mechanism that is shown, where another one cannot be opened. */
+  private stay(problems: Problem[]): void {
+    this.name = this.file().name;
+    if (this.good) {
+      this.state = this.good;
+      void this.remember(true);
+    } else if (Object.keys(this.state.changes).length) {
+      // A mechanism that a link cannot change is shown as its file has it.
+      this.kept = problems;
+      this.set({ changes: {} }, false);
+    } else byId("status").textContent = "No mechanism is shown.";
+    this.problems = problems;
+    this.showProblems();
+    this.show();
+  }
+
+  private showProblems(): void {
+    const refused = this.good !== null && !same(this.good.changes, this.state.changes);
+    showProblems(this.problems, this.name || this.file().name, refused, () => {
+      this.problems = [];
+      this.name = "";
+      if (refused && !same(this.state.changes, this.undo.settled)) this.set({ changes: this.undo.settled }, true);
+      else if (refused) this.go(true);
+      this.showProblems();
+    });
+  }
+
+  /** Moves an actuated joint, and the platform to the nearest pose that this allows. */
+  private async drive(name: string, value: number): Promise<void> {
+    if (!this.description || !this.posture) return;
+    const { values } = this.posture;
+    const actuated = this.description.joints.map((joint, number) => ({ joint, value: values[number]! }));
+    const joints = Object.fromEntries(actuated.filter(({ joint }) => joint.kind === "actuated").map(({ joint, value }) => [joint.name, value]));
+    joints[name] = value;
+    this.driving++;
+    this.settle();
+    try {
+      const request = { do: "forward", joints, pose: known(this.state.pose, this.description) };
+      const { assemblies } = (await this.poser.engine.ask<{ assemblies: Assembly[] }>(request)).value;
+      if (!this.assemblies.set(assemblies)) {
+        byId("status").classList.add("wrong");
+        byId("status").textContent = `No pose of the platform has ${name} = ${short(value)}.`;
+      }
+    } catch (error) {
+      this.fail(error);
+    }
+    this.driving--;
+    this.settle();
+  }
+
+  /** Goes to one of the assemblies for the present actuated joints. */
+  private assemble(assembly: Assembly): void {
+    if (!this.description) return;
+    const pose = this.description.coordinates.map(({ name }, i) => [name, Number(assembly.pose[i]!.toPrecision(12))]);
+    this.set({ pose: Object.fromEntries(pose) as Pose, mode: this.asState(assembly.mode) }, true);
+  }
+
+  // Buttons, menus, files.
+
+  private connect(): void {
+    connectView(this.view);
+    byId("share").hidden = location.protocol === "about:";
+    const handles = byId<HTMLInputElement>("handles");
+    handles.addEventListener("change", () => {
+      this.handles.group.visible = handles.checked;
+      this.view.draw();
+    });
+    connectToolbar({
+      home: () => this.set({ pose: {} }, true),
+      undo: (back) => this.go(back),
+      reset: () => this.change({}, true),
+      share: () => void this.share(),
+      themed: () => {
+        this.slice.draw();
+        this.player.draw();
+      },
+      mode: (mode) => this.set({ mode: this.asState(mode) }, true),
+      example: (name) => this.open({ kind: "example", name }),
+      save: (what) => void this.save(what),
+      opened: (name, text) => {
+        // A motion has a duration, or is a table.
+        const motion = /\.csv$/i.test(name) || /^\s*(duration|points|moves)\s*=|^\s*\[+\s*(coordinates|points|moves)/m.test(text);
+        if (motion && this.description) this.player.open({ name, text });
+        else this.open({ kind: "text", name, text });
+      },
+    });
+    window.addEventListener("popstate", () => void this.recall());
+    window.addEventListener("hashchange", () => void this.recall());
+  }
+
+  private async share(): Promise<void> {
+    await this.remember();
+    const button = byId("share");
+    try {
+      await navigator.clipboard.writeText(location.href);
+      button.textContent = "Copied";
+      setTimeout(() => (button.textContent = "Copy link"), 1500);
+    } catch {
+      prompt("The link to what is shown", location.href);
+    }
+  }
+
+  private async save(what: string): Promise<void> {
+    if (!this.description) return;
+    const { name, coordinates, joints } = this.description;
+    if (what === "mechanism") {
+      const { value } = await this.poser.engine.ask<string>({ do: "file" });
+      save(`${name}.toml`, value, "application/toml");
+    } else if (what === "slice-csv") save(`${name}-slice.csv`, this.slice.csv(), "text/csv");
+    else if (what === "slice-svg") save(`${name}-slice.svg`, this.slice.svg(), "image/svg+xml");
+    else if (what === "picture") {
+      const picture = await this.view.picture();
+      if (picture) save(`${name}.png`, picture, "image/png");
+    } else if (what === "pose" && this.posture) {
+      const pose = this.fullPose();
+      const values = [...coordinates.map(({ name }) => pose[name]), ...this.posture.values];
+      const head = [...coordinates, ...joints].map(({ name, unit }) => `${name} (${unit})`).join(",");
+      save(`${name}-pose.csv`, `${head}\n${values.join(",")}\n`, "text/csv");
+    }
+  }
+}
+
+function same(one: unknown, other: unknown): boolean {
+  return JSON.stringify(one) === JSON.stringify(other);
+}

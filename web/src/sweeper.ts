@@ -1,0 +1,163 @@
+// What the second worker computes: the slice, the whole workspace, the body, a kind of workspace, and motions. The page's
+// state is followed in this order, so that what changes fastest is never behind what takes long.
+
+import { Refused } from "./engine";
+import { Follower } from "./follower";
+import type { Shown } from "./slice";
+import type { SliceState, State } from "./state";
+import type { AxisRequest, Colours, Counted, Description, Fitted, Followed, KindCount, Slice, WorkspaceBody } from "./types";
+
+/** What is asked for, besides the state. */
+export interface Wanted {
+  state: State;
+  description: Description;
+  text: string;
+  /** The coordinates of the body; nothing if it is not shown. */
+  body: string[] | null;
+  kind: string | null;
+  motion: { name: string; text: string } | null;
+}
+
+export interface SweeperEvents {
+  fitted(fitted: Fitted | null): void;
+  sliced(shown: Shown): void;
+  counted(counted: Counted): void;
+  embodied(body: WorkspaceBody, bytes: Uint8Array<ArrayBuffer>): void;
+  kindCounted(count: KindCount | null): void;
+  followed(followed: Followed | null, bytes: Uint8Array<ArrayBuffer> | null): void;
+  /** A kind or a motion cannot be computed. */
+  refused(error: unknown): void;
+}
+
+export class Sweeper {
+  fitted: Fitted | null = null;
+  private shown: Shown | null = null;
+  /** What has been done, as keys. */
+  private done = new Map<string, string>();
+
+  constructor(private readonly follower: Follower, private readonly events: SweeperEvents) {}
+
+  /** Computes what is not yet as it is wanted, until there is something else to do. */
+  async step({ state, description, text, body, kind, motion }: Wanted, again: () => boolean): Promise<void> {
+    const { follower } = this;
+    const before = follower.text;
+    // The other worker tells what is wrong with the same mechanism.
+    await follower.agree(text, state.changes).catch((error: unknown) => {
+      if (!(error instanceof Refused)) throw error;
+    });
+    if (!follower.text) return;
+    if (before !== follower.text) this.done.clear();
+    const { mode } = state;
+    const mechanism = JSON.stringify([follower.text, follower.changes, mode]);
+    // The grid is fitted once for each mechanism file: while a dimension changes, counts on the same grid are compared.
+    await this.once("fit", follower.text, async () => {
+      this.fitted = null;
+      this.events.fitted(null);
+      this.fitted = (await follower.engine.ask<Fitted>({ do: "fit", mode })).value;
+      this.events.fitted(this.fitted);
+    });
+    if (!this.fitted) return;
+    const axes = sliceAxes(state.slice, this.fitted, description);
+    if (axes) await this.slice(mechanism, axes, state, description);
+    if (again()) return;
+    await this.once("whole", mechanism, async () => {
+      const { value, milliseconds } = await follower.engine.ask<Counted>({ do: "whole", mode });
+      document.body.dataset["wholeMs"] = milliseconds.toFixed(2);
+      this.events.counted(value);
+    });
+    if (again()) return;
+    const pose = known(state.pose, description);
+    if (body) {
+      const { others } = state.body;
+      const held = others === "pose" ? known(state.pose, description, body) : {};
+      await this.once("body", JSON.stringify([mechanism, body, others, held]), async () => {
+        const request = { do: "body", axes: body, others, pose: held, mode };
+        const { value, bytes, milliseconds } = await follower.engine.ask<WorkspaceBody>(request);
+        document.body.dataset["bodyMs"] = milliseconds.toFixed(2);
+        this.events.embodied(value, bytes);
+      });
+      if (again()) return;
+    }
+    if (axes) await this.colours(axes, state, description);
+    if (again()) return;
+    const { turn } = state.kind;
+    if (kind) {
+      await this.once("kind", JSON.stringify([mechanism, kind, turn, pose]), async () => {
+        const request = { do: "kind", kind, pose, mode, turn };
+        this.events.kindCounted((await follower.engine.ask<KindCount>(request)).value);
+      }, () => this.events.kindCounted(null));
+      if (again()) return;
+    } else this.done.delete("kind");
+    if (motion) {
+      await this.once("motion", JSON.stringify([mechanism, motion]), async () => {
+        const { value, bytes } = await follower.engine.ask<Followed>({ do: "motion", ...motion, mode });
+        this.events.followed(value, bytes);
+      }, () => this.events.followed(null, null));
+    } else this.done.delete("motion");
+  }
+
+  /** Does something unless it was done for the same key. Where it is refused, the page tells why. */
+  private async once(what: string, key: string, action: () => Promise<void>, refused?: () => void): Promise<void> {
+    if (this.done.get(what) === key) return;
+    this.done.set(what, key);
+    try {
+      await action();
+    } catch (error) {
+      if (!refused || !(error instanceof Refused)) throw error;
+      refused();
+      this.events.refused(error);
+    }
+  }
+
+  private async slice(mechanism: string, { x, y }: Axes, { pose, mode }: State, description: Description): Promise<void> {
+    const held = known(pose, description, [x.name, y.name]);
+    await this.once("slice", JSON.stringify([mechanism, x, y, held]), async () => {
+      const request = { do: "slice", x, y, pose: held, mode };
+      const { value, bytes, milliseconds } = await this.follower.engine.ask<Slice>(request);
+      document.body.dataset["sliceMs"] = milliseconds.toFixed(3);
+      this.shown = { x, y, slice: value, mask: bytes, colours: null };
+      this.done.delete("colours");
+      this.events.sliced(this.shown);
+    });
+  }
+
+  private async colours({ x, y }: Axes, { pose, mode, slice: { colour: by } }: State, description: Description): Promise<void> {
+    if (!this.shown) return;
+    const shown = this.shown;
+    await this.once("colours", JSON.stringify([this.done.get("slice"), by]), async () => {
+      if (by === "none" && !shown.colours) return;
+      const request = { do: "colours", x, y, pose: known(pose, description, [x.name, y.name]), mode, by };
+      const answer = by === "none" ? null : await this.follower.engine.ask<Colours>(request);
+      const colours = answer && { by, range: answer.value, numbers: new Float32Array(answer.bytes.buffer) };
+      this.shown = { ...shown, colours };
+      this.events.sliced(this.shown);
+    });
+  }
+}
+
+interface Axes {
+  x: AxisRequest;
+  y: AxisRequest;
+}
+
+/** The values of a pose that the mechanism knows, but for some coordinates. */
+export function known(pose: Record<string, number>, { coordinates }: Description, without: string[] = []): Record<string, number> {
+  const names = new Set(coordinates.map(({ name }) => name));
+  return Object.fromEntries(Object.entries(pose).filter(([name]) => names.has(name) && !without.includes(name)));
+}
+
+/** The axes of the slice: what was set, and else the range that holds the workspace. */
+export function sliceAxes(slice: SliceState, fitted: Fitted | null, description: Description | null): Axes | null {
+  if (!fitted || !description) return null;
+  const names = description.coordinates.map(({ name }) => name);
+  const x = slice.x !== null && names.includes(slice.x) ? slice.x : names[0];
+  const second = names.find((name) => name !== x);
+  const y = slice.y !== null && names.includes(slice.y) && slice.y !== x ? slice.y : second;
+  if (x === undefined || y === undefined) return null;
+  const axis = (name: string, end: "x" | "y", count: number): AxisRequest => {
+    const range = fitted.axes.find((axis) => axis.name === name) ?? { min: -1, max: 1 };
+    const wide = range.max > range.min ? range : { min: range.min - 1, max: range.max + 1 };
+    return { name, min: slice.ends[`${end}min`] ?? wide.min, max: slice.ends[`${end}max`] ?? wide.max, count };
+  };
+  return { x: axis(x, "x", slice.nx), y: axis(y, "y", slice.ny) };
+}
