@@ -6,8 +6,10 @@ int NAME_forward(const NAME_geometry *g, const NAME_real actuated[], unsigned mo
     real values[NAME_ACTUATED], off[NAME_ACTUATED], next[NAME_COORDINATES], step[NAME_COORDINATES];
     real jacobian[NAME_JOINTS * NAME_COORDINATES], a[NAME_ACTUATED * (NAME_COORDINATES + 1)];
     int i, j, iteration, closer = 1;
-    int status = NAME_actuated(g, pose, mode, values);
+    int status = NAME_numbers(actuated, NAME_ACTUATED);
     *residual = (real)INFINITY;
+    RETURN
+    status = NAME_actuated(g, pose, mode, values);
     RETURN
     *residual = NAME_off(g, actuated, values, off);
     for (iteration = 0; iteration < 50 && closer && *residual > NAME_REACH; ++iteration) {

@@ -13,7 +13,8 @@ const DECLARATION: &str = "
 /* The pose at which the actuated joints have given values, by Newton's method from a pose nearby, which it replaces; in the
    working mode of that. The residual is how far the actuated joints are off in the end, radians or sizes of the mechanism.
    It returns 0; what NAME_jacobian returns, where it cannot go on; 2 * NAME_LEGS + 1 where the actuated joints do not
-   determine the pose; or 2 * NAME_LEGS + 2 where it does not converge. Unless it returns 0, pose is the last one. */
+   determine the pose; 2 * NAME_LEGS + 2 where it does not converge; or -NAME_COORDINATES - i where actuated joint i, from 1, is
+   no number. Unless it returns 0, pose is the last one. */
 int NAME_forward(const NAME_geometry *geometry, const NAME_real actuated[], unsigned mode, NAME_real pose[],
                  NAME_real *residual);
 ";

@@ -42,7 +42,8 @@ int NAME_transform(const NAME_geometry *geometry, const NAME_real pose[], unsign
 int NAME_jacobian(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode,
                   NAME_real jacobian[NAME_JOINTS * NAME_COORDINATES]);
 
-/* The rates of all joints for given rates of the coordinates of the pose. It returns what NAME_jacobian returns. */
+/* The rates of all joints for given rates of the coordinates of the pose. It returns what NAME_jacobian returns; or
+   -NAME_COORDINATES - i where rate i, from 1, is no number. */
 int NAME_rates(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode, const NAME_real rates[],
                NAME_real joint_rates[]);
 FORWARD

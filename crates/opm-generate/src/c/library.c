@@ -1184,3 +1184,16 @@ static int NAME_eliminate(real a[], int rows, int unknowns, int sides, real x[])
     }
     return 0;
 }
+
+/* 0, or what is returned for values of which one is no number. */
+static int NAME_numbers(const real values[], int count)
+{
+    int i;
+    for (i = 0; i < count; ++i) {
+        /* Not true of a number that is none. */
+        if (!((double)NAME_abs(values[i]) <= NAME_LARGEST)) {
+            return -NAME_COORDINATES - (i + 1);
+        }
+    }
+    return 0;
+}

@@ -94,7 +94,8 @@ impl Writer<'_> {
              NAME_real jacobian[NAME_JOINTS * NAME_COORDINATES])\n{{\n{body}    return 0;\n}}\n\n\
              int NAME_rates(const NAME_geometry *g, const NAME_real pose[], unsigned mode, const NAME_real rates[],\n                 \
              NAME_real joint_rates[])\n{{\n    real jacobian[NAME_JOINTS * NAME_COORDINATES];\n    int i, j;\n    \
-             const int status = NAME_jacobian(g, pose, mode, jacobian);\n{RETURN}    \
+             int status = NAME_jacobian(g, pose, mode, jacobian);\n{RETURN}    \
+             status = NAME_numbers(rates, NAME_COORDINATES);\n{RETURN}    \
              for (i = 0; i < NAME_JOINTS; ++i) {{\n        joint_rates[i] = 0;\n        \
              for (j = 0; j < NAME_COORDINATES; ++j) {{\n            \
              joint_rates[i] += jacobian[i * NAME_COORDINATES + j] * rates[j];\n        }}\n    }}\n    return 0;\n}}\n\n"

@@ -99,6 +99,8 @@ pub struct Forward {
     pub status: f64,
     pub residual: f64,
     pub pose: Vec<f64>,
+    /// The status where the last actuated joint is no number.
+    pub refused: f64,
 }
 
 /// What answers a record of the input: a mode, a pose, and the next one.
@@ -158,6 +160,8 @@ const FORWARD: &str = "
     WRITE(NAME##_forward(g, actuated, mode, pose + NAME##_COORDINATES, &residual)); \\
     WRITE(residual); \\
     WRITE_ALL(pose + NAME##_COORDINATES, NAME##_COORDINATES); \\
+    actuated[NAME##_ACTUATED - 1] = (NAME##_real)NAN; \\
+    WRITE(NAME##_forward(g, actuated, mode, pose, &residual)); \\
 } while (0)
 #define NO_FORWARD(NAME) do { (void)residual; WRITE(0); } while (0)
 ";
@@ -168,8 +172,9 @@ impl Program {
         let compiler = compiler()?;
         let folder = tempfile::tempdir().expect("a directory for temporary files");
         let mut sources: Vec<PathBuf> = Vec::new();
-        let mut main =
-            String::from("#include <stdint.h>\n#include <stdio.h>\n#include <stdlib.h>\n");
+        let mut main = String::from(
+            "#include <math.h>\n#include <stdint.h>\n#include <stdio.h>\n#include <stdlib.h>\n",
+        );
         let mut calls = String::new();
         for (number, manipulator) in manipulators.iter().enumerate() {
             let code = opm_generate::c(manipulator).expect("few choices");
@@ -300,6 +305,7 @@ impl Answer {
                 status: one(take(1)),
                 residual: one(take(1)),
                 pose: take(shape.coordinates),
+                refused: one(take(1)),
             }),
         }
     }

@@ -134,6 +134,8 @@ impl<'a> Comparison<'a> {
     fn compare_forward(&mut self, question: &Question, answer: &Answer, gain: f64, place: &str) {
         let m = self.manipulator;
         let Some(forward) = &answer.forward else { return };
+        let numbers = m.task_coordinates().len() + m.actuated().len();
+        assert_eq!(forward.refused, -(numbers as f64), "{place}");
         // Random mechanisms may have actuated joints that do not determine the pose, and the start may be out of reach.
         let mut measured = m.singularities();
         m.measure_singularities(&self.jacobians, &mut measured);
@@ -464,13 +466,21 @@ fn nothing_is_undefined() {
             let mut questions = Drawn { rng: &mut rng, manipulator: m }.questions(300);
             let count = m.task_coordinates().len();
             let wrong = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e80, -1e80];
+            for (i, question) in questions.iter_mut().enumerate().take(100).skip(50) {
+                question.next[i % count] = wrong[i % 3];
+            }
             for (i, question) in questions.iter_mut().enumerate().skip(100) {
                 if real == Real::Double || !wrong[i % 5].is_finite() || i % 5 < 3 {
                     question.pose[i % count] = wrong[i % 5];
                     question.next[(i + 1) % count] = wrong[(i + 2) % 3];
                 }
             }
-            for (i, answer) in program.ask(number, &questions).iter().enumerate().skip(100) {
+            for (i, answer) in program.ask(number, &questions).iter().enumerate().skip(50) {
+                if i < 100 {
+                    let refused = -((count + i % count) as f64 + 1.0);
+                    assert!(answer.status != 0.0 || answer.rates_status == refused, "{answer:?}");
+                    continue;
+                }
                 if real == Real::Double || i % 5 < 3 {
                     assert_eq!(
                         answer.status,
