@@ -67,7 +67,7 @@ Examples:
   opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
   opm explore plano-spherical-5dof -o robot.html       a page for browsers, workspace and all
   opm export mjcf plano-spherical-5dof -o plano.xml    a model for MuJoCo, loops and all
-  opm generate c plano-spherical-5dof -o controller    inverse kinematics as C, for a controller
+  opm generate c plano-spherical-5dof -o controller    kinematics as C, for a controller
   opm help format                                      how to write a mechanism file";
 
 /// Options of every subcommand.

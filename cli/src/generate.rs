@@ -1,4 +1,4 @@
-//! `opm generate`: the inverse kinematics of a mechanism as source code.
+//! `opm generate`: the kinematics of a mechanism as source code.
 
 use crate::args::{CArgs, GenerateArgs, Language, Output};
 use crate::failure::Failure;
@@ -18,7 +18,8 @@ fn run_c(args: &CArgs, output: &Output) -> Result<(), Failure> {
     let code = opm_generate::c(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
     let folder = &args.output;
     fs::create_dir_all(folder).map_err(|error| Failure::at(folder.display(), error))?;
-    let files = code.files().map(|(name, text)| (folder.join(name), text));
+    let named = code.files().into_iter().map(|(name, text)| (folder.join(name), text));
+    let files: Vec<_> = named.collect();
     for (path, _) in &files {
         loaded.refuse_as_output(path, &[])?;
     }

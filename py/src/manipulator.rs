@@ -442,11 +442,12 @@ impl Manipulator {
         Ok(py.detach(|| mjcf(&Keyframes::of_manipulator(&self.inner), &options)))
     }
 
-    /// The closed-form inverse kinematics as C99 for a controller: the texts of the files, by name.
+    /// The closed-form kinematics as C99 for a controller: the texts of the files, by name.
     ///
     /// ``NAME.h`` and ``NAME.c`` are the code, which depends on ``math.h`` alone; NAME is the mechanism's name with ``_`` for
     /// what a name of C cannot have. ``NAME_test.c`` compares the code with the poses in ``NAME_golden.h``, and
-    /// ``CMakeLists.txt`` builds both. They are the files that ``opm generate c`` writes.
+    /// ``CMakeLists.txt`` builds both. ``NAME_linuxcnc.c`` is a kinematics module for LinuxCNC. They are the files that
+    /// ``opm generate c`` writes.
     ///
     /// Returns
     /// -------
@@ -459,7 +460,7 @@ impl Manipulator {
     ///     The mechanism has more than 32 two-valued choices.
     fn to_c(&self, py: Python<'_>) -> PyResult<BTreeMap<String, String>> {
         let code = py.detach(|| opm_generate::c(&self.inner)).map_err(|error| failed(&error))?;
-        Ok(code.files().map(|(name, text)| (name, text.to_owned())).into())
+        Ok(code.files().into_iter().map(|(name, text)| (name, text.to_owned())).collect())
     }
 
     /// A page that shows the mechanism and its workspace in a browser, or as the value of a cell in a notebook.

@@ -4,7 +4,7 @@ use super::MechanismArgs;
 use clap::{Subcommand, ValueHint};
 use std::path::PathBuf;
 
-/// Write the inverse kinematics of a mechanism as source code
+/// Write the kinematics of a mechanism as source code
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -21,15 +21,17 @@ pub enum Language {
     C(CArgs),
 }
 
-/// Write the inverse kinematics of a mechanism as C99 for a controller
+/// Write the kinematics of a mechanism as C99 for a controller
 ///
 /// The code depends on math.h alone: no heap, no global variables, a few hundred lines. Files and symbols have the
 /// mechanism's name, with _ for what a name of C cannot have. NAME.h says what each function does; NAME_inverse gives every
 /// joint at a pose in a working mode, as `opm ik` does, or the number of the leg that is out of reach. One line of NAME.h
 /// makes all numbers float. The geometry is one struct: numbers of a calibration need no new code.
 ///
-/// NAME_test.c compares the code with poses that opm solved, in NAME_golden.h; CMakeLists.txt builds both. Files that are
-/// there already are replaced.
+/// NAME_rates gives the joint rates, NAME_forward the pose for values of the actuated joints.
+///
+/// NAME_test.c compares the code with poses that opm solved, in NAME_golden.h; CMakeLists.txt builds both. NAME_linuxcnc.c is
+/// a kinematics module for LinuxCNC. Files that are there already are replaced.
 ///
 /// Nothing is printed; --format has no effect.
 #[derive(Debug, clap::Args)]
@@ -37,7 +39,7 @@ pub enum Language {
 Examples:
   opm generate c plano-spherical-5dof -o controller
   opm generate c my-mechanism.toml --set h=140mm -o src/kinematics
-  cc -std=c99 -O2 -o test controller/*.c -lm && ./test")]
+  cc -std=c99 -O2 -o test controller/NAME.c controller/NAME_test.c -lm && ./test")]
 pub struct CArgs {
     /// The mechanism.
     #[command(flatten)]

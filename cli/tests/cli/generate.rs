@@ -5,21 +5,25 @@ use crate::run::{Folder, opm, opm_reading};
 use std::fs;
 
 #[test]
-fn five_files_are_written_and_named() {
+fn six_files_are_written_and_named() {
     let folder = Folder::new();
     let into = folder.arg("deep/controller");
     let run = opm(&["generate", "c", "five-bar", "-o", &into]);
     assert_eq!(run.text(), "");
-    let names =
-        ["CMakeLists.txt", "five_bar.c", "five_bar.h", "five_bar_golden.h", "five_bar_test.c"];
+    let endings = [".c", ".h", "_golden.h", "_linuxcnc.c", "_test.c"];
+    let names = [
+        ["CMakeLists.txt".to_owned()].to_vec(),
+        endings.map(|end| format!("five_bar{end}")).to_vec(),
+    ];
+    let names = names.concat();
     let mut found: Vec<String> = fs::read_dir(&into)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     found.sort();
     assert_eq!(found, names);
-    for name in names {
-        assert!(run.stderr.contains(name), "{}", run.stderr);
+    for name in &names {
+        assert!(run.stderr.contains(&**name), "{}", run.stderr);
     }
     let header = folder.read("deep/controller/five_bar.h");
     assert!(header.contains("typedef double five_bar_real;"));

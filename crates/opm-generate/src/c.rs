@@ -4,13 +4,16 @@
 //! mechanism needs is written here: its geometry as one struct, and for each leg two functions that call those of the
 //! library, in the order in which the leg is solved.
 
+mod forward;
 mod geometry;
 mod golden;
 mod interface;
 mod leg;
 mod library;
+mod linuxcnc;
 mod nearest;
 mod pose;
+mod rates;
 mod steps;
 
 use crate::GenerateError;
@@ -30,7 +33,7 @@ use std::fmt::Write;
 /// The most choices: an `unsigned` has 32 bits where controllers have floating-point units.
 const MOST_CHOICES: u32 = 32;
 
-/// The inverse kinematics of one mechanism in C99.
+/// The kinematics of one mechanism in C99.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CCode {
     /// The prefix of every symbol, and the name of the files without their endings.
@@ -45,23 +48,30 @@ pub struct CCode {
     pub golden: String,
     /// What CMake builds: a library and the test.
     pub cmake: String,
+    /// A kinematics module for LinuxCNC; `None` where forward kinematics have no one pose to find, or LinuxCNC has too few axes
+    /// for it.
+    pub linuxcnc: Option<String>,
 }
 
 impl CCode {
     /// The names of the files, and what they hold.
-    pub fn files(&self) -> [(String, &str); 5] {
+    pub fn files(&self) -> Vec<(String, &str)> {
         let name = &self.name;
-        [
-            (format!("{name}.h"), &self.header),
-            (format!("{name}.c"), &self.source),
-            (format!("{name}_test.c"), &self.test),
-            (format!("{name}_golden.h"), &self.golden),
-            ("CMakeLists.txt".to_owned(), &self.cmake),
-        ]
+        let mut files = vec![
+            (format!("{name}.h"), &*self.header),
+            (format!("{name}.c"), &*self.source),
+            (format!("{name}_test.c"), &*self.test),
+            (format!("{name}_golden.h"), &*self.golden),
+            ("CMakeLists.txt".to_owned(), &*self.cmake),
+        ];
+        if let Some(module) = &self.linuxcnc {
+            files.push((format!("{name}_linuxcnc.c"), module));
+        }
+        files
     }
 }
 
-/// Writes the inverse kinematics of a mechanism in C99.
+/// Writes the kinematics of a mechanism in C99.
 ///
 /// # Errors
 /// The mechanism has more two-valued choices than an `unsigned` has bits.
@@ -78,7 +88,7 @@ pub fn c(manipulator: &Manipulator) -> Result<CCode, GenerateError> {
     let types = library::types(&format!("{definition}{}", library::functions(&body)));
     let header = format!(
         "{}#ifndef {guard}\n#define {guard}\n\n{}{types}{}{definition}\n{}\n#endif\n",
-        writer.head("The closed-form inverse kinematics of"),
+        writer.head("The closed-form kinematics of"),
         writer.scalars(),
         "/* The geometry of the mechanism, metres and radians. */\n",
         writer.declarations(),
@@ -86,7 +96,7 @@ pub fn c(manipulator: &Manipulator) -> Result<CCode, GenerateError> {
     );
     let source = format!(
         "{}#include \"{name}.h\"\n\n#include <math.h>\n\ntypedef NAME_real real;\n\n#define R(x) ((real)(x))\n\n{}\n{}{body}",
-        writer.head("The closed-form inverse kinematics of"),
+        writer.head("The closed-form kinematics of"),
         geometry.default_value(),
         library::functions(&body),
     );
@@ -99,7 +109,12 @@ pub fn c(manipulator: &Manipulator) -> Result<CCode, GenerateError> {
     );
     let golden = of_mechanism(&(golden::vectors(manipulator) + &golden::angles(manipulator)));
     let cmake = golden::cmake(&name);
-    Ok(CCode { name, header, source, test, golden, cmake })
+    let linuxcnc = writer.linuxcnc();
+    let linuxcnc = linuxcnc.map(|module| {
+        let [source, header] = ["c", "h"].map(|ending| format!("{name}.{ending}"));
+        of_mechanism(&module).replace("NAME.c", &source).replace("NAME.h", &header)
+    });
+    Ok(CCode { name, header, source, test, golden, cmake, linuxcnc })
 }
 
 /// What is known of a mechanism while its code is written. The code has the prefix of the library until it is complete.

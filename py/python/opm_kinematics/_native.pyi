@@ -585,11 +585,12 @@ class Manipulator:
             A number is not positive.
         """
     def to_c(self) -> dict[str, str]:
-        """The closed-form inverse kinematics as C99 for a controller: the texts of the files, by name.
+        """The closed-form kinematics as C99 for a controller: the texts of the files, by name.
 
         ``NAME.h`` and ``NAME.c`` are the code, which depends on ``math.h`` alone; NAME is the mechanism's name with ``_`` for
         what a name of C cannot have. ``NAME_test.c`` compares the code with the poses in ``NAME_golden.h``, and
-        ``CMakeLists.txt`` builds both. They are the files that ``opm generate c`` writes.
+        ``CMakeLists.txt`` builds both. ``NAME_linuxcnc.c`` is a kinematics module for LinuxCNC. They are the files that
+        ``opm generate c`` writes.
 
         Returns
         -------

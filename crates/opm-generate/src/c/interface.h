@@ -36,6 +36,18 @@ int NAME_limits(const NAME_geometry *geometry, const NAME_real joints[]);
 int NAME_transform(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode, NAME_real position[3],
                    NAME_real rotation[9]);
 
+/* The rates of all joints for unit rates of the coordinates of the pose: entry i * NAME_COORDINATES + j is that of joint i by
+   coordinate j, rad/s and m/s. It returns what NAME_inverse returns; or NAME_LEGS + i where leg i, from 1, is singular; or
+   2 * NAME_LEGS + 1 where coordinates that follow from those of the pose have no rates. */
+int NAME_jacobian(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode,
+                  NAME_real jacobian[NAME_JOINTS * NAME_COORDINATES]);
+
+/* The rates of all joints for given rates of the coordinates of the pose. It returns what NAME_jacobian returns; or
+   -NAME_COORDINATES - i where rate i, from 1, is no number. */
+int NAME_rates(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode, const NAME_real rates[],
+               NAME_real joint_rates[]);
+FORWARD
+
 #ifdef __cplusplus
 }
 #endif

@@ -31,7 +31,9 @@ impl Writer<'_> {
             self.nearest(),
             self.deficits(),
             self.limits(),
-            self.transform(),
+            self.transform() + "\n",
+            self.rates(),
+            self.forward(),
         ];
         parts.concat()
     }
@@ -349,7 +351,7 @@ impl Writer<'_> {
             true => "There is one mode, 0.".to_owned(),
             false => format!("At home it is {}: {signs}.", m.home_mode().bits()),
         };
-        INTERFACE.replace("MODE", &signs)
+        INTERFACE.replace("MODE", &signs).replace("FORWARD\n", self.forward_declaration())
     }
 }
 

@@ -1001,3 +1001,199 @@ static int NAME_check(const real pose[])
     }
     return 0;
 }
+
+/* A singular system has a pivot below this share: its rates would be rounding. */
+#define NAME_SINGULAR ((real)(sizeof(real) == sizeof(float) ? 1e-4 : 1e-6))
+
+/* Three screws of a section, in its frame: rotation and velocity of the origin in a plane, on an axis; three rotations about
+   a point; two or three velocities. */
+typedef struct { NAME_vector s1, s2, s3; } NAME_screws;
+
+/* The twists of the two sections, in their frames, and the rate of the height. */
+typedef struct { NAME_vector lower, upper; real rise; } NAME_twists;
+
+static inline NAME_twists NAME_twists_of(NAME_vector lower, NAME_vector upper, real rise)
+{
+    NAME_twists t;
+    t.lower = lower;
+    t.upper = upper;
+    t.rise = rise;
+    return t;
+}
+
+/* Ad(g) s */
+static inline NAME_vector NAME_planar_adjoint(NAME_planar g, NAME_vector s)
+{
+    const NAME_complex moved = NAME_times(g.rotation, NAME_complex_of(s.y, s.z));
+    return NAME_vector_of(s.x, moved.re + s.x * g.translation.im, moved.im - s.x * g.translation.re);
+}
+
+/* The screw of a pivot. */
+static inline NAME_vector NAME_pivot_screw(NAME_pivot p)
+{
+    return NAME_vector_of(p.sense, p.sense * p.at.im, -p.sense * p.at.re);
+}
+
+/* The screw of a slider. */
+static inline NAME_vector NAME_slider_screw(NAME_complex d)
+{
+    return NAME_vector_of(0, d.re, d.im);
+}
+
+/* What a pivot does at an angle, which is given as a direction. */
+static inline NAME_planar NAME_pivot_motion(NAME_pivot p, NAME_complex q)
+{
+    const NAME_complex turn = NAME_turn(NAME_normal(q), p.sense);
+    return NAME_planar_of(turn, NAME_minus(p.at, NAME_times(turn, p.at)));
+}
+
+/* What a slider does. */
+static inline NAME_planar NAME_slider_motion(NAME_complex d, real q)
+{
+    return NAME_planar_of(NAME_complex_of(1, 0), NAME_scaled(d, q));
+}
+
+/* A screw with its second and third component over a unit. */
+static inline NAME_vector NAME_per_unit(NAME_vector s, real unit)
+{
+    return NAME_vector_of(s.x, s.y / unit, s.z / unit);
+}
+
+/* A vector perpendicular to another one. */
+static inline NAME_vector NAME_perpendicular(NAME_vector s)
+{
+    const real x = NAME_abs(s.x), y = NAME_abs(s.y), z = NAME_abs(s.z);
+    if (x <= y && x <= z) {
+        return NAME_vector_of(0, s.z, -s.y);
+    }
+    return y <= z ? NAME_vector_of(-s.z, 0, s.x) : NAME_vector_of(s.y, -s.x, 0);
+}
+
+static inline NAME_vector NAME_normal_vector(NAME_vector s)
+{
+    const real length = NAME_sqrt(NAME_dot(s, s));
+    return NAME_add(NAME_vector_of(0, 0, 0), length > 0 ? 1 / length : 0, s);
+}
+
+/* Replaces screws by their reciprocal ones: the dot product of two is 1 if they belong together, and 0 otherwise. Of the three
+   screws, count are given; perpendicular ones complete them, which joints would have that the section lacks. Rotations are
+   compared with velocities over the unit. It returns 1 where the screws are dependent. */
+static int NAME_reciprocal(NAME_screws *s, int count, real unit)
+{
+    const NAME_vector third = NAME_vector_of(0, 0, 1);
+    NAME_vector s1 = NAME_per_unit(s->s1, unit), s2 = NAME_per_unit(s->s2, unit), s3 = NAME_per_unit(s->s3, unit);
+    NAME_vector r1, r2, r3;
+    real determinant, product;
+    if (count < 1) {
+        s1 = third;
+    }
+    if (count < 2) {
+        s2 = NAME_normal_vector(NAME_perpendicular(s1));
+    }
+    if (count < 3) {
+        s3 = NAME_normal_vector(NAME_cross(s1, s2));
+    }
+    r1 = NAME_cross(s2, s3);
+    r2 = NAME_cross(s3, s1);
+    r3 = NAME_cross(s1, s2);
+    determinant = NAME_dot(s1, r1);
+    product = NAME_sqrt(NAME_dot(s1, s1) * NAME_dot(s2, s2) * NAME_dot(s3, s3));
+    if (!(NAME_abs(determinant) > NAME_SINGULAR * product)) {
+        return 1;
+    }
+    s->s1 = NAME_per_unit(NAME_add(NAME_vector_of(0, 0, 0), 1 / determinant, r1), unit);
+    s->s2 = NAME_per_unit(NAME_add(NAME_vector_of(0, 0, 0), 1 / determinant, r2), unit);
+    s->s3 = NAME_per_unit(NAME_add(NAME_vector_of(0, 0, 0), 1 / determinant, r3), unit);
+    return 0;
+}
+
+/* The rows that give the rates of a rotation vector r, in base coordinates, from the angular velocity w, in the section's:
+   w - r x w / 2 + c r x (r x w), c = (1 - (q / 2) cot (q / 2)) / q^2 with q = |r|. */
+static void NAME_rotation_vector_rates(NAME_rotation axes, NAME_vector r, NAME_screws *rows)
+{
+    const NAME_rotation back = NAME_transposed(axes);
+    const real square = NAME_dot(r, r), half = NAME_sqrt(square) / 2;
+    /* The series, where the closed form would cancel. */
+    const real series = 1 / (real)12 + square * (1 / (real)720 + square * (1 / (real)30240 + square * (1 / (real)1209600
+                      + square * (1 / (real)47900160 + square * (691 / (real)1307674368000.0)))));
+    const real c = half < (real)0.2 ? series : (1 - half * NAME_cos(half) / NAME_sin(half)) / square;
+    const real across = 1 - c * square;
+    const NAME_vector x = NAME_vector_of(across + c * r.x * r.x, c * r.x * r.y + r.z / 2, c * r.x * r.z - r.y / 2);
+    const NAME_vector y = NAME_vector_of(c * r.y * r.x - r.z / 2, across + c * r.y * r.y, c * r.y * r.z + r.x / 2);
+    const NAME_vector z = NAME_vector_of(c * r.z * r.x + r.y / 2, c * r.z * r.y - r.x / 2, across + c * r.z * r.z);
+    rows->s1 = NAME_rotated(back, x);
+    rows->s2 = NAME_rotated(back, y);
+    rows->s3 = NAME_rotated(back, z);
+}
+
+/* The screws of the Euler angles. */
+static inline NAME_screws NAME_euler_screws(real zeta, real xi)
+{
+    const NAME_complex z = NAME_unit(zeta), x = NAME_unit(xi);
+    NAME_screws s;
+    s.s1 = NAME_vector_of(0, 0, 1);
+    s.s2 = NAME_vector_of(-z.im, z.re, 0);
+    s.s3 = NAME_vector_of(z.re * x.im, z.im * x.im, x.re);
+    return s;
+}
+
+/* Solves linear equations in unknowns, with right sides behind the coefficients in each row, by elimination with complete
+   pivoting. There are at least as many equations as unknowns; those that are left over must follow from the others. Row i of x
+   has unknown i for each right side. Coefficients are compared with one. It returns 1 where the unknowns are not determined. */
+static int NAME_eliminate(real a[], int rows, int unknowns, int sides, real x[])
+{
+    const int width = unknowns + sides;
+    int place[6], i, j, k;
+    for (j = 0; j < unknowns; ++j) {
+        place[j] = -1;
+    }
+    for (k = 0; k < unknowns; ++k) {
+        int row = k, column = 0;
+        real most = 0;
+        for (i = k; i < rows; ++i) {
+            for (j = 0; j < unknowns; ++j) {
+                if (place[j] < 0 && NAME_abs(a[i * width + j]) > most) {
+                    most = NAME_abs(a[i * width + j]);
+                    row = i;
+                    column = j;
+                }
+            }
+        }
+        if (!(most > NAME_SINGULAR)) {
+            return 1;
+        }
+        place[column] = k;
+        for (j = 0; j < width; ++j) {
+            const real swapped = a[row * width + j];
+            a[row * width + j] = a[k * width + j];
+            a[k * width + j] = swapped;
+        }
+        for (i = 0; i < rows; ++i) {
+            const real factor = a[i * width + column] / a[k * width + column];
+            if (i != k) {
+                for (j = 0; j < width; ++j) {
+                    a[i * width + j] -= factor * a[k * width + j];
+                }
+            }
+        }
+    }
+    for (j = 0; j < unknowns; ++j) {
+        for (i = 0; i < sides; ++i) {
+            x[j * sides + i] = a[place[j] * width + unknowns + i] / a[place[j] * width + j];
+        }
+    }
+    return 0;
+}
+
+/* 0, or what is returned for values of which one is no number. */
+static int NAME_numbers(const real values[], int count)
+{
+    int i;
+    for (i = 0; i < count; ++i) {
+        /* Not true of a number that is none. */
+        if (!((double)NAME_abs(values[i]) <= NAME_LARGEST)) {
+            return -NAME_COORDINATES - (i + 1);
+        }
+    }
+    return 0;
+}

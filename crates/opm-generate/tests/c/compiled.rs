@@ -83,13 +83,31 @@ pub struct Answer {
     pub nearest_mode: f64,
     pub nearest_joints: Vec<f64>,
     pub nearest_imaginary: Vec<f64>,
+    /// Of `NAME_jacobian`.
+    pub jacobian_status: f64,
+    pub jacobian: Vec<f64>,
+    /// Of `NAME_rates`, for the coordinates of the next pose as rates.
+    pub rates_status: f64,
+    pub rates: Vec<f64>,
+    /// Of `NAME_forward`, from the next pose to the actuated joints; nothing where there is no such function.
+    pub forward: Option<Forward>,
+}
+
+/// What `NAME_forward` returns and writes.
+#[derive(Debug)]
+pub struct Forward {
+    pub status: f64,
+    pub residual: f64,
+    pub pose: Vec<f64>,
+    /// The status where the last actuated joint is no number.
+    pub refused: f64,
 }
 
 /// What answers a record of the input: a mode, a pose, and the next one.
 const RUN: &str = "
 #define WRITE(value) do { double out = (double)(value); fwrite(&out, sizeof out, 1, stdout); } while (0)
 #define WRITE_ALL(values, count) do { for (i = 0; i < (count); ++i) WRITE((values)[i]); } while (0)
-#define RUN(NAME) do { \\
+#define RUN(NAME, FORWARD) do { \\
     uint32_t mode; \\
     double given[2 * NAME##_COORDINATES]; \\
     int i, status; \\
@@ -98,6 +116,8 @@ const RUN: &str = "
         NAME##_real pose[2 * NAME##_COORDINATES], joints[NAME##_JOINTS], imaginary[NAME##_IMAGINARY + 1]; \\
         NAME##_real actuated[NAME##_ACTUATED + 1], deficits[2 * NAME##_LEGS], position[3], rotation[9]; \\
         NAME##_real next[NAME##_JOINTS], next_imaginary[NAME##_IMAGINARY + 1]; \\
+        NAME##_real jacobian[NAME##_JOINTS * NAME##_COORDINATES]; \\
+        NAME##_real residual = -77; \\
         unsigned next_mode = 0; \\
         if (fread(given, sizeof given, 1, stdin) != 1) return 2; \\
         for (i = 0; i < 2 * NAME##_COORDINATES; ++i) pose[i] = (NAME##_real)given[i]; \\
@@ -123,8 +143,27 @@ const RUN: &str = "
         WRITE(next_mode); \\
         WRITE_ALL(next, NAME##_JOINTS); \\
         WRITE_ALL(next_imaginary, NAME##_IMAGINARY); \\
+        for (i = 0; i < NAME##_JOINTS * NAME##_COORDINATES; ++i) jacobian[i] = -77; \\
+        WRITE(NAME##_jacobian(g, pose, mode, jacobian)); \\
+        WRITE_ALL(jacobian, NAME##_JOINTS * NAME##_COORDINATES); \\
+        WRITE(NAME##_rates(g, pose, mode, pose + NAME##_COORDINATES, next)); \\
+        WRITE_ALL(next, NAME##_JOINTS); \\
+        FORWARD(NAME); \\
     } \\
 } while (0)
+";
+
+/// What answers the question for the forward kinematics.
+const FORWARD: &str = "
+#define FORWARD(NAME) do { \\
+    WRITE(1); \\
+    WRITE(NAME##_forward(g, actuated, mode, pose + NAME##_COORDINATES, &residual)); \\
+    WRITE(residual); \\
+    WRITE_ALL(pose + NAME##_COORDINATES, NAME##_COORDINATES); \\
+    actuated[NAME##_ACTUATED - 1] = (NAME##_real)NAN; \\
+    WRITE(NAME##_forward(g, actuated, mode, pose, &residual)); \\
+} while (0)
+#define NO_FORWARD(NAME) do { (void)residual; WRITE(0); } while (0)
 ";
 
 impl Program {
@@ -133,13 +172,17 @@ impl Program {
         let compiler = compiler()?;
         let folder = tempfile::tempdir().expect("a directory for temporary files");
         let mut sources: Vec<PathBuf> = Vec::new();
-        let mut main =
-            String::from("#include <stdint.h>\n#include <stdio.h>\n#include <stdlib.h>\n");
+        let mut main = String::from(
+            "#include <math.h>\n#include <stdint.h>\n#include <stdio.h>\n#include <stdlib.h>\n",
+        );
         let mut calls = String::new();
         for (number, manipulator) in manipulators.iter().enumerate() {
             let code = opm_generate::c(manipulator).expect("few choices");
             for (name, text) in code.files() {
-                if name.ends_with("_test.c") || name == "CMakeLists.txt" {
+                if ["_test.c", "_linuxcnc.c", "CMakeLists.txt"]
+                    .iter()
+                    .any(|end| name.ends_with(end))
+                {
                     continue;
                 }
                 let text = match real {
@@ -160,12 +203,14 @@ impl Program {
                 }
             }
             let name = &code.name;
+            let has_forward = code.header.contains("_forward(");
+            let forward = if has_forward { "FORWARD" } else { "NO_FORWARD" };
             let _ = writeln!(main, "#include \"{name}.h\"");
-            let _ = writeln!(calls, "    case {number}: RUN({name}); break;");
+            let _ = writeln!(calls, "    case {number}: RUN({name}, {forward}); break;");
         }
         let _ = write!(
             main,
-            "{RUN}int main(int argc, char **argv)\n{{\n    if (argc != 2) return 2;\n    switch (atoi(argv[1])) {{\n{calls}    \
+            "{FORWARD}{RUN}int main(int argc, char **argv)\n{{\n    if (argc != 2) return 2;\n    switch (atoi(argv[1])) {{\n{calls}    \
              default: return 2;\n    }}\n    return 0;\n}}\n"
         );
         let driver = folder.path().join("driver.c");
@@ -252,6 +297,16 @@ impl Answer {
             nearest_mode: one(take(1)),
             nearest_joints: take(shape.joints),
             nearest_imaginary: take(shape.imaginary),
+            jacobian_status: one(take(1)),
+            jacobian: take(shape.joints * shape.coordinates),
+            rates_status: one(take(1)),
+            rates: take(shape.joints),
+            forward: (one(take(1)) == 1.0).then(|| Forward {
+                status: one(take(1)),
+                residual: one(take(1)),
+                pose: take(shape.coordinates),
+                refused: one(take(1)),
+            }),
         }
     }
 }
@@ -278,4 +333,131 @@ pub fn programs_of(code: &opm_generate::CCode, sources: &[&str]) -> Option<Vec<(
         (done.status.success(), String::from_utf8_lossy(&done.stdout).into_owned())
     };
     Some(sources.iter().map(run).collect())
+}
+
+/// Compiles the source files of several mechanisms with a compiler, the strict warnings, and the flags of a standard, without
+/// making a program: what the compiler says. `None` where there is no such compiler.
+pub fn compiled_by(
+    compiler: &str,
+    flags: &[&str],
+    codes: &[opm_generate::CCode],
+) -> Option<String> {
+    if !Command::new(compiler).arg("--version").output().is_ok_and(|run| run.status.success()) {
+        println!("skipped: there is no {compiler}");
+        return None;
+    }
+    let folder = tempfile::tempdir().expect("a directory for temporary files");
+    let mut sources = Vec::new();
+    for code in codes {
+        for (name, text) in code.files() {
+            std::fs::write(folder.path().join(&name), text).expect("a file in it");
+        }
+        sources.extend([".c", "_test.c"].map(|ending| format!("{}{ending}", code.name)));
+    }
+    let done = Command::new(compiler)
+        .args(&STRICT[1..])
+        .args(["-Werror", "-O1", "-fsyntax-only"])
+        .args(flags)
+        .args(&sources)
+        .current_dir(folder.path())
+        .output()
+        .expect("a compiler that runs");
+    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.success(), told.is_empty(), "{told}");
+    Some(told)
+}
+
+/// What the module for LinuxCNC includes, and what it needs of it: declarations alone.
+const LINUXCNC: [(&str, &str); 4] = [
+    (
+        "kinematics.h",
+        "typedef struct { double x, y, z; } PmCartesian;
+         typedef struct EmcPose { PmCartesian tran; double a, b, c, u, v, w; } EmcPose;
+         typedef enum { KINEMATICS_IDENTITY = 1, KINEMATICS_FORWARD_ONLY, KINEMATICS_INVERSE_ONLY, KINEMATICS_BOTH } KINEMATICS_TYPE;
+         typedef unsigned long int KINEMATICS_FORWARD_FLAGS;
+         typedef unsigned long int KINEMATICS_INVERSE_FLAGS;
+         extern int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATICS_FORWARD_FLAGS *fflags,
+                                      KINEMATICS_INVERSE_FLAGS *iflags);
+         extern int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *iflags,
+                                      KINEMATICS_FORWARD_FLAGS *fflags);
+         extern KINEMATICS_TYPE kinematicsType(void);
+         extern int kinematicsSwitchable(void);
+         extern int kinematicsSwitch(int type);
+         #define KINS_NOT_SWITCHABLE int kinematicsSwitchable(void) { return 0; } int kinematicsSwitch(int type) { (void)type; return 0; }
+         ",
+    ),
+    ("hal.h", "int hal_init(const char *name);\nint hal_ready(int id);\nint hal_exit(int id);\n"),
+    ("rtapi.h", "#define RTAPI_MP_INT(name, text) extern const int name##_is_a_parameter\n"),
+    (
+        "rtapi_app.h",
+        "#define EXPORT_SYMBOL(name) extern const int name##_is_exported\n#define MODULE_LICENSE(text) extern const int is_licensed\n\
+         int rtapi_app_main(void);\nvoid rtapi_app_exit(void);\n",
+    ),
+];
+
+/// Asks the module for the joints of a pose in LinuxCNC's order of axes, then for the pose of these joints.
+const ASK_LINUXCNC: &str = "
+#include <stdio.h>
+#include \"kinematics.h\"
+#include \"hal.h\"
+#include \"rtapi_app.h\"
+int hal_init(const char *name) { return name[0] ? 7 : -1; }
+int hal_ready(int id) { return id - 7; }
+int hal_exit(int id) { return id - 7; }
+int main(void)
+{
+    double p[9], joints[16] = { 0 };
+    struct EmcPose world, near;
+    KINEMATICS_FORWARD_FLAGS forward = 0;
+    KINEMATICS_INVERSE_FLAGS inverse = 0;
+    int i, status;
+    if (rtapi_app_main() != 0 || kinematicsType() != KINEMATICS_BOTH) return 2;
+    for (i = 0; i < 9; ++i) if (scanf(\"%lf\", &p[i]) != 1) return 3;
+    world.tran.x = p[0]; world.tran.y = p[1]; world.tran.z = p[2];
+    world.a = p[3]; world.b = p[4]; world.c = p[5];
+    world.u = p[6]; world.v = p[7]; world.w = p[8];
+    status = kinematicsInverse(&world, joints, &inverse, &forward);
+    printf(\"%d\", status);
+    for (i = 0; i < 16; ++i) printf(\" %.17g\", joints[i]);
+    near = world;
+    near.tran.x += 1; near.tran.y -= 1; near.tran.z += 1;
+    near.a += 0.5; near.b -= 0.5; near.c += 0.5;
+    near.u += 1; near.v -= 1; near.w += 1;
+    status = kinematicsForward(joints, &near, &forward, &inverse);
+    printf(\" %d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\\n\", status, near.tran.x, near.tran.y, near.tran.z,
+           near.a, near.b, near.c, near.u, near.v, near.w);
+    rtapi_app_exit();
+    return 0;
+}
+";
+
+/// What a mechanism's module for LinuxCNC answers for a pose of nine axes: a status, sixteen joints, a status, nine axes.
+pub fn linuxcnc(code: &opm_generate::CCode, axes: [f64; 9]) -> Option<Vec<f64>> {
+    let compiler = compiler()?;
+    let folder = tempfile::tempdir().expect("a directory for temporary files");
+    let write = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).expect("a file in it");
+    };
+    code.files().iter().for_each(|(name, text)| write(name, text));
+    LINUXCNC.iter().for_each(|(name, text)| write(name, text));
+    write("ask.c", ASK_LINUXCNC);
+    let module = format!("{}_linuxcnc.c", code.name);
+    let built = Command::new(&compiler)
+        .args(STRICT)
+        .args(["-Werror", "-I.", "-o", "ask", "ask.c", &module, "-lm"])
+        .current_dir(folder.path())
+        .output()
+        .expect("a compiler that runs");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let mut child = Command::new(folder.path().join("ask"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("it runs");
+    let text: String = axes.iter().map(|axis| format!("{axis:?} ")).collect();
+    child.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("it reads");
+    let done = child.wait_with_output().expect("it ends");
+    assert!(done.status.success(), "{}", done.status);
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    Some(told.split_whitespace().map(|number| number.parse().expect("a number")).collect())
 }

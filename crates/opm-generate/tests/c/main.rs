@@ -3,11 +3,12 @@
 mod compiled;
 mod drawn;
 
-use compiled::{Answer, Program, Question, Real, programs_of};
+use compiled::{Answer, Program, Question, Real, compiled_by, linuxcnc, programs_of};
 use drawn::{Drawn, random_mechanisms, shipped};
 use fastrand::Rng;
 use opm_core::manipulator::{ActuatedJoints, Solution};
 use opm_core::nalgebra::Isometry3;
+use opm_core::velocity::Jacobians;
 use opm_core::{Manipulator, Mode, Quantity};
 use std::f64::consts::{PI, TAU};
 
@@ -15,6 +16,9 @@ use std::f64::consts::{PI, TAU};
 /// [`GAIN`] times faster than the pose. Nearer to a singularity it is in proportion.
 const ROUNDING: f64 = 1e-12;
 const GAIN: f64 = 1e3;
+
+/// A parallel measure of singularity above this is far from a singularity.
+const REGULAR: f64 = 0.01;
 
 /// How far the legs may be from the platform in `float`, radians or shares of the size: some ten operations' rounding.
 const FLOAT: f64 = 1e-5;
@@ -28,15 +32,21 @@ struct Comparison<'a> {
     at: Solution,
     near: Solution,
     actuated: ActuatedJoints,
+    jacobians: Jacobians,
     reached: usize,
     missed: usize,
+    /// Poses with rates; poses found by forward kinematics among those asked for.
+    regular: usize,
+    found: [usize; 2],
 }
 
 impl<'a> Comparison<'a> {
     fn new(manipulator: &'a Manipulator) -> Self {
         let [at, near] = [(), ()].map(|()| manipulator.solution());
         let actuated = manipulator.actuated_joints();
-        Self { manipulator, at, near, actuated, reached: 0, missed: 0 }
+        let jacobians = manipulator.jacobians();
+        let (reached, missed, regular, found) = (0, 0, 0, [0; 2]);
+        Self { manipulator, at, near, actuated, jacobians, reached, missed, regular, found }
     }
 
     fn compare(&mut self, question: &Question, answer: &Answer) {
@@ -54,11 +64,14 @@ impl<'a> Comparison<'a> {
         if !reached {
             self.missed += 1;
             let written = answer.joints.iter().chain(&answer.imaginary).chain(&answer.actuated);
+            let written = written.chain(&answer.jacobian);
             assert!(written.copied().all(|value| value == -77.0), "{place}: {answer:?}");
+            assert_eq!((answer.jacobian_status, answer.rates_status), (status, status), "{place}");
             return;
         }
         self.reached += 1;
-        let tolerance = ROUNDING * (self.gain(question) / GAIN).max(1.0);
+        let (gain, differences) = self.differences(question);
+        let tolerance = ROUNDING * (gain / GAIN).max(1.0);
         let expected = (self.at.joints(), self.at.imaginary());
         let off = off(m, (&answer.joints, &answer.imaginary), expected);
         assert!(off <= tolerance, "{place}: {off:e} {:?} {:?}", answer.joints, self.at.joints());
@@ -70,26 +83,105 @@ impl<'a> Comparison<'a> {
         assert!(found.is_some(), "{place}");
         assert_eq!(answer.limits == 0.0, self.at.within_limits(), "{place}: {:?}", answer.joints);
         self.compare_nearest(question, answer, &place);
+        self.compare_rates(question, answer, (gain, &differences), &place);
+        self.compare_forward(question, answer, gain, &place);
     }
 
-    /// By how much faster than the pose the joints move, in radians or sizes of the mechanism.
-    fn gain(&mut self, question: &Question) -> f64 {
+    /// The Jacobian is opm's, and that of differences; the rates are its product with those of the pose.
+    fn compare_rates(
+        &mut self,
+        question: &Question,
+        answer: &Answer,
+        (gain, differences): (f64, &[f64]),
+        place: &str,
+    ) {
+        let m = self.manipulator;
+        let legs = m.mechanism().legs.len() as f64;
+        assert_eq!(answer.jacobian_status, answer.rates_status, "{place}");
+        if answer.jacobian_status != 0.0 {
+            // At a singularity of the Euler angles, coordinates may follow that have no rates.
+            m.differentiate(&self.at, &mut self.jacobians).unwrap();
+            let undetermined = self.jacobians.joints_by_pose().iter().any(|rate| rate.is_nan());
+            let coordinates = answer.jacobian_status == 2.0 * legs + 1.0;
+            let singular = gain > GAIN || (coordinates && undetermined);
+            assert!(answer.jacobian_status > legs && singular, "{place}: {gain:e} {answer:?}");
+            return;
+        }
+        if !m.differentiate(&self.at, &mut self.jacobians).unwrap() || gain > 1e3 * GAIN {
+            return;
+        }
+        self.regular += 1;
+        let expected = self.jacobians.joints_by_pose();
+        let columns = m.task_coordinates().len();
+        for (i, c) in m.coordinates().iter().enumerate() {
+            let mut rate = 0.0;
+            let mut size = 0.0;
+            for (j, of_pose) in m.task_coordinates().iter().enumerate() {
+                let found = answer.jacobian[i * columns + j];
+                let unit = unit(m, c.quantity) / unit(m, of_pose.quantity);
+                let off = (found - expected[(i, j)]).abs() / unit;
+                assert!(off <= ROUNDING * gain * gain, "{place}: {i} {j} {off:e} {gain:e}");
+                let off = (found - differences[i * columns + j]).abs() / unit;
+                assert!(off <= 1e-5 * gain.powi(3), "{place}: {i} {j} {off:e} {gain:e}");
+                rate += found * question.next[j];
+                size += (found * question.next[j]).abs();
+            }
+            assert!((answer.rates[i] - rate).abs() <= ROUNDING * size, "{place}");
+        }
+    }
+
+    /// The actuated joints are those at the pose that was found, and from nearby the pose is found.
+    fn compare_forward(&mut self, question: &Question, answer: &Answer, gain: f64, place: &str) {
+        let m = self.manipulator;
+        let Some(forward) = &answer.forward else { return };
+        let numbers = m.task_coordinates().len() + m.actuated().len();
+        assert_eq!(forward.refused, -(numbers as f64), "{place}");
+        // Random mechanisms may have actuated joints that do not determine the pose, and the start may be out of reach.
+        let mut measured = m.singularities();
+        m.measure_singularities(&self.jacobians, &mut measured);
+        let parallel = measured.whole.parallel.map_or(0.0, f64::abs);
+        let starts = m.inverse(&question.next, question.mode, &mut self.near).unwrap().is_some();
+        let asked = usize::from(gain < 10.0 && parallel > REGULAR && starts);
+        self.found[1] += asked;
+        if forward.status != 0.0 {
+            return;
+        }
+        assert!(forward.residual <= 1e-10, "{place}: {forward:?}");
+        let at = m.inverse(&forward.pose, question.mode, &mut self.near).unwrap();
+        let at = at.unwrap_or_else(|| panic!("{place}: {forward:?}"));
+        for &joint in m.actuated() {
+            let c = &m.coordinates()[joint];
+            let off = apart(c.quantity, at.joints()[joint], answer.joints[joint]);
+            assert!(off / unit(m, c.quantity) <= 1e-8, "{place}: {off:e} {forward:?}");
+        }
+        self.found[0] += asked;
+    }
+
+    /// By how much faster than the pose the joints move, in radians or sizes of the mechanism; and their differences, a row
+    /// for each joint.
+    fn differences(&mut self, question: &Question) -> (f64, Vec<f64>) {
         const STEP: f64 = 1e-7;
         let m = self.manipulator;
         let mut pose = question.pose.clone();
         let mut most: f64 = 1.0;
+        let columns = pose.len();
+        let mut differences = vec![0.0; columns * m.coordinates().len()];
         for (i, c) in m.task_coordinates().iter().enumerate() {
             pose[i] += STEP * unit(m, c.quantity);
             if m.inverse(&pose, question.mode, &mut self.near).unwrap().is_none() {
-                return f64::INFINITY;
+                return (f64::INFINITY, differences);
             }
-            for ((a, b), c) in self.at.joints().iter().zip(self.near.joints()).zip(m.coordinates())
-            {
-                most = most.max(apart(c.quantity, *a, *b) / unit(m, c.quantity) / STEP);
+            let joints = self.at.joints().iter().zip(self.near.joints()).zip(m.coordinates());
+            for (row, ((a, b), of_joint)) in joints.enumerate() {
+                let off = apart(of_joint.quantity, *a, *b);
+                most = most.max(off / unit(m, of_joint.quantity) / STEP);
+                // Half a revolution from home, the sense of the difference is that of its remainder.
+                let sign = if ((b - a).abs() > PI) == (b < a) { 1.0 } else { -1.0 };
+                differences[row * columns + i] = sign * off / (STEP * unit(m, c.quantity));
             }
             pose[i] = question.pose[i];
         }
-        most
+        (most, differences)
     }
 
     /// Every deficit is opm's.
@@ -213,7 +305,7 @@ fn compare_all(manipulators: &[Manipulator], flags: &[&str], poses: usize, seed:
     let list: Vec<&Manipulator> = manipulators.iter().collect();
     let Some(program) = Program::new(&list, Real::Double, flags) else { return };
     let mut rng = Rng::with_seed(seed);
-    let (mut reached, mut missed) = (0, 0);
+    let (mut reached, mut missed, mut regular, mut found) = (0, 0, 0, [0; 2]);
     for (number, m) in manipulators.iter().enumerate() {
         let questions = Drawn { rng: &mut rng, manipulator: m }.questions(poses);
         let answers = program.ask(number, &questions);
@@ -223,9 +315,15 @@ fn compare_all(manipulators: &[Manipulator], flags: &[&str], poses: usize, seed:
         }
         reached += comparison.reached;
         missed += comparison.missed;
+        regular += comparison.regular;
+        (0..2).for_each(|i| found[i] += comparison.found[i]);
     }
-    println!("{} mechanisms: {reached} poses in reach, {missed} out of it", manipulators.len());
+    println!(
+        "{} mechanisms: {reached} poses in reach, {missed} out of it, {regular} regular, {found:?} found by forward kinematics",
+        manipulators.len()
+    );
     assert!(reached > missed / 4 && missed > 0, "{reached} {missed}");
+    assert!(regular > reached / 2 && found[0] > found[1] / 10 * 9, "{regular} {found:?}");
 }
 
 #[test]
@@ -368,13 +466,21 @@ fn nothing_is_undefined() {
             let mut questions = Drawn { rng: &mut rng, manipulator: m }.questions(300);
             let count = m.task_coordinates().len();
             let wrong = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e80, -1e80];
+            for (i, question) in questions.iter_mut().enumerate().take(100).skip(50) {
+                question.next[i % count] = wrong[i % 3];
+            }
             for (i, question) in questions.iter_mut().enumerate().skip(100) {
                 if real == Real::Double || !wrong[i % 5].is_finite() || i % 5 < 3 {
                     question.pose[i % count] = wrong[i % 5];
                     question.next[(i + 1) % count] = wrong[(i + 2) % 3];
                 }
             }
-            for (i, answer) in program.ask(number, &questions).iter().enumerate().skip(100) {
+            for (i, answer) in program.ask(number, &questions).iter().enumerate().skip(50) {
+                if i < 100 {
+                    let refused = -((count + i % count) as f64 + 1.0);
+                    assert!(answer.status != 0.0 || answer.rates_status == refused, "{answer:?}");
+                    continue;
+                }
                 if real == Real::Double || i % 5 < 3 {
                     assert_eq!(
                         answer.status,
@@ -430,4 +536,65 @@ fn every_closed_form_is_compared() {
         let used = codes.iter().filter(|code| code.source.contains(&format!("_{form}("))).count();
         assert!(used > 0, "no mechanism has {form}");
     }
+}
+
+/// clang accepts the code, and so do C++ compilers, as C++17.
+#[test]
+fn every_compiler_accepts_the_code() {
+    let manipulators = shipped().into_iter().chain(random_mechanisms(2).into_iter().step_by(16));
+    let codes: Vec<_> = manipulators.map(|m| opm_generate::c(&m).unwrap()).collect();
+    let cpp = ["-x", "c++", "-std=c++17"];
+    for (compiler, flags) in
+        [("clang", &["-std=c99"][..]), ("c++", &cpp[..]), ("clang++", &cpp[..])]
+    {
+        if let Some(told) = compiled_by(compiler, flags, &codes) {
+            assert_eq!(told, "", "{compiler}");
+        }
+    }
+}
+
+/// The module for LinuxCNC gives opm's actuated joints, in millimetres and degrees, and finds the pose again.
+#[test]
+fn linuxcnc_moves_as_opm_does() {
+    let mut modules = 0;
+    for m in shipped() {
+        let code = opm_generate::c(&m).unwrap();
+        if code.linuxcnc.is_none() {
+            continue;
+        }
+        modules += 1;
+        let mut pose = m.home_pose();
+        let mut axes = [0.0; 9];
+        let (mut angles, mut lengths) = (3..6, 6..9);
+        for (value, c) in pose.iter_mut().zip(m.task_coordinates()) {
+            *value += 0.02 * unit(&m, c.quantity);
+            let axis = match (c.quantity, ["x", "y", "z"].iter().position(|name| *name == c.name)) {
+                (Quantity::Length, Some(axis)) => axis,
+                (Quantity::Length, None) => lengths.next().unwrap(),
+                (Quantity::Angle, _) => angles.next().unwrap(),
+            };
+            axes[axis] = match c.quantity {
+                Quantity::Length => *value * 1e3,
+                Quantity::Angle => value.to_degrees(),
+            };
+        }
+        let name = &m.mechanism().name;
+        let Some(answer) = linuxcnc(&code, axes) else { return };
+        let mut at = m.solution();
+        let at = m.inverse(&pose, m.home_mode(), &mut at).unwrap();
+        let at = at.unwrap_or_else(|| panic!("{name} does not reach a pose near home"));
+        assert_eq!(answer[0], 0.0, "{name}");
+        for (place, &joint) in m.actuated().iter().enumerate() {
+            let expected = match m.coordinates()[joint].quantity {
+                Quantity::Length => at.joints()[joint] * 1e3,
+                Quantity::Angle => at.joints()[joint].to_degrees(),
+            };
+            assert!((answer[1 + place] - expected).abs() < 1e-8, "{name}: {answer:?}");
+        }
+        assert_eq!(answer[17], 0.0, "{name}: {answer:?}");
+        for (axis, expected) in axes.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            assert!((answer[18 + axis] - expected).abs() < 1e-6, "{name}: {answer:?} {axes:?}");
+        }
+    }
+    assert!(modules > 8, "{modules}");
 }
