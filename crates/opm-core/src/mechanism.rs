@@ -11,6 +11,7 @@ pub mod joint;
 pub mod leg;
 mod screws;
 
+pub(crate) use hints::HOME_COORDINATES;
 pub use hints::{FrameHints, OrientationCoordinates, TaskHints, TaskKey};
 pub use screws::{ScrewError, ScrewJoint};
 
