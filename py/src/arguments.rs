@@ -50,7 +50,7 @@ pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
 }
 
 /// The arguments `density` and `time_step`.
-pub fn mjcf_options(density: f64, time_step: f64) -> PyResult<MjcfOptions> {
+pub fn mjcf_options(density: Option<f64>, time_step: f64) -> PyResult<MjcfOptions> {
     MjcfOptions::new(density, time_step)
         .map_err(|error| wrong(format!("{} is {error}", error.option)))
 }

@@ -31,7 +31,7 @@ pub enum ExportFormat {
 /// pose is a keyframe, named by its signs: pp_mp_p is ++ -+ +; those past limits end in _out_of_limits,
 /// and those in which held motors do not hold the platform in _loose.
 ///
-/// Bodies are those that `opm plot` draws, so their masses are a guess: set --density, or edit the file. The three
+/// Bodies are those that `opm plot` draws, so their masses are a guess: set --density, or [bodies] in the file. The three
 /// limits of a spherical joint are left out, because MuJoCo limits only the angle of a ball. A mechanism that does not
 /// decompose is written, too, with one keyframe. All numbers are in metres, radians, kilograms and seconds.
 ///
@@ -50,9 +50,9 @@ pub struct MjcfArgs {
     /// Output file; standard output if it is - or not given
     #[arg(short, long, value_name = "OUT.xml", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-    /// Density of all bodies, kilograms per cubic metre
-    #[arg(long, value_name = "KG/M3", default_value_t = MjcfOptions::DENSITY, allow_negative_numbers = true)]
-    pub density: f64,
+    /// Density of all bodies without a mass in the file, kilograms per cubic metre, instead of that in the file, or 2700
+    #[arg(long, value_name = "KG/M3", allow_negative_numbers = true)]
+    pub density: Option<f64>,
     /// Time step of the simulation, seconds; the loops are held as stiffly as it allows
     #[arg(long, value_name = "SECONDS", default_value_t = MjcfOptions::TIME_STEP, allow_negative_numbers = true)]
     pub time_step: f64,

@@ -233,7 +233,7 @@ class Linkage:
         OpmError
             There is no joint of this name.
         """
-    def to_mjcf(self, *, density: float = 2700.0, time_step: float = 0.001) -> str:
+    def to_mjcf(self, *, density: float | None = None, time_step: float = 0.001) -> str:
         """The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
 
         Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
@@ -242,8 +242,9 @@ class Linkage:
 
         Parameters
         ----------
-        density : float
-            Density of all bodies, kilograms per cubic metre.
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
         time_step : float
             Time step of the simulation, seconds; the loops are held as stiffly as it allows.
 
@@ -530,7 +531,7 @@ class Manipulator:
         OpmError
             The pose is out of reach.
         """
-    def to_mjcf(self, *, density: float = 2700.0, time_step: float = 0.001) -> str:
+    def to_mjcf(self, *, density: float | None = None, time_step: float = 0.001) -> str:
         """The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
 
         Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
@@ -539,8 +540,9 @@ class Manipulator:
 
         Parameters
         ----------
-        density : float
-            Density of all bodies, kilograms per cubic metre.
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
         time_step : float
             Time step of the simulation, seconds; the loops are held as stiffly as it allows.
 

@@ -45,12 +45,17 @@
 //!
 //! Every key may be left out. `opm decompose` prints the resulting frames.
 //!
+//! `[bodies]`, in both forms, says what the bodies weigh, for models of simulators: `density` in kilograms per cubic metre,
+//! and `masses`, a table of kilograms by the names of bodies: `platform`, or the joint that carries a link.
+//!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
 //! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Some names are columns of tables and
 //! cannot be names of joints: task coordinates (`x`, `phi`, ...), `reachable`, `within_limits`,
 //! `mode`, `branch`, and the imaginary joints of the legs (`tau.leg1`). An unknown key is a
 //! problem, and its message suggests the nearest known key.
 
+#[cfg(feature = "files")]
+mod bodies;
 mod change;
 pub(crate) mod checks;
 mod heading;

@@ -26,11 +26,9 @@ pub struct Servos {
 
 impl Servos {
     /// The first of the bodies is the base.
-    pub fn new(bodies: &[Body], density: f64) -> Self {
-        let masses = bodies[1..].iter().map(|body| {
-            let mass = Mass::of_body(body, density);
-            mass.moved(body.origin.coords)
-        });
+    pub fn new(bodies: &[Body], masses: &[Mass]) -> Self {
+        let moving = bodies.iter().zip(masses).skip(1);
+        let masses = moving.map(|(body, mass)| mass.moved(body.origin.coords));
         Self { moving: Mass::sum(&masses.collect::<Vec<_>>()) }
     }
 

@@ -2,7 +2,9 @@
 
 use super::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
-use crate::mechanism::{HOME_COORDINATES, Mechanism, OrientationCoordinates, TaskHints};
+use crate::mechanism::{
+    BodyMasses, HOME_COORDINATES, Mechanism, OrientationCoordinates, TaskHints,
+};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
@@ -35,6 +37,7 @@ pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String 
     );
     let _ = write!(text, "\n[platform]\npoint = {}\n", writer.point(mechanism.platform));
     text.push_str(&writer.task(&mechanism.task));
+    text.push_str(&bodies(&mechanism.bodies));
     for leg in &mechanism.legs {
         let _ = write!(text, "\n[[leg]]\nname = {}\njoints = [\n", quoted(&leg.name));
         for joint in &leg.joints {
@@ -48,6 +51,19 @@ pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String 
 /// The table `[task]` of a mechanism, or nothing if there are no hints.
 pub(super) fn task(hints: &TaskHints, units: FileUnits, digits: Digits) -> String {
     Writer { units, digits }.task(hints)
+}
+
+/// The table `[bodies]` of a mechanism, or nothing if no mass is given.
+pub(super) fn bodies(given: &BodyMasses) -> String {
+    let mut text = String::new();
+    if let Some(density) = given.density {
+        let _ = writeln!(text, "density = {density:?}");
+    }
+    if !given.masses.is_empty() {
+        let masses = given.masses.iter().map(|(name, mass)| format!("{} = {mass:?}", quoted(name)));
+        let _ = writeln!(text, "masses = {{ {} }}", masses.collect::<Vec<_>>().join(", "));
+    }
+    if text.is_empty() { text } else { format!("\n[bodies]\n{text}") }
 }
 
 #[derive(Clone, Copy)]
