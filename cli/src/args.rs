@@ -12,7 +12,7 @@ mod workspace;
 
 pub use convert::ConvertArgs;
 pub use explore::ExploreArgs;
-pub use export::{ExportArgs, ExportFormat, MjcfArgs};
+pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
 pub use generate::{CArgs, GenerateArgs, Language};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};

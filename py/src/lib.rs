@@ -12,9 +12,11 @@ mod columns;
 mod command;
 mod decomposition;
 mod error;
+mod export;
 mod forward;
 mod html;
 mod interrupt;
+mod joints;
 mod linkage;
 mod manipulator;
 mod measure;
@@ -42,6 +44,8 @@ mod _native {
     use crate::error::OpmError;
     #[pymodule_export]
     use crate::forward::Assembly;
+    #[pymodule_export]
+    use crate::joints::Joint;
     #[pymodule_export]
     use crate::linkage::Linkage;
     #[pymodule_export]

@@ -8,6 +8,7 @@ use crate::snap;
 use crate::solutions::{Names, Solutions};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
+use opm_core::mechanism::Mechanism;
 use opm_export::{Keyframes, mjcf};
 use pyo3::prelude::*;
 use std::f64::consts::PI;
@@ -292,6 +293,11 @@ impl Linkage {
 }
 
 impl Linkage {
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Mechanism {
+        self.inner.mechanism()
+    }
+
     /// The input joint of this name, or the actuated joint.
     fn input(&self, name: Option<&str>) -> PyResult<Input<'_>> {
         let actuated = || {

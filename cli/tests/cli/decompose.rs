@@ -349,6 +349,8 @@ fn a_gough_platform_is_outside_the_class() {
         "applies",
         "because",
         "warnings",
+        "reference_point",
+        "joints",
     ];
     assert_eq!(keys(&found), expected);
     assert_eq!((&found["applies"], &found["lambda"]), (&json!("outside"), &json!(6)));

@@ -127,6 +127,7 @@ fn the_examples_in_the_help_parse() {
         "plot",
         "convert",
         "export mjcf",
+        "export urdf",
         "generate c",
         "examples",
         "schema",
@@ -153,10 +154,18 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                let written =
-                    [".mcap", ".svg", ".png", ".xml", "joints.toml", "longer.toml", "exact.toml"]
-                        .iter()
-                        .any(|e| arg.ends_with(e));
+                let written = [
+                    ".mcap",
+                    ".svg",
+                    ".png",
+                    ".xml",
+                    ".urdf",
+                    "joints.toml",
+                    "longer.toml",
+                    "exact.toml",
+                ]
+                .iter()
+                .any(|e| arg.ends_with(e));
                 if written || ["joints.csv", "controller", "src/kinematics"].contains(&arg.as_str())
                 {
                     *arg = folder.arg(arg);

@@ -10,8 +10,12 @@
 
 mod geoms;
 mod joints;
+mod reference;
 mod servo;
 
+pub use reference::{MjcfReference, ReferenceError};
+
+use crate::density::{Density, NotPositive, positive};
 use crate::keyframe::{Keyframes, Source};
 use crate::mass::{self, Mass};
 use crate::xml::{Element, number};
@@ -30,44 +34,31 @@ const SOLREF_STEPS: f64 = 2.0;
 /// What a model in MJCF is written with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MjcfOptions {
-    density: Option<f64>,
+    density: Density,
     time_step: f64,
 }
 
-/// An option is not a positive number.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{value}, expected a positive number")]
-pub struct NotPositive {
-    /// The option: `density` or `time_step`.
-    pub option: &'static str,
-    /// Its value.
-    pub value: f64,
-}
-
 impl MjcfOptions {
-    /// The density of aluminium, kilograms per cubic metre.
-    pub const DENSITY: f64 = 2700.0;
     /// MuJoCo takes twice as much; the loops are held the more stiffly the less it is.
     pub const TIME_STEP: f64 = 0.001;
 
-    /// The density of all bodies whose masses the mechanism does not give, kilograms per cubic metre; without one it is
-    /// that of the mechanism, or else [`DENSITY`](Self::DENSITY). And the time step of a simulation, seconds, on which the
-    /// stiffness of the constraints depends.
+    /// The density of bodies, and the time step of a simulation, seconds, on which the stiffness of the constraints depends.
     ///
     /// # Errors
-    /// One of them is not a positive number.
-    pub fn new(density: Option<f64>, time_step: f64) -> Result<Self, NotPositive> {
-        let options = [("density", density.unwrap_or(Self::DENSITY)), ("time_step", time_step)];
-        match options.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
-            Some((option, value)) => Err(NotPositive { option, value }),
-            None => Ok(Self { density, time_step }),
-        }
+    /// The time step is not a positive number.
+    pub fn new(density: Density, time_step: f64) -> Result<Self, NotPositive> {
+        positive("time_step", time_step).map(|()| Self { density, time_step })
+    }
+
+    /// The time step of a simulation, seconds.
+    pub fn time_step(&self) -> f64 {
+        self.time_step
     }
 }
 
 impl Default for MjcfOptions {
     fn default() -> Self {
-        Self { density: None, time_step: Self::TIME_STEP }
+        Self { density: Density::default(), time_step: Self::TIME_STEP }
     }
 }
 
@@ -80,9 +71,10 @@ pub fn mjcf(keyframes: &Keyframes<'_>, options: &MjcfOptions) -> String {
     let mechanism = keyframes.mechanism();
     let skeleton = Skeleton::new(mechanism, None);
     let bodies = skeleton.bodies();
-    let density = options.density.or(mechanism.bodies.density).unwrap_or(MjcfOptions::DENSITY);
+    let density = options.density.of(mechanism);
     let masses = mass::of_bodies(mechanism, bodies, density);
-    Model { mechanism, bodies, masses: &masses, time_step: options.time_step }.document(keyframes)
+    let time_step = options.time_step;
+    Model { mechanism, bodies, masses: &masses, density, time_step }.document(keyframes)
 }
 
 /// What is known while a model is written.
@@ -92,6 +84,8 @@ struct Model<'a> {
     bodies: &'a [Body],
     /// Their masses, in their frames.
     masses: &'a [Mass],
+    /// The density of bodies whose masses are not given, kilograms per cubic metre.
+    density: f64,
     /// Seconds.
     time_step: f64,
 }
@@ -136,7 +130,10 @@ impl Model<'_> {
             .with("integrator", "implicitfast")
             .with("solver", "Newton");
         // Bodies touch where they are joined, and their shapes are not those of a real mechanism.
-        let geom = Element::new("geom").with("contype", "0").with("conaffinity", "0");
+        let geom = Element::new("geom")
+            .with("contype", "0")
+            .with("conaffinity", "0")
+            .numbers("density", &[self.density]);
         // The smallest mechanisms have moments of inertia that MuJoCo takes for none.
         let compiler = Element::new("compiler")
             .with("angle", "radian")
