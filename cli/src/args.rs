@@ -1,5 +1,6 @@
 //! Every argument of the command line; the doc comments are the help.
 
+mod convert;
 mod explore;
 mod export;
 mod generate;
@@ -9,8 +10,9 @@ mod pose;
 mod recording;
 mod workspace;
 
+pub use convert::ConvertArgs;
 pub use explore::ExploreArgs;
-pub use export::{ExportArgs, ExportFormat, MjcfArgs};
+pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
 pub use generate::{CArgs, GenerateArgs, Language};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
@@ -66,6 +68,7 @@ Examples:
   opm inspect cloud.mcap                               what a recording holds
   opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
   opm explore plano-spherical-5dof -o robot.html       a page for browsers, workspace and all
+  opm convert plano-spherical-5dof --joints            a family as a list of joints
   opm export mjcf plano-spherical-5dof -o plano.xml    a model for MuJoCo, loops and all
   opm generate c plano-spherical-5dof -o controller    kinematics as C, for a controller
   opm help format                                      how to write a mechanism file";
@@ -106,6 +109,7 @@ pub enum Command {
     Inspect(InspectArgs),
     Layout(LayoutArgs),
     Explore(ExploreArgs),
+    Convert(ConvertArgs),
     Export(ExportArgs),
     Generate(GenerateArgs),
     Examples(ExamplesArgs),
@@ -157,6 +161,9 @@ fn coordinates() -> impl TypedValueParser<Value = OrientationCoordinates> {
 /// A mechanism that does not decompose gets an answer too (exit status 0): the subspace of each leg, what
 /// the platform can do at home, and why it is outside the class. If it nearly decomposes, the answer names
 /// the joints that are off, and by how much. Missing or redundant actuators are a warning.
+///
+/// JSON also has the mechanism as data: the platform's `reference_point` at home, and `joints` with the keys of a list of
+/// joints in a mechanism file, in metres and radians, whatever the form of the file.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -22,6 +22,14 @@ pub enum Modes {
     One(Mode),
 }
 
+/// What the rows hold.
+#[derive(Clone, Copy)]
+struct RowContent {
+    modes: Modes,
+    /// Whether they have every joint, and not the actuated ones alone.
+    all_joints: bool,
+}
+
 /// Where rows are written.
 type Writer<'a> = csv::Writer<&'a mut dyn Write>;
 
@@ -44,7 +52,8 @@ pub fn run(
 ) -> Result<(), Failure> {
     let input = args.poses.as_deref().unwrap_or(Path::new("-"));
     let streams = Streams { input, output: args.output.as_deref() };
-    let solve = |stream: Stream<'_>| solve(stream, (loaded, manipulator), modes);
+    let wanted = RowContent { modes, all_joints: args.all_joints };
+    let solve = |stream: Stream<'_>| solve(stream, (loaded, manipulator), wanted);
     let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
     output.note(format_args!(
         "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
@@ -61,7 +70,7 @@ pub fn run(
 fn solve(
     mut stream: Stream<'_>,
     (loaded, manipulator): (&Loaded, &Manipulator),
-    modes: Modes,
+    wanted: RowContent,
 ) -> Result<Summary, Stop> {
     let start = Instant::now();
     let coordinates = manipulator.task_coordinates();
@@ -79,13 +88,13 @@ fn solve(
         manipulator.refuse_following(name).map_err(|error| error.to_string())?;
         find(name, coordinates).map(Some).map_err(|error| error.to_string())
     })?;
-    let mut table = Rows::new(manipulator, columns.timed(), &mut stream.writer)?;
+    let mut table = Rows::new(manipulator, wanted, columns.timed(), &mut stream.writer)?;
     let mut pose = manipulator.home_pose();
     stream.each(&mut columns, &mut pose, |stream, line, time, pose| {
         table.time = time;
         let label = stream.label;
         let wrong = |error| stream::at(label, line, error);
-        table.pose(pose, modes, &mut stream.writer, wrong)
+        table.pose(pose, &mut stream.writer, wrong)
     })?;
     let seconds = start.elapsed().as_secs_f64().max(1e-9);
     let poses = stream.rows.load(Ordering::Relaxed);
@@ -101,12 +110,15 @@ fn solve(
 /// The rows of the result.
 struct Rows<'a> {
     manipulator: &'a Manipulator,
+    wanted: RowContent,
+    /// The numbers of the joint coordinates that are columns.
+    joints: Vec<usize>,
     drives: ActuatedJoints,
     all: AllModes,
     solution: Solution,
     /// The time of the pose, if the input has times.
     time: Option<f64>,
-    /// Imaginary joints, then actuated joints; empty if the pose is out of reach.
+    /// Imaginary joints, then the other joints; empty if the pose is out of reach.
     cells: Vec<Option<f64>>,
     /// Dependent coordinates; empty if they have no solution.
     dependent: Vec<Option<f64>>,
@@ -117,20 +129,27 @@ struct Rows<'a> {
 impl<'a> Rows<'a> {
     fn new(
         manipulator: &'a Manipulator,
+        wanted: RowContent,
         timed: bool,
         writer: &mut Writer<'_>,
     ) -> Result<Self, Stop> {
         let coordinates = manipulator.coordinates();
+        let joints = match wanted.all_joints {
+            true => (0..coordinates.len()).collect(),
+            false => manipulator.actuated().to_vec(),
+        };
         let header: Vec<&str> = (timed.then_some("t").into_iter())
             .chain(manipulator.task_coordinates().iter().map(|c| c.name))
             .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
             .chain(["reachable", "within_limits", "mode"])
             .chain(manipulator.imaginary().iter().map(|joint| &*joint.name))
-            .chain(manipulator.actuated().iter().map(|&i| &*coordinates[i].name))
+            .chain(joints.iter().map(|&i| &*coordinates[i].name))
             .collect();
         writer.write_record(header)?;
         Ok(Self {
             manipulator,
+            wanted,
+            joints,
             drives: manipulator.actuated_joints(),
             all: manipulator.all_modes(),
             solution: manipulator.solution(),
@@ -146,19 +165,27 @@ impl<'a> Rows<'a> {
     fn pose(
         &mut self,
         pose: &[f64],
-        modes: Modes,
         writer: &mut Writer<'_>,
         wrong: impl Fn(PoseError) -> Failure,
     ) -> Result<(), Stop> {
         let manipulator = self.manipulator;
-        match modes {
+        match self.wanted.modes {
             Modes::One(mode) => {
-                let found =
-                    manipulator.inverse_actuated(pose, mode, &mut self.drives).map_err(wrong)?;
-                let reachable = found.is_some();
-                let within = found.is_some_and(ActuatedJoints::within_limits);
-                let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
-                fill(&mut self.cells, joints.copied(), reachable);
+                let [reachable, within] = if self.wanted.all_joints {
+                    let found =
+                        manipulator.inverse(pose, mode, &mut self.solution).map_err(wrong)?;
+                    let answers = [found.is_some(), found.is_some_and(Solution::within_limits)];
+                    self.take_solution(answers[0]);
+                    answers
+                } else {
+                    let found = manipulator.inverse_actuated(pose, mode, &mut self.drives);
+                    let found = found.map_err(wrong)?;
+                    let answers =
+                        [found.is_some(), found.is_some_and(ActuatedJoints::within_limits)];
+                    let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
+                    fill(&mut self.cells, joints.copied(), answers[0]);
+                    answers
+                };
                 self.reachable += u64::from(reachable);
                 self.within_limits += u64::from(within);
                 let dependent = manipulator.dependent_values(pose, mode).ok().flatten();
@@ -170,8 +197,7 @@ impl<'a> Rows<'a> {
                 let reachable = found.is_some();
                 self.reachable += u64::from(reachable);
                 if !reachable {
-                    let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
-                    fill(&mut self.cells, joints.copied(), false);
+                    self.take_solution(false);
                     self.depend(None);
                     return self.write(writer, pose, [false, false], "");
                 }
@@ -181,12 +207,10 @@ impl<'a> Rows<'a> {
                     let solution =
                         manipulator.solution_in_mode(&self.all, mode, &mut self.solution);
                     let Some(solution) = solution else { continue };
-                    let actuated = manipulator.actuated().iter().map(|&i| solution.joints()[i]);
-                    let joints = solution.imaginary().iter().copied().chain(actuated);
-                    fill(&mut self.cells, joints, true);
+                    let within = solution.within_limits();
                     self.dependent.clear();
                     self.dependent.extend(solution.dependent().iter().map(|&value| Some(value)));
-                    let within = solution.within_limits();
+                    self.take_solution(true);
                     any_within |= within;
                     self.write(writer, pose, [true, within], &manipulator.format_mode(mode))?;
                 }
@@ -194,6 +218,14 @@ impl<'a> Rows<'a> {
                 Ok(())
             }
         }
+    }
+
+    /// Takes the joints of the solution, if the pose is in reach.
+    fn take_solution(&mut self, reachable: bool) {
+        let solution = &self.solution;
+        let joints = self.joints.iter().map(|&i| solution.joints()[i]);
+        let joints = solution.imaginary().iter().copied().chain(joints);
+        fill(&mut self.cells, joints, reachable);
     }
 
     /// Takes the values of the dependent coordinates, if they have some.

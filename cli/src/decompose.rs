@@ -1,6 +1,7 @@
 //! `opm decompose`: partial subspaces and imaginary joints.
 
 mod answer;
+mod joints;
 
 use crate::args::{DecomposeArgs, Output};
 use crate::failure::Failure;
@@ -322,6 +323,7 @@ impl Report<'_> {
                 "two subspaces"
             };
             json.insert("applies".to_owned(), applies.into());
+            joints::insert(json, &self.loaded.file.mechanism);
             json.insert("warnings".to_owned(), warnings.into());
             if let Some(snapped) = &self.loaded.snapped {
                 json.insert("snapped".to_owned(), misses(snapped));

@@ -1,32 +1,109 @@
 //! `opm export`: mechanisms as models for other programs.
 
-use crate::args::{ExportArgs, ExportFormat, MjcfArgs, Output};
+use crate::args::{ExportArgs, ExportFormat, MjcfArgs, Output, UrdfArgs};
 use crate::failure::Failure;
-use crate::load;
+use crate::load::{self, Loaded};
+use crate::motion::{self, LoadedMotion};
 use crate::output::{is_stdout, print_with};
 use crate::target::Target;
-use opm_export::{Keyframes, MjcfOptions, Source, mjcf};
+use crate::text::plural;
+use opm_export::{Density, Keyframes, MjcfOptions, MjcfReference, NotPositive, Source, mjcf, urdf};
+use opm_study::MotionRequest;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub fn run(args: &ExportArgs, output: &Output) -> Result<(), Failure> {
     match &args.format {
         ExportFormat::Mjcf(args) => run_mjcf(args, output),
+        ExportFormat::Urdf(args) => run_urdf(args, output),
     }
 }
 
 fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
-    let options = MjcfOptions::new(args.density, args.time_step)
-        .map_err(|wrong| Failure::flag(&flag(wrong.option), wrong))?;
+    let options = Density::new(args.density)
+        .and_then(|density| MjcfOptions::new(density, args.time_step))
+        .map_err(not_positive)?;
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
-    path.map_or(Ok(()), ends_in_xml)?;
+    // MuJoCo takes the format of a file from its ending.
+    path.map_or(Ok(()), |path| ends_in(path, "xml"))?;
     let loaded = load::open(&args.mechanism, output)?;
-    if let Some(path) = path {
-        loaded.refuse_as_output(path, &[])?;
+    let Some(motion) = &args.trajectory else {
+        let keyframes = Keyframes::of(&loaded.file.mechanism);
+        note_source(&loaded, &keyframes, output);
+        let note = plural(keyframes.reached().len() as u64, "keyframe");
+        let files = Files { model: (path, mjcf(&keyframes, &options)), beside: None };
+        return files.write(&loaded, &[], &note, output);
+    };
+    let Some(path) = path else {
+        let problem = "it is written beside the model; give that a file with --output";
+        return Err(Failure::flag("--trajectory", problem));
+    };
+    let manipulator = loaded.compile()?;
+    let motion = motion::open(motion, None, &manipulator)?;
+    let request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);
+    let trajectory = request.rate(options.time_step().recip()).trajectory()?;
+    let reference = MjcfReference::new(&manipulator, trajectory)
+        .map_err(|error| Failure::at(&motion.label, error))?;
+    let keyframes = Keyframes::of_manipulator(&manipulator).with_start(&reference);
+    note_source(&loaded, &keyframes, output);
+    let rows = plural(reference.len() as u64, "time step");
+    let note = format!("{}, {rows}", plural(keyframes.reached().len() as u64, "keyframe"));
+    let beside = Some((path.with_extension("csv"), reference.csv()));
+    let files = Files { model: (Some(path), mjcf(&keyframes, &options)), beside };
+    let inputs: Vec<&Path> = motion_path(&motion).collect();
+    files.write(&loaded, &inputs, &note, output)
+}
+
+fn run_urdf(args: &UrdfArgs, output: &Output) -> Result<(), Failure> {
+    let density = Density::new(args.density).map_err(not_positive)?;
+    let path = args.output.as_deref().filter(|path| !is_stdout(path));
+    path.map_or(Ok(()), |path| ends_in(path, "urdf"))?;
+    let loaded = load::open(&args.mechanism, output)?;
+    let model = urdf(&loaded.file.mechanism, density);
+    let legs = loaded.file.mechanism.legs.len() as u64;
+    let note = plural(legs - 1, "closure");
+    let beside = path.map(|path| (path.with_extension("yaml"), model.closures));
+    Files { model: (path, model.tree), beside }.write(&loaded, &[], &note, output)
+}
+
+/// What is written: a model, to standard output if it has no path, and a file beside it.
+struct Files<'a> {
+    model: (Option<&'a Path>, String),
+    beside: Option<(PathBuf, String)>,
+}
+
+impl Files<'_> {
+    /// Writes them all, or none if one of them cannot be made.
+    fn write(
+        self,
+        loaded: &Loaded,
+        inputs: &[&Path],
+        note: &str,
+        output: &Output,
+    ) -> Result<(), Failure> {
+        let (path, model) = self.model;
+        let Some(path) = path else {
+            return print_with(|out| out.write_all(model.as_bytes()));
+        };
+        let files = [Some((path.to_owned(), model)), self.beside];
+        let files: Vec<_> = files.into_iter().flatten().collect();
+        for (path, _) in &files {
+            loaded.refuse_as_output(path, inputs)?;
+        }
+        let targets: Result<Vec<_>, _> =
+            files.iter().map(|(path, _)| Target::create(path)).collect();
+        for (target, (_, text)) in targets?.into_iter().zip(&files) {
+            target.commit(text.as_bytes())?;
+        }
+        let names: Vec<_> = files.iter().map(|(path, _)| path.display().to_string()).collect();
+        output.note(format_args!("{}: {note}", names.join(", ")));
+        Ok(())
     }
-    let target = path.map(Target::create).transpose()?;
-    let keyframes = Keyframes::of(&loaded.file.mechanism);
-    let (label, count) = (&loaded.label, keyframes.reached().len());
+}
+
+/// Says why there are few keyframes.
+fn note_source(loaded: &Loaded, keyframes: &Keyframes<'_>, output: &Output) {
+    let label = &loaded.label;
     match keyframes.source() {
         Source::Modes | Source::Branches => {}
         Source::HomeMode => output.note(format_args!(
@@ -36,29 +113,21 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
             "{label}: no closed forms, so home is the only keyframe; `opm decompose` says why"
         )),
     }
-    let model = mjcf(&keyframes, &options);
-    match target {
-        None => print_with(|out| out.write_all(model.as_bytes())),
-        Some(target) => {
-            target.commit(model.as_bytes())?;
-            let place = path.unwrap_or(Path::new("")).display();
-            let keyframes = if count == 1 { "keyframe" } else { "keyframes" };
-            output.note(format_args!("{place}: {count} {keyframes}"));
-            Ok(())
-        }
-    }
 }
 
-/// The flag of an option.
-fn flag(option: &str) -> String {
-    format!("--{}", option.replace('_', "-"))
+fn motion_path(motion: &LoadedMotion) -> impl Iterator<Item = &Path> {
+    motion.path.as_deref().into_iter()
 }
 
-/// MuJoCo takes the format of a file from its ending.
-fn ends_in_xml(path: &Path) -> Result<(), Failure> {
-    if path.extension().is_some_and(|ending| ending == "xml") {
+fn not_positive(wrong: NotPositive) -> Failure {
+    Failure::flag(&format!("--{}", wrong.option.replace('_', "-")), wrong)
+}
+
+/// Checks the ending of a name.
+fn ends_in(path: &Path, ending: &str) -> Result<(), Failure> {
+    if path.extension().is_some_and(|found| found == ending) {
         return Ok(());
     }
-    let problem = format!("{}: expected a name that ends in .xml", path.display());
+    let problem = format!("{}: expected a name that ends in .{ending}", path.display());
     Err(Failure::flag("--output", problem))
 }

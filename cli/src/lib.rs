@@ -6,6 +6,7 @@ mod args;
 mod batch;
 mod change;
 mod completions;
+mod convert;
 mod decompose;
 mod examples;
 mod explore;
@@ -79,6 +80,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Inspect(command) => inspect::run(command, output),
         Command::Layout(command) => layout::run(command, output),
         Command::Explore(command) => explore::run(command, output),
+        Command::Convert(command) => convert::run(command, output),
         Command::Export(command) => export::run(command, output),
         Command::Generate(command) => generate::run(command, output),
         Command::Examples(command) => examples::run(command, output),

@@ -6,7 +6,9 @@ use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Number;
 use crate::text::{self, Table, short};
+use crate::transform;
 use crate::unitless;
+use nalgebra::{DVector, Matrix6xX};
 use opm_core::Quantity;
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
@@ -16,6 +18,9 @@ use opm_core::velocity::{
 use opm_study::characteristic_length;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+
+/// The components of a twist: the angular velocity, rad/s, and the velocity of the platform's reference point, m/s.
+const TWIST: [&str; 6] = ["wx", "wy", "wz", "vx", "vy", "vz"];
 
 pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
@@ -62,7 +67,15 @@ impl Query<'_> {
         let legs = &self.manipulator.mechanism().legs;
         let mut json = self.head();
         json.insert("reachable".into(), false.into());
-        for key in ["joint_rates", "imaginary_rates", "jacobian", "singularity"] {
+        for key in [
+            "joint_rates",
+            "imaginary_rates",
+            "jacobian",
+            "twist",
+            "twist_jacobian",
+            "transform",
+            "singularity",
+        ] {
             json.insert(key.into(), Value::Null);
         }
         let names = at.unreachable().iter().map(|u| &*legs[u.leg].name);
@@ -114,6 +127,8 @@ struct Answer<'a> {
     /// Rates of the actuated joints for unit rates of the task coordinates; `None` for a row of a
     /// joint that has none.
     jacobian: Vec<Option<Vec<f64>>>,
+    /// The platform's twist for unit rates of the task coordinates.
+    twist_jacobian: Matrix6xX<f64>,
     measured: Singularities,
     conditioning: Conditioning,
     length: f64,
@@ -147,6 +162,7 @@ impl<'a> Answer<'a> {
             rateless,
             rateless_imaginary,
             jacobian,
+            twist_jacobian: manipulator.twist_by_pose(&jacobians),
             measured,
             conditioning,
             length,
@@ -208,6 +224,9 @@ impl<'a> Answer<'a> {
                 "values": values.collect::<Vec<_>>(),
             }),
         );
+        json.insert("twist".into(), self.twist());
+        json.insert("twist_jacobian".into(), self.twist_jacobian());
+        json.insert("transform".into(), transform::at(manipulator, self.at));
         json.insert(
             "singularity".into(),
             json!({
@@ -230,6 +249,28 @@ impl<'a> Answer<'a> {
             }),
         );
         json.into()
+    }
+
+    /// The platform's twist for the given rates.
+    fn twist(&self) -> Value {
+        let rates = DVector::from_column_slice(&self.query.rates);
+        let twist = &self.twist_jacobian * rates;
+        let parts = twist.iter().map(|&part| finite(part + 0.0).into());
+        Value::Object(TWIST.map(str::to_owned).into_iter().zip(parts).collect())
+    }
+
+    /// The platform's twist for a unit rate of each coordinate. The point is the reference point, where `transform` says.
+    fn twist_jacobian(&self) -> Value {
+        let columns = self.query.manipulator.task_coordinates();
+        let rows = self.twist_jacobian.row_iter();
+        json!({
+            "rows": TWIST,
+            "columns": columns.iter().map(|c| c.name).collect::<Vec<_>>(),
+            "frame": "base",
+            "point": "platform",
+            "values": rows.map(|row| json!(row.iter().map(|&v| finite(v + 0.0)).collect::<Vec<_>>()))
+                .collect::<Vec<_>>(),
+        })
     }
 
     fn text(&self) -> String {

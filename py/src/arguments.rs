@@ -4,7 +4,7 @@
 use crate::error::wrong;
 use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
 use opm_core::mechanism::examples;
-use opm_export::MjcfOptions;
+use opm_export::{Density, MjcfOptions, NotPositive};
 use opm_workspace::MOST_THREADS;
 use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -50,9 +50,18 @@ pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
 }
 
 /// The arguments `density` and `time_step`.
-pub fn mjcf_options(density: f64, time_step: f64) -> PyResult<MjcfOptions> {
-    MjcfOptions::new(density, time_step)
-        .map_err(|error| wrong(format!("{} is {error}", error.option)))
+pub fn mjcf_options(density: Option<f64>, time_step: f64) -> PyResult<MjcfOptions> {
+    let density = self::density(density)?;
+    MjcfOptions::new(density, time_step).map_err(not_positive)
+}
+
+/// The argument `density`.
+pub fn density(given: Option<f64>) -> PyResult<Density> {
+    Density::new(given).map_err(not_positive)
+}
+
+fn not_positive(error: NotPositive) -> PyErr {
+    wrong(format!("{} is {error}", error.option))
 }
 
 /// The argument `shards`.

@@ -13,9 +13,11 @@ mod command;
 mod decomposition;
 mod error;
 mod explorer;
+mod export;
 mod forward;
 mod html;
 mod interrupt;
+mod joints;
 mod linkage;
 mod manipulator;
 mod measure;
@@ -45,6 +47,8 @@ mod _native {
     use crate::explorer::{Explorer, explore};
     #[pymodule_export]
     use crate::forward::Assembly;
+    #[pymodule_export]
+    use crate::joints::Joint;
     #[pymodule_export]
     use crate::linkage::Linkage;
     #[pymodule_export]

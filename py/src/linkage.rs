@@ -8,6 +8,7 @@ use crate::snap;
 use crate::solutions::{Names, Solutions};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
+use opm_core::mechanism::Mechanism;
 use opm_export::{Keyframes, mjcf};
 use pyo3::prelude::*;
 use std::f64::consts::PI;
@@ -265,8 +266,9 @@ impl Linkage {
     ///
     /// Parameters
     /// ----------
-    /// density : float
-    ///     Density of all bodies, kilograms per cubic metre.
+    /// density : float, optional
+    ///     Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+    ///     2700, if not given.
     /// time_step : float
     ///     Time step of the simulation, seconds; the loops are held as stiffly as it allows.
     ///
@@ -279,8 +281,8 @@ impl Linkage {
     /// ------
     /// OpmError
     ///     A number is not positive.
-    #[pyo3(signature = (*, density = 2700.0, time_step = 0.001))]
-    fn to_mjcf(&self, py: Python<'_>, density: f64, time_step: f64) -> PyResult<String> {
+    #[pyo3(signature = (*, density = None, time_step = 0.001))]
+    fn to_mjcf(&self, py: Python<'_>, density: Option<f64>, time_step: f64) -> PyResult<String> {
         let options = arguments::mjcf_options(density, time_step)?;
         Ok(py.detach(|| mjcf(&Keyframes::of(self.inner.mechanism()), &options)))
     }
@@ -291,6 +293,11 @@ impl Linkage {
 }
 
 impl Linkage {
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Mechanism {
+        self.inner.mechanism()
+    }
+
     /// The input joint of this name, or the actuated joint.
     fn input(&self, name: Option<&str>) -> PyResult<Input<'_>> {
         let actuated = || {

@@ -422,8 +422,9 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// density : float
-    ///     Density of all bodies, kilograms per cubic metre.
+    /// density : float, optional
+    ///     Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+    ///     2700, if not given.
     /// time_step : float
     ///     Time step of the simulation, seconds; the loops are held as stiffly as it allows.
     ///
@@ -436,8 +437,8 @@ impl Manipulator {
     /// ------
     /// OpmError
     ///     A number is not positive.
-    #[pyo3(signature = (*, density = 2700.0, time_step = 0.001))]
-    fn to_mjcf(&self, py: Python<'_>, density: f64, time_step: f64) -> PyResult<String> {
+    #[pyo3(signature = (*, density = None, time_step = 0.001))]
+    fn to_mjcf(&self, py: Python<'_>, density: Option<f64>, time_step: f64) -> PyResult<String> {
         let options = mjcf_options(density, time_step)?;
         Ok(py.detach(|| mjcf(&Keyframes::of_manipulator(&self.inner), &options)))
     }

@@ -267,6 +267,11 @@ fn through(
     Ok((motion, "waypoints.csv".to_owned(), text))
 }
 
+/// The motion of a file or of a table of poses, or a shipped motion.
+pub fn motion(manipulator: &Manipulator, given: &Bound<'_, PyAny>) -> PyResult<PlatformMotion> {
+    read(manipulator, given, None).map(|(motion, ..)| motion)
+}
+
 /// A motion file, a table of poses, or a shipped motion: an existing path wins.
 fn read(
     manipulator: &Manipulator,

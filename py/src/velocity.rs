@@ -161,7 +161,7 @@ impl Manipulator {
                     return Ok([false; 2]);
                 }
                 let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
-                let whole = &jacobians.joints * &jacobians.pose;
+                let whole = jacobians.joints_by_pose();
                 for (out, &joint) in out.chunks_exact_mut(columns).zip(&rows) {
                     out.copy_from_slice(whole.row(joint).transpose().as_slice());
                 }
@@ -177,6 +177,52 @@ impl Manipulator {
             },
         )?;
         tables.table(0).reshape([poses.count, rows.len(), columns])
+    }
+
+    /// The platform's twist for unit rates of the task coordinates.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
+    ///
+    /// Returns
+    /// -------
+    /// (n, 6, d) ndarray
+    ///     The rows are the angular velocity, then the velocity of the platform's reference point, both along the axes of the
+    ///     base, rad/s and m/s. NaN where the pose is out of reach.
+    #[pyo3(signature = (poses, *, mode = "home", threads = None))]
+    fn twist_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        poses: &Bound<'py, PyAny>,
+        mode: &str,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
+        let poses = Rows::new(&poses)?;
+        let columns = self.inner.task_coordinates().len();
+        let tables = Tables::fill(
+            py,
+            poses.count,
+            [6 * columns],
+            threads,
+            || (self.inner.solution(), self.inner.jacobians()),
+            |(at, jacobians), row, [out]| {
+                if !self.solve(poses.row(row), mode, at)? {
+                    return Ok([false; 2]);
+                }
+                let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
+                // Row by row, as NumPy has it.
+                out.copy_from_slice(self.inner.twist_by_pose(jacobians).transpose().as_slice());
+                Ok([true, regular])
+            },
+        )?;
+        tables.table(0).reshape([poses.count, 6, columns])
     }
 
     /// Rates and accelerations of every joint.

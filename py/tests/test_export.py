@@ -1,10 +1,12 @@
 """Models and code for other programs: what MuJoCo makes of models is tested in tests/python, and code with its crate."""
 
+import pickle
 import subprocess
 import sys
 from html.parser import HTMLParser
 from xml.etree import ElementTree
 
+import numpy as np
 import opm_kinematics as opm
 import pytest
 
@@ -22,6 +24,57 @@ def test_a_model_is_that_of_the_command(mechanism):
     names = {joint.get("name") for joint in model.iter("joint")}
     balls = {joint.get("name") for joint in model.iter("joint") if joint.get("type") == "ball"}
     assert names == {name.split(".")[0] if name.split(".")[0] in balls else name for name in mechanism.joints}
+
+
+def test_a_tree_and_its_closures_are_those_of_the_command(tmp_path):
+    for mechanism in opm.examples.plano_spherical(), opm.examples.bennett():
+        path = tmp_path / "model.urdf"
+        command = [sys.executable, "-m", "opm_kinematics", "export", "urdf", mechanism.name, "-q", "-o", path]
+        subprocess.run([*command, "--density", "1200"], check=True)
+        assert mechanism.to_urdf(density=1200) == path.read_text()
+        assert mechanism.to_closures() == path.with_suffix(".yaml").read_text()
+        with pytest.raises(opm.OpmError, match="density is -1, expected a positive number"):
+            mechanism.to_urdf(density=-1)
+
+
+def test_a_reference_is_that_of_the_command(tmp_path):
+    mechanism, motion = opm.examples.plano_spherical(), "plano-spherical-sinusoids"
+    path = tmp_path / "model.xml"
+    command = [sys.executable, "-m", "opm_kinematics", "export", "mjcf", mechanism.name, "-q", "-o", path]
+    subprocess.run([*command, "--trajectory", motion, "--time-step", "0.01"], check=True)
+    names, rows = mechanism.mjcf_reference(motion, time_step=0.01)
+    header, *lines = path.with_suffix(".csv").read_text().splitlines()
+    assert names == header.split(",")
+    np.testing.assert_array_equal(rows, [[float(cell) for cell in line.split(",")] for line in lines])
+    with pytest.raises(opm.OpmError, match="is out of reach"):
+        far = tmp_path / "far.csv"
+        far.write_text("t,x\n0,0\n1,5\n")
+        mechanism.mjcf_reference(far)
+
+
+def test_joints_are_data():
+    mechanism = opm.examples.plano_spherical()
+    assert list(mechanism.legs) == ["leg1", "leg2", "leg3", "leg4"]
+    joints = [joint for leg in mechanism.legs.values() for joint in leg]
+    assert [name for joint in joints for name in joint.coordinates] == mechanism.joints
+    slider, ball = joints[0], joints[-1]
+    assert (slider.name, slider.kind, slider.actuated, slider.units) == ("S1", "prismatic", True, ["m"])
+    assert (ball.kind, ball.axis, ball.pitch, len(ball.home)) == ("spherical", None, None, 3)
+    home = mechanism.inverse([mechanism.home]).joints[0]
+    np.testing.assert_allclose([value for joint in joints for value in joint.home], home, atol=1e-12)
+    copied = pickle.loads(pickle.dumps(slider))
+    assert copied == slider
+
+
+def test_a_list_of_joints_gives_the_same_joints():
+    generator = np.random.default_rng(19)
+    for mechanism in opm.examples.plano_spherical(), opm.examples.load("planar-planar-5dof"):
+        listed = opm.Manipulator.parse(mechanism.to_joints())
+        assert listed.parameters == {} and listed.reference_point == mechanism.reference_point
+        poses = mechanism.home + 0.1 * generator.uniform(-1, 1, (50, len(mechanism.home)))
+        one, other = (m.inverse(poses, mode="all") for m in (listed, mechanism))
+        np.testing.assert_array_equal(one.reachable, other.reachable)
+        np.testing.assert_allclose(one.joints, other.joints, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("option", ["density", "time_step"])

@@ -40,6 +40,23 @@ def test_rates_are_derivatives_of_inverse_kinematics(manipulator, poses):
     np.testing.assert_allclose(found, second, rtol=1e-2, atol=1e-3 * np.abs(second).max())
 
 
+@pytest.mark.parametrize("name", ["plano-spherical-5dof", "five-bar", "translational-helical-3dof"])
+def test_the_twist_is_that_of_the_transform(name):
+    m = opm.examples.load(name)
+    rng = np.random.default_rng(5)
+    poses = m.home + rng.uniform(-1, 1, (200, len(m.home))) * [0.01 if c.unit == "m" else 0.2 for c in m.task_coordinates]
+    rates = rng.normal(size=poses.shape)
+    reachable = m.inverse(poses).reachable
+    poses, rates = poses[reachable], rates[reachable]
+    assert len(poses) > 50
+    before, now, after = (m.transform(poses + t * rates) for t in (-STEP, 0.0, STEP))
+    change = (after - before) / (2 * STEP)
+    spin = change[:, :3, :3] @ now[:, :3, :3].transpose(0, 2, 1)
+    expected = np.column_stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0], change[:, :3, 3]])
+    found = np.einsum("nij,nj->ni", m.twist_jacobian(poses), rates)
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+
+
 def test_the_jacobian_gives_the_rates(manipulator, poses):
     rates = np.random.default_rng(4).normal(size=(1, 5))
     motion = manipulator.velocity(poses, rates)

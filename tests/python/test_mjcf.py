@@ -1,9 +1,6 @@
 """`opm export mjcf`, read and simulated by MuJoCo: joints have opm's values, and the loops close and stay closed."""
 
-import csv
-import json
 import random
-import re
 import subprocess
 from xml.etree import ElementTree
 
@@ -11,24 +8,8 @@ import mujoco
 import numpy as np
 import pinocchio
 import pytest
-from conftest import LINKAGES, REPOSITORY
+from exported import MECHANISMS, VARIED, Mechanism, answer, run
 
-# Of the linkages that opm ships, Sarrus' has a pose, too.
-LOOPS = [name for name in LINKAGES if name != "sarrus"]
-SHIPPED = REPOSITORY / "data" / "mechanisms"
-MECHANISMS = sorted(path.stem for path in SHIPPED.glob("*.toml"))
-# Joints that no shipped mechanism has, in place of some that one has: its name, what is replaced, and by what.
-ARM = re.compile(r'  \{ name = "mu4".*\n.*\n')
-UNIVERSAL = (
-    '  { name = "u4", type = "universal", axis = [1, 0, 0], axis2 = [0, 1, 0], point = [0, 0, 0], actuated = true, '
-    "home = [10, -5], limits = [[-60, 60], [-60, 60]] },\n"
-)
-PITCH = re.compile("pitch = 20 ")
-VARIED = {
-    "universal": ("double-spherical-5dof", ARM, UNIVERSAL),
-    "left-handed": ("translational-helical-3dof-joints", PITCH, "pitch = -35, home = 20 "),
-    "large-pitch": ("translational-helical-3dof-joints", PITCH, "pitch = 1500, home = 20 "),
-}
 # Rounding of two chains of ten joints, and of the numbers that opm gives, in metres and in parts of a quaternion.
 CLOSED = 1e-12
 # Poses a mechanism, shared among modes that are drawn at random.
@@ -38,41 +19,16 @@ STEPS, GAP = 2000, 50e-6
 GRAVITY = 9.81
 
 
-def run(opm, *arguments):
-    return subprocess.run([opm, *arguments], capture_output=True, text=True, check=True).stdout
-
-
-def answer(opm, *arguments):
-    return json.loads(run(opm, *arguments, "--format", "json", "--quiet"))
-
-
-def table(text):
-    """The rows of a table, numbers where they are numbers; rows out of reach are left out."""
-    rows = [row for row in csv.DictReader(text.splitlines()) if all(row.values())]
-    text = ("branch", "mode")
-    return [{k: v if k in text else float(v) for k, v in row.items()} for row in rows]
-
-
-class Exported:
+class Exported(Mechanism):
     """A mechanism, its model, and what it is compared with."""
 
     def __init__(self, opm, folder, name):
-        self.opm, self.folder, self.name = opm, folder, name
+        super().__init__(opm, folder, name)
         self.path = folder / "model.xml"
-        self.varied = name in VARIED
-        if self.varied:
-            base, old, new = VARIED[name]
-            text, count = old.subn(new, (SHIPPED / f"{base}.toml").read_text())
-            assert count == 1
-            self.name = folder / f"{name}.toml"
-            self.name.write_text(text)
-        name = self.name
-        run(opm, "export", "mjcf", name, "-o", self.path)
+        run(opm, "export", "mjcf", self.name, "-o", self.path)
         self.model = mujoco.MjModel.from_xml_path(str(self.path))
         self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
         self.data = mujoco.MjData(self.model)
-        self.answer = answer(opm, "decompose", name)
-        self.is_linkage = name in LOOPS
         mujoco.mj_forward(self.model, self.data)
         reach = self.data.xpos[self.model.body("base").id + 1 :]
         self.size = float(np.ptp(np.vstack([reach, np.zeros(3)]), axis=0).max())
@@ -118,25 +74,6 @@ class Exported:
         assert len(gaps) == len(self.answer["legs"]) - 1
         return np.max(gaps, axis=0)
 
-    def motion(self, seconds, rate, coordinates, mode="home"):
-        """The rows of a motion, of which `coordinates` gives (amplitude, frequency, phase, offset)."""
-        lines = ["format = 1", 'name = "m"', 'units = { length = "m", angle = "rad" }']
-        lines += [f"duration = {seconds}", f"rate = {rate}", "[coordinates]"]
-        for name, (amplitude, frequency, phase, offset) in coordinates.items():
-            lines.append(
-                f"{name} = {{ amplitude = {amplitude}, frequency = {frequency}, phase = {phase}, offset = {offset} }}"
-            )
-        path = self.folder / "motion.toml"
-        path.write_text("\n".join(lines) + "\n")
-        arguments = ["--motion", path, "--mode", mode, "--quiet", "-o", "-"]
-        return table(run(self.opm, "trajectory", self.name, *arguments))
-
-    def spans(self, angle, length):
-        """How far each task coordinate is moved from home."""
-        for coordinate in self.answer["task_coordinates"]:
-            span = angle if coordinate["unit"] == "rad" else length * self.size
-            yield coordinate["name"], coordinate["home"], span
-
 
 @pytest.fixture(scope="module", params=[*MECHANISMS, *VARIED])
 def exported(opm, tmp_path_factory, request):
@@ -145,20 +82,11 @@ def exported(opm, tmp_path_factory, request):
 
 def test_the_loops_close_at_poses_of_every_mode(exported):
     generator = random.Random(str(exported.answer["name"]))
-    if exported.is_linkage:
-        sweep = run(exported.opm, "linkage", exported.name, "--sweep", "--count", str(POSES))
-        rows = table(sweep)
-    else:
-        names = [exported.model.key(i).name for i in range(exported.model.nkey)]
-        rows = []
-        for key in generator.choices(names, k=MODES):
-            signs = key.removesuffix("_out_of_limits").removesuffix("_loose").replace("p", "+").replace("m", "-")
-            moves = {
-                name: (span, generator.uniform(0.1, 0.4), generator.uniform(0, 6.3), home)
-                for name, home, span in exported.spans(angle=0.3, length=0.05)
-            }
-            mode = "home" if key == "home" else signs.replace("_", "")
-            rows += exported.motion(POSES / MODES, 2, moves, mode)
+    names = [exported.model.key(i).name for i in range(exported.model.nkey)]
+    keys = [key.removesuffix("_out_of_limits").removesuffix("_loose") for key in generator.choices(names, k=MODES)]
+    letters = str.maketrans("pm", "+-", "_")
+    modes = [key if key == "home" else key.translate(letters) for key in keys]
+    rows = exported.poses(generator, POSES, modes)
     assert len(rows) >= POSES
     worst = np.zeros(2)
     for row in rows:
@@ -284,12 +212,7 @@ def test_servos_move_it_and_it_stays_together(exported):
         home, times = float(model.qpos0[joint.qposadr[0]]), np.arange(STEPS + 1) * 1e-3
         rows = [{actuated[0]: home + 0.1 * (1 - np.cos(np.pi * t))} for t in times]
     else:
-        # From home and back, at rest at both ends; every other coordinate goes there and back twice.
-        moves = {
-            name: (span, 0.5 + 0.5 * (number % 2), -np.pi / 2, home + span)
-            for number, (name, home, span) in enumerate(exported.spans(angle=0.05, length=0.01))
-        }
-        rows = exported.motion(2, 1000, moves)
+        rows = exported.motion(2, 1000, exported.at_rest(2))
     assert len(rows) == STEPS + 1
     mujoco.mj_resetData(model, data)
     worst = np.zeros(2)
@@ -310,6 +233,64 @@ def test_servos_move_it_and_it_stays_together(exported):
     sag = weight * np.where(hinges, exported.size, 1.0)
     allowed = (damping * steps.max(axis=0) / model.opt.timestep + sag) / stiffness
     assert (lag < allowed).all(), (lag, allowed)
+
+
+def test_a_reference_is_followed(exported):
+    """The table beside the model moves it along the motion, whose rows `opm trajectory` gives, and it stays together."""
+    if exported.is_linkage:
+        pytest.skip("a linkage has no pose to move")
+    moves = exported.at_rest(2)
+    expected = exported.motion(2, 1000, moves)
+    path = exported.folder / "moved.xml"
+    run(exported.opm, "export", "mjcf", exported.name, "-o", path, "--trajectory", exported.folder / "motion.toml")
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    header = path.with_suffix(".csv").read_text().split("\n", 1)[0].split(",")
+    table = np.loadtxt(path.with_suffix(".csv"), delimiter=",", skiprows=1)
+    reference, controls = table[:, 1 : 1 + model.nq], table[:, 1 + model.nq :]
+    assert table.shape == (STEPS + 1, 1 + model.nq + model.nu)
+    assert header[0] == "time" and header[1 + model.nq :] == [f"ctrl.{model.actuator(i).name}" for i in range(model.nu)]
+    assert np.abs(table[:, 0] - [row["t"] for row in expected]).max() < 1e-12
+    # The rows are the postures that opm gives.
+    for row, joints in zip(reference[::100], expected[::100], strict=True):
+        exported.pose_by(joints)
+        apart = [min(np.abs(a - b), np.abs(a + b)) for a, b in zip(row, exported.data.qpos, strict=True)]
+        assert max(apart) < CLOSED
+    # Without gravity, a servo that carries all that moves, and its motor, is off by acceleration over stiffness.
+    model.opt.gravity[:] = 0
+    mujoco.mj_resetDataKeyframe(model, data, model.key("motion").id)
+    assert np.abs(data.qpos - reference[0]).max() < CLOSED
+    exported_data, exported.data = exported.data, data
+    worst, off, lag = np.zeros(2), np.zeros(model.nu), np.zeros(model.nu)
+    places = model.jnt_qposadr[model.actuator_trnid[:, 0]]
+    for row, control in zip(reference, controls, strict=True):
+        off = np.maximum(off, np.abs(data.qpos[places] - row[places]))
+        lag = np.maximum(lag, np.abs(control - row[places]))
+        data.ctrl[:] = control
+        mujoco.mj_step(model, data)
+        worst = np.maximum(worst, exported.gaps())
+    exported.data = exported_data
+    assert worst[0] < GAP, worst
+    # By far less than the lag of servos that are told the values alone.
+    assert (off < 0.25 * lag.max()).all(), (off, lag)
+
+
+def test_masses_of_the_file_are_taken(exported, tmp_path):
+    answer = exported.answer
+    first, *_ = [joint["name"] for joint in answer["joints"] if joint["leg"] == answer["legs"][0]["name"]]
+    text = run(exported.opm, "convert", exported.name, "--joints")
+    path, model = tmp_path / "heavy.toml", tmp_path / "heavy.xml"
+    path.write_text(f'{text}\n[bodies]\ndensity = 1350\nmasses = {{ platform = 0.75, "{first}" = 0.125 }}\n')
+    run(exported.opm, "export", "mjcf", path, "-o", model)
+    heavy = mujoco.MjModel.from_xml_path(str(model))
+    ends = [heavy.eq_obj2id[i] for i in range(heavy.neq) if heavy.eq_type[i] == mujoco.mjtEq.mjEQ_WELD]
+    platform = [heavy.body("platform").id, *ends]
+    assert heavy.body_mass[platform].sum() == pytest.approx(0.75, rel=1e-12)
+    for number in set(range(heavy.body("base").id + 1, heavy.nbody)) - set(platform):
+        name = heavy.body(number).name
+        named = name == f"{answer['legs'][0]['name']}.{first}"
+        expected = 0.125 if named else 0.5 * exported.model.body_mass[number]
+        assert heavy.body_mass[number] == pytest.approx(expected, rel=1e-12), name
 
 
 def test_pinocchio_moves_the_bodies_to_the_same_places(exported):

@@ -34,6 +34,11 @@ platform = { point = [10, 20, 30] }
 axis = [0, 0, -2]
 lower = { x = [1, 0, 0], normal = [0, 0, 1], origin = [0, 0, 0] }
 upper = { x = [1, 0, 0], w = [0, 1, 0], normal = [0, 0, 1], origin = [0, 0, 0] }
+home = { x = 1, y = 2, z = 3, h = 4, w = 5, theta = 0.1, phi = 0.2, zeta = 0.3, xi = 0.4, psi = 0.5, mu = 0.6, nu = 0.7 }
+
+[bodies]
+density = 1200
+masses = { platform = 0.8, S1 = 0.25 }
 
 [[leg]]
 name = "left"
@@ -141,6 +146,8 @@ UNSAYABLE = [
     "is given for the last move",
     "`feed` is missing, expected a speed, here or for all moves",
     "values?, expected . as `t` has",
+    "no body is called",
+    "carries the platform, expected `platform`",
     # geometry
     "home is out of this leg's reach by",
     "the joints of the leg are linearly dependent",
@@ -273,7 +280,7 @@ def test_every_key_is_explained(schema):
         for key, value in found:
             assert len(value.get("description", "")) > 10, (kind, key)
             for word in [key, *value.get("enum", [])]:
-                assert word in {*page, "platform", "task", "leg", "slider_leg", "arm_leg", "coordinates", "points", "moves"}, (kind, word)
+                assert word in {*page, "platform", "task", "bodies", "leg", "slider_leg", "arm_leg", "coordinates", "points", "moves"}, (kind, word)
 
 
 def toml(value):

@@ -52,6 +52,7 @@ fn described(legs: Vec<Vec<Joint>>) -> Mechanism {
         legs: legs.into_iter().enumerate().map(leg).collect(),
         platform: ON_AXIS,
         task: TaskHints::default(),
+        bodies: Default::default(),
     }
 }
 

@@ -208,6 +208,7 @@ fn level(rng: &mut Rng, rise: f64) -> Mechanism {
         legs: legs.collect(),
         platform: centres[1] + vector(rng) * 0.1,
         task: TaskHints::default(),
+        bodies: Default::default(),
     }
 }
 

@@ -43,6 +43,7 @@ fn mechanism(legs: Vec<Vec<Joint>>) -> Mechanism {
         legs: legs.into_iter().enumerate().map(leg).collect(),
         platform: Point3::new(0.1, -0.2, 0.3),
         task: TaskHints::default(),
+        bodies: Default::default(),
     }
 }
 

@@ -162,10 +162,9 @@ fn jacobians_compose_to_the_rates() {
                 let platform = moved(0.0) * manipulator.mechanism().platform;
                 let spin = |t: f64| base(t).rotation.scaled_axis().as_slice().to_vec();
                 let way = |t: f64| (base(t) * platform).coords.as_slice().to_vec();
-                let v = task.lower.isometry(&task.lower(&path.pose)).rotation;
-                let found = &jacobians.platform * &twist;
-                let (omega, velocity) = (found.fixed_rows::<3>(0), found.fixed_rows::<3>(3));
-                let found = [v * omega.into_owned(), v * velocity.into_owned()];
+                let found =
+                    manipulator.twist_by_pose(&jacobians) * DVector::from_column_slice(&path.rates);
+                let found = [found.fixed_rows::<3>(0), found.fixed_rows::<3>(3)];
                 let known = [
                     derivatives(1e-2, |t| Some(spin(t))).unwrap(),
                     derivatives(1e-2, |t| Some(way(t))).unwrap(),

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 /// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians, or in units that
 /// the header names: `x [mm],xi [deg]`. A column `t`, as in the table of a motion, is carried through.
 /// CSV out: all task coordinates, those that depend on them, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
-/// the actuated joints. A pose out of reach keeps its row; its joint cells are empty.
+/// the actuated joints, or with --all-joints every joint. A pose out of reach keeps its row; its joint cells are empty.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -29,6 +29,7 @@ Examples:
   opm ik plano-spherical-5dof --pose xi=15deg --all-modes --format json
   opm ik plano-spherical-5dof --transform 10mm,0,0,0.8,0.6,0,0
   opm ik plano-spherical-5dof --poses poses.csv -o joints.csv
+  opm ik plano-spherical-5dof --poses poses.csv --all-joints --all-modes -o joints.csv
   generate-poses | opm ik plano-spherical-5dof --poses - | head")]
 #[command(group = clap::ArgGroup::new("where").required(true).args(["pose", "poses", "transform"]))]
 pub struct IkArgs {
@@ -47,6 +48,9 @@ pub struct IkArgs {
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
     pub all_modes: bool,
+    /// Passive joints, too, in the CSV, in the order of the JSON of one pose
+    #[arg(long, requires = "poses", conflicts_with_all = ["pose", "transform"])]
+    pub all_joints: bool,
     /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
@@ -73,6 +77,10 @@ pub struct IkArgs {
 /// --length. It is null if it is infinite: at a singularity, or with fewer actuators than freedoms.
 /// Singularities of the Euler angles (xi = 0) are not counted; `coordinates` is 0 there. A pose out of
 /// reach is an answer (exit status 0).
+///
+/// JSON also has `twist_jacobian`, the platform's twist for unit rates of the task coordinates, and `twist`, that for
+/// --rates: the angular velocity (wx wy wz, rad/s) and the velocity of the platform's reference point (vx vy vz, m/s),
+/// along the axes of the base. `transform` is the platform's pose, as in `opm ik`.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -1,6 +1,6 @@
 //! The answer about a mechanism that does not decompose: what it is, what it can do, and why.
 
-use super::{actuation, describe, line_of_snapped, misses, triple_json};
+use super::{actuation, describe, joints, line_of_snapped, misses, triple_json};
 use crate::load::Loaded;
 use crate::text::Table;
 use opm_core::decomposition::{Applies, LegSurvey, PlatformMotion, Survey};
@@ -32,6 +32,9 @@ impl Answer<'_> {
             "because": self.because(),
             "warnings": warnings,
         });
+        if let Value::Object(json) = &mut json {
+            joints::insert(json, &self.loaded.file.mechanism);
+        }
         if let Some(near) = &survey.near {
             json["nearly"] = json!({
                 "lower": { "subspace": near.lower.name() },

@@ -8,6 +8,9 @@ use std::process::Stdio;
 /// The reference vectors have 16 digits; closed forms lose a few near the boundary of reach.
 const REFERENCE: f64 = 1e-9;
 
+/// The reader of JSON rounds the last digit of an angle.
+const LAST_DIGIT: f64 = 1e-14;
+
 /// A table with a header, by name.
 struct Csv {
     header: Vec<String>,
@@ -154,6 +157,32 @@ fn all_modes_give_a_row_each() {
     assert_eq!(found.rows.len(), 128 + 1, "every mode of the first pose, one row for the second");
     assert_eq!((found.cell(128, "reachable"), found.cell(128, "mode")), ("0", ""));
     assert_eq!(found.cell(0, "mode"), "++ ++ ++ +");
+}
+
+/// Every cell is that of the answer for one pose, of which `opm ik` prints every joint.
+#[test]
+fn passive_joints_are_columns_too() {
+    let input = "x,xi\n0.01,0.1\n0,2.0943951023931953\n";
+    for modes in ["--mode=-+ ++ +- -", "--all-modes"] {
+        let run = opm_reading(input, &["ik", PLANO, "--poses", "-", "--all-joints", modes]);
+        let found = Csv::parse(run.text());
+        let one = opm(&["ik", PLANO, "--pose", "x=0.01,xi=0.1", modes, "--format", "json"]).json();
+        let solutions = one["solutions"].as_array().unwrap();
+        assert_eq!(found.rows.len(), solutions.len() + 1);
+        for (row, solution) in solutions.iter().enumerate() {
+            assert_eq!(found.cell(row, "mode"), solution["mode"].as_str().unwrap());
+            for kind in ["joints", "imaginary"] {
+                for name in keys(&solution[kind]) {
+                    let known = number(&solution[kind][name]);
+                    assert!((found.number(row, name) - known).abs() < LAST_DIGIT, "{name}");
+                }
+            }
+        }
+        let last = found.rows.len() - 1;
+        assert!(keys(&solutions[0]["joints"]).iter().all(|name| found.cell(last, name).is_empty()));
+        let before = found.column("theta13");
+        assert_eq!(found.header[before + 1..], *keys(&solutions[0]["joints"]));
+    }
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! `opm decompose` agrees with the paper about its mechanisms.
 
-use crate::run::{Folder, keys, number, opm};
+use crate::run::{Folder, keys, number, opm, opm_reading};
 use crate::{HELICAL, PLANO};
 use serde_json::{Value, json};
+use std::f64::consts::PI;
 
 /// Parallel directions and coordinates in metres: rounding only.
 const EXACT: f64 = 1e-9;
@@ -37,6 +38,8 @@ fn the_plano_spherical_manipulator() {
         "legs",
         "frames",
         "applies",
+        "reference_point",
+        "joints",
         "warnings",
     ];
     assert_eq!(keys(&found), expected, "its decomposition is unique: no alternatives");
@@ -71,6 +74,58 @@ fn the_plano_spherical_manipulator() {
     assert_eq!(legs[0], prr);
     assert_eq!(legs[3]["lower"], json!(["phi14", "phi24"]));
     assert_eq!(legs[3]["imaginary"], Value::Null);
+}
+
+/// The mechanism of docs/format.md has one joint of each type; its numbers are those of the file, SI.
+const EVERY_TYPE: &str = r#"
+format = 1
+name = "every-type"
+units = { length = "mm", angle = "deg" }
+[platform]
+point = [0, 20, 300]
+[[leg]]
+name = "one"
+joints = [
+  { name = "r", type = "revolute", axis = [0, 0, 2], point = [100, 40, 0], actuated = true, home = 90, limits = [0, 180] },
+  { name = "p", type = "prismatic", axis = [0, 1, 0], limits = [-300, 300], max_rate = 500, max_acceleration = 2000 },
+  { name = "h", type = "helical", axis = [0, 0, 1], point = [0, 0, 0], pitch = 20 },
+]
+[[leg]]
+name = "two"
+joints = [
+  { name = "c", type = "cylindrical", axis = [1, 0, 0], point = [0, 0, 50], limits = [[-90, 90], [-10, 10]] },
+  { name = "u", type = "universal", axis = [1, 0, 0], axis2 = [0, 1, 0], point = [0, 0, 0], home = [0, 180] },
+  { name = "s", type = "spherical", point = [0, 0, 200] },
+]
+"#;
+
+#[test]
+fn joints_are_those_of_the_file() {
+    let found = opm_reading(EVERY_TYPE, &["decompose", "-", "--format", "json", "--quiet"]).json();
+    assert_eq!(found["applies"], "outside");
+    assert_eq!(found["reference_point"], json!([0.0, 0.02, 0.3]));
+    let joints = found["joints"].as_array().unwrap();
+    let r = json!({
+        "name": "r", "leg": "one", "type": "revolute", "axis": [0.0, 0.0, 1.0], "axis2": null,
+        "point": [0.1, 0.04, 0.0], "pitch": null, "actuated": true, "coordinates": ["r"],
+        "unit": "rad", "home": PI / 2.0, "limits": [0.0, PI], "max_rate": null,
+        "max_acceleration": null,
+    });
+    assert_eq!(joints[0], r);
+    let p = &joints[1];
+    assert_eq!((&p["unit"], &p["limits"]), (&json!("m"), &json!([-0.3, 0.3])));
+    assert_eq!((&p["max_rate"], &p["max_acceleration"]), (&json!(0.5), &json!(2.0)));
+    assert_eq!(joints[2]["pitch"], 0.02);
+    assert_eq!(joints[3]["coordinates"], json!(["c.angle", "c.slide"]));
+    assert_eq!(joints[3]["unit"], json!(["rad", "m"]));
+    assert_eq!(joints[3]["limits"], json!([[-PI / 2.0, PI / 2.0], [-0.01, 0.01]]));
+    assert_eq!(
+        (&joints[4]["axis2"], &joints[4]["home"]),
+        (&json!([0.0, 1.0, 0.0]), &json!([0.0, PI]))
+    );
+    assert_eq!(joints[5]["axis"], Value::Null);
+    assert_eq!(joints[5]["limits"], json!([null, null, null]));
+    assert_eq!(joints[5]["leg"], "two");
 }
 
 #[test]
@@ -294,6 +349,8 @@ fn a_gough_platform_is_outside_the_class() {
         "applies",
         "because",
         "warnings",
+        "reference_point",
+        "joints",
     ];
     assert_eq!(keys(&found), expected);
     assert_eq!((&found["applies"], &found["lambda"]), (&json!("outside"), &json!(6)));

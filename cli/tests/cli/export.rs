@@ -86,6 +86,79 @@ fn limits_density_and_time_step_are_taken() {
     assert!((mass(&aluminium) / mass(run.text()) - 2.7).abs() < 1e-12);
 }
 
+/// The table has a row for each time step, and the columns of the model.
+#[test]
+fn a_motion_is_written_beside_the_model() {
+    let folder = Folder::new();
+    let file = folder.arg("plano.xml");
+    let motion = ["--trajectory", "plano-spherical-sinusoids", "--time-step", "0.01"];
+    let run = opm(&[&["export", "mjcf", PLANO, "-o", &file], &motion[..]].concat());
+    assert_eq!(run.text(), "");
+    assert_eq!(folder.names(), ["plano.csv", "plano.xml"]);
+    let (text, table) = (folder.read("plano.xml"), folder.read("plano.csv"));
+    let model = Document::parse(&text).unwrap();
+    assert_eq!(names(&model, "key").last(), Some(&"motion"));
+    let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    assert_eq!(header[..2], ["time", "qpos.S1"]);
+    assert!(header.contains(&"qpos.s4.w") && header.ends_with(&["ctrl.phi14", "ctrl.phi24"]));
+    let rows = table.lines().skip(1);
+    assert!(rows.clone().all(|row| row.split(',').count() == header.len()));
+    assert_eq!(rows.count(), 1001, "ten seconds at 100 Hz");
+    assert!(run.stderr.contains("129 keyframes, 1,001 time steps"), "{}", run.stderr);
+
+    let export = |args: &[&str]| opm(&[&["export", "mjcf", PLANO, "--trajectory"], args].concat());
+    export(&["plano-spherical-sinusoids"]).fails_with_one_line(2, &["--trajectory", "--output"]);
+    export(&["none.toml", "-o", &file]).fails_with_one_line(1, &["none.toml"]);
+    let far = folder.write("far.csv", "t,x\n0,0\n1,5\n");
+    export(&[&far, "-o", &file]).fails_with_one_line(1, &["far.csv: at t = ", "is out of reach"]);
+    let own = folder.write("own.csv", "t,x\n0,0\n1,0.01\n");
+    export(&[&own, "-o", &folder.arg("own.xml")]).fails_with_one_line(2, &["also the input"]);
+    export(&[&own, "-o", &file, "--time-step", "1e-9"])
+        .fails_with_one_line(1, &["1000000001 time steps", "expected at most 1000000"]);
+}
+
+#[test]
+fn a_tree_has_its_closures_beside_it() {
+    let folder = Folder::new();
+    let file = folder.arg("plano.urdf");
+    let run = opm(&["export", "urdf", PLANO, "-o", &file]);
+    assert!(run.stderr.contains("3 closures"), "{}", run.stderr);
+    assert_eq!(folder.names(), ["plano.urdf", "plano.yaml"]);
+    let (text, closures) = (folder.read("plano.urdf"), folder.read("plano.yaml"));
+    assert_eq!(opm(&["export", "urdf", PLANO]).text(), text);
+    assert!(closures.starts_with(
+        "closed_loop: [['platform', 'leg2.platform'], ['platform', 'leg3.platform'], ['platform', 'leg4.platform']]\n\
+         type: ['6d', '6d', '6d']\nname_mot: ['S1', 'S2', 'S3', 'phi14', 'phi24']\n"
+    ));
+    let model = Document::parse(&text).unwrap();
+    let (links, joints) = (names(&model, "link"), names(&model, "joint"));
+    // A tree: each link but the base has one joint to its parent.
+    assert_eq!(links.len(), joints.len() + 1);
+    for name in ["S1", "phi14", "s4.1", "s4.2", "s4.3"] {
+        assert!(joints.contains(&name), "{name}: {joints:?}");
+    }
+    let tree = |args: &[&str]| opm(&[&["export", "urdf", PLANO], args].concat());
+    tree(&["-o", &folder.arg("a.xml")]).fails_with_one_line(2, &["--output", "ends in .urdf"]);
+    tree(&["--density", "0"]).fails_with_one_line(2, &["--density", "positive number"]);
+}
+
+#[test]
+fn wrong_masses_are_told_where_they_stand() {
+    let folder = Folder::new();
+    let text = opm(&["examples", PLANO]).stdout;
+    for (bodies, problem) in [
+        ("density = 0", "`density` is 0 kg/m^3, expected a value above 0"),
+        ("density = \"iron\"", "`density` is a string, expected a number"),
+        ("masses = { platform = -1 }", "`platform` is -1 kg, expected a value above 0"),
+        ("masses = { S11 = 1 }", "no body is called \"S11\""),
+        ("masses = { s4 = 1 }", "the joint s4 carries the platform, expected `platform`"),
+        ("mass = 1", "unknown key `mass`"),
+    ] {
+        let file = folder.write("wrong.toml", format!("{text}\n[bodies]\n{bodies}\n"));
+        opm(&["export", "mjcf", &file]).fails_with_one_line(1, &["wrong.toml:", problem]);
+    }
+}
+
 /// In the other mode of leg 1 its elbow B1 is at 88 degrees.
 #[test]
 fn modes_past_limits_are_named() {

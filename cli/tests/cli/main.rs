@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod batch;
+mod convert;
 mod decompose;
 mod explore;
 mod export;

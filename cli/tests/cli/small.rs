@@ -92,6 +92,7 @@ fn help_and_version_go_to_standard_output() {
         "workspace",
         "plot",
         "inspect",
+        "convert",
         "export",
         "generate",
         "examples",
@@ -124,7 +125,9 @@ fn the_examples_in_the_help_parse() {
         "trajectory",
         "workspace",
         "plot",
+        "convert",
         "export mjcf",
+        "export urdf",
         "generate c",
         "examples",
         "schema",
@@ -151,7 +154,18 @@ fn the_examples_in_the_help_parse() {
                 }
             }
             for arg in &mut args {
-                let written = [".mcap", ".svg", ".png", ".xml"].iter().any(|e| arg.ends_with(e));
+                let written = [
+                    ".mcap",
+                    ".svg",
+                    ".png",
+                    ".xml",
+                    ".urdf",
+                    "joints.toml",
+                    "longer.toml",
+                    "exact.toml",
+                ]
+                .iter()
+                .any(|e| arg.ends_with(e));
                 if written || ["joints.csv", "controller", "src/kinematics"].contains(&arg.as_str())
                 {
                     *arg = folder.arg(arg);

@@ -2,11 +2,14 @@
 
 use crate::run::{keys, number, opm};
 use crate::{HELICAL, PLANO};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde_json::Value;
 
 /// Differences of step 1e-4 s, to the fourth order.
 const STEP: f64 = 1e-4;
 const DIFFERENCED: f64 = 1e-8;
+/// Differences of step 1e-4 s, to the second order: third derivatives are below ten.
+const TWIST: f64 = 1e-7;
 
 fn velocity(args: &[&str]) -> Value {
     opm(&[&["velocity"], args, &["--format", "json"]].concat()).json()
@@ -23,6 +26,9 @@ fn the_json_is_one_object_with_these_keys() {
         "joint_rates",
         "imaginary_rates",
         "jacobian",
+        "twist",
+        "twist_jacobian",
+        "transform",
         "singularity",
     ];
     assert_eq!(keys(&found), expected);
@@ -45,6 +51,66 @@ fn the_json_is_one_object_with_these_keys() {
         let rate = 0.01 * number(&values[0]) + number(&values[2]);
         let found = number(&found["joint_rates"][name.as_str().unwrap()]);
         assert!((rate - found).abs() < 1e-12, "{name}: {rate} {found}");
+    }
+}
+
+/// The twist is the difference of the platform's transforms before and after, also where coordinates depend on others.
+#[test]
+fn the_twist_is_that_of_the_transform() {
+    for (file, pose, rates) in [
+        (PLANO, "x=0.01,y=-0.02,zeta=0.3,xi=0.2,psi=-0.1", "x=0.1,y=-0.2,zeta=1,xi=0.5,psi=-0.7"),
+        (HELICAL, "x=0.002,y=-0.01,phi=0.4", "x=0.1,y=-0.2,phi=0.7"),
+        ("five-bar", "x=0.01,y=0.33", "x=0.3,y=-0.2"),
+        ("schoenflies-lift-4dof", "", "x=0.3,z=-0.2"),
+    ] {
+        let moved = |sign: f64| {
+            let parse = |text: &str| -> Vec<(String, f64)> {
+                let parts = text.split(',').filter_map(|part| part.split_once('='));
+                parts.map(|(name, value)| (name.to_owned(), value.parse().unwrap())).collect()
+            };
+            let mut at = parse(pose);
+            for (name, rate) in parse(rates) {
+                match at.iter_mut().find(|(known, _)| *known == name) {
+                    Some((_, value)) => *value += sign * STEP * rate,
+                    None => {
+                        let found = &velocity(&[file])["pose"][&name];
+                        at.push((name, number(found) + sign * STEP * rate));
+                    }
+                }
+            }
+            let at: Vec<String> = at.iter().map(|(name, v)| format!("{name}={v:?}")).collect();
+            let found = velocity(&[file, "--pose", &at.join(",")]);
+            let q: Vec<f64> =
+                (0..4).map(|i| number(&found["transform"]["quaternion"][i])).collect();
+            let p: Vec<f64> = (0..3).map(|i| number(&found["transform"]["position"][i])).collect();
+            (
+                UnitQuaternion::new_normalize(Quaternion::new(q[0], q[1], q[2], q[3])),
+                Vector3::from_vec(p),
+            )
+        };
+        let found = velocity(&[file, "--pose", pose, "--rates", rates]);
+        let (before, after) = (moved(-1.0), moved(1.0));
+        let spin = (after.0 * before.0.inverse()).scaled_axis() / (2.0 * STEP);
+        let way = (after.1 - before.1) / (2.0 * STEP);
+        let names = ["wx", "wy", "wz", "vx", "vy", "vz"];
+        for (name, known) in names.iter().zip(spin.iter().chain(&way)) {
+            let twist = number(&found["twist"][*name]);
+            assert!((twist - known).abs() < TWIST, "{file} {name}: {twist} {known}");
+        }
+        let jacobian = &found["twist_jacobian"];
+        assert_eq!(keys(jacobian), ["rows", "columns", "frame", "point", "values"]);
+        assert_eq!(jacobian["rows"], serde_json::json!(names));
+        assert_eq!((&jacobian["frame"], &jacobian["point"]), (&"base".into(), &"platform".into()));
+        for (row, name) in names.iter().enumerate() {
+            let columns = jacobian["columns"].as_array().unwrap().iter().enumerate();
+            let sum: f64 = columns
+                .map(|(i, column)| {
+                    let rate = number(&found["rates"][column.as_str().unwrap()]);
+                    number(&jacobian["values"][row][i]) * rate
+                })
+                .sum();
+            assert!((sum - number(&found["twist"][*name])).abs() < 1e-12, "{file} {name}");
+        }
     }
 }
 

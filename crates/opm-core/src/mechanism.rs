@@ -3,6 +3,7 @@
 // Without the reader of files, what only it uses is dead.
 #![cfg_attr(not(feature = "files"), allow(dead_code, unused_imports))]
 
+mod bodies;
 pub mod examples;
 pub mod family;
 pub mod file;
@@ -11,6 +12,8 @@ pub mod joint;
 pub mod leg;
 mod screws;
 
+pub use bodies::BodyMasses;
+pub(crate) use hints::HOME_COORDINATES;
 pub use hints::{FrameHints, OrientationCoordinates, TaskHints, TaskKey};
 pub use screws::{ScrewError, ScrewJoint};
 
@@ -41,12 +44,21 @@ pub struct Mechanism {
     pub platform: Point3<f64>,
     /// How the platform's pose is measured.
     pub task: TaskHints,
+    /// What the bodies weigh.
+    pub bodies: BodyMasses,
 }
 
 impl Mechanism {
     /// Every joint, leg by leg, from base to platform.
     pub fn joints(&self) -> impl Iterator<Item = &Joint> {
         self.legs.iter().flat_map(|leg| &leg.joints)
+    }
+
+    /// The names of all bodies that move: the joint that carries a link, for each link, and the platform.
+    pub fn body_names(&self) -> impl Iterator<Item = &str> {
+        let links =
+            self.legs.iter().flat_map(|leg| leg.joints.split_last()).flat_map(|(_, all)| all);
+        links.map(|joint| &*joint.name).chain([BodyMasses::PLATFORM])
     }
 
     /// Every joint coordinate, leg by leg, from base to platform. Joint vectors have this order

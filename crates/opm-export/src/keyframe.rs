@@ -85,6 +85,10 @@ impl<'a> Keyframes<'a> {
         self.source
     }
 
+    pub(crate) fn push(&mut self, keyframe: Keyframe) {
+        self.reached.push(keyframe);
+    }
+
     fn in_modes(mechanism: &'a Mechanism, manipulator: &Manipulator) -> Self {
         let every = manipulator.choices() <= MOST_CHOICES;
         let source = if every { Source::Modes } else { Source::HomeMode };

@@ -4,6 +4,7 @@
 //! every passive joint and every working mode, so it can write all of a parallel mechanism:
 //!
 //! * [`mjcf()`] writes the model format of MuJoCo, which other simulators read, too.
+//! * [`urdf()`] writes the tree of links of ROS, and what closes its loops beside it.
 //! * [`explorer()`] writes a page in which a browser shows the mechanism and its workspace.
 //! * [`Keyframes`] are the postures of a mechanism at its home pose, one for each working mode, by name.
 //!
@@ -21,12 +22,18 @@
 //! # Ok::<(), opm_core::ReadError>(())
 //! ```
 
+mod color;
+mod density;
 mod keyframe;
 mod mass;
 mod mjcf;
+mod names;
 mod page;
+mod urdf;
 mod xml;
 
+pub use density::{Density, NotPositive};
 pub use keyframe::{Keyframe, Keyframes, Source};
-pub use mjcf::{MjcfOptions, NotPositive, mjcf};
+pub use mjcf::{MjcfOptions, MjcfReference, ReferenceError, mjcf};
 pub use page::explorer;
+pub use urdf::{Urdf, urdf};

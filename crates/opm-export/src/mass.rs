@@ -1,6 +1,7 @@
 //! Masses of solids of one density, their centres and their tensors of inertia.
 
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
+use opm_core::mechanism::{BodyMasses, Mechanism};
 use opm_core::skeleton::{Body, Solid};
 use std::f64::consts::PI;
 
@@ -13,6 +14,23 @@ pub struct Mass {
     pub centre: Point3<f64>,
     /// The tensor of inertia about the centre of mass, kilograms times square metres.
     pub inertia: Matrix3<f64>,
+}
+
+/// The masses of all bodies of a mechanism, in the order of its skeleton, each in its body's frame. Those that the
+/// mechanism does not give follow from the shapes and a density, kilograms per cubic metre.
+pub fn of_bodies(mechanism: &Mechanism, bodies: &[Body], density: f64) -> Vec<Mass> {
+    // The base, then the bodies that move in the order of their names.
+    let platform = bodies.len() - 2;
+    let given = mechanism.body_names().enumerate().map(|(number, name)| {
+        // A joint may be called as the platform is.
+        let other = name == BodyMasses::PLATFORM && number != platform;
+        mechanism.bodies.of(name).filter(|_| !other)
+    });
+    let weighed = bodies.iter().zip([None].into_iter().chain(given)).map(|(body, given)| {
+        let mass = Mass::of_body(body, density);
+        given.map_or(mass, |given| mass.share(given / mass.mass))
+    });
+    weighed.collect()
 }
 
 impl Mass {

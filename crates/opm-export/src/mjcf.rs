@@ -10,16 +10,21 @@
 
 mod geoms;
 mod joints;
+mod reference;
 mod servo;
 
+pub use reference::{MjcfReference, ReferenceError};
+
+use crate::density::{Density, NotPositive, positive};
 use crate::keyframe::{Keyframes, Source};
-use crate::mass::Mass;
+use crate::mass::{self, Mass};
 use crate::xml::{Element, number};
 use joints::{Names, joint_values, joints};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::leg::Leg;
 use opm_core::skeleton::{Body, Skeleton};
 use servo::Servos;
+use std::ops::Range;
 
 /// How stiff a constraint is: the share of the force of a rigid one. MuJoCo refuses 1.
 const SOLIMP: [f64; 3] = [0.9999, 0.9999, 0.001];
@@ -29,43 +34,31 @@ const SOLREF_STEPS: f64 = 2.0;
 /// What a model in MJCF is written with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MjcfOptions {
-    density: f64,
+    density: Density,
     time_step: f64,
 }
 
-/// An option is not a positive number.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{value}, expected a positive number")]
-pub struct NotPositive {
-    /// The option: `density` or `time_step`.
-    pub option: &'static str,
-    /// Its value.
-    pub value: f64,
-}
-
 impl MjcfOptions {
-    /// The density of aluminium, kilograms per cubic metre.
-    pub const DENSITY: f64 = 2700.0;
     /// MuJoCo takes twice as much; the loops are held the more stiffly the less it is.
     pub const TIME_STEP: f64 = 0.001;
 
-    /// The density of all bodies, kilograms per cubic metre, and the time step of a simulation, seconds. The stiffness of
-    /// the constraints depends on the time step.
+    /// The density of bodies, and the time step of a simulation, seconds, on which the stiffness of the constraints depends.
     ///
     /// # Errors
-    /// One of them is not a positive number.
-    pub fn new(density: f64, time_step: f64) -> Result<Self, NotPositive> {
-        let options = [("density", density), ("time_step", time_step)];
-        match options.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
-            Some((option, value)) => Err(NotPositive { option, value }),
-            None => Ok(Self { density, time_step }),
-        }
+    /// The time step is not a positive number.
+    pub fn new(density: Density, time_step: f64) -> Result<Self, NotPositive> {
+        positive("time_step", time_step).map(|()| Self { density, time_step })
+    }
+
+    /// The time step of a simulation, seconds.
+    pub fn time_step(&self) -> f64 {
+        self.time_step
     }
 }
 
 impl Default for MjcfOptions {
     fn default() -> Self {
-        Self { density: Self::DENSITY, time_step: Self::TIME_STEP }
+        Self { density: Density::default(), time_step: Self::TIME_STEP }
     }
 }
 
@@ -77,7 +70,11 @@ impl Default for MjcfOptions {
 pub fn mjcf(keyframes: &Keyframes<'_>, options: &MjcfOptions) -> String {
     let mechanism = keyframes.mechanism();
     let skeleton = Skeleton::new(mechanism, None);
-    Model { mechanism, bodies: skeleton.bodies(), options }.document(keyframes)
+    let bodies = skeleton.bodies();
+    let density = options.density.of(mechanism);
+    let masses = mass::of_bodies(mechanism, bodies, density);
+    let time_step = options.time_step;
+    Model { mechanism, bodies, masses: &masses, density, time_step }.document(keyframes)
 }
 
 /// What is known while a model is written.
@@ -85,12 +82,17 @@ struct Model<'a> {
     mechanism: &'a Mechanism,
     /// The base, the links leg by leg, and the platform.
     bodies: &'a [Body],
-    options: &'a MjcfOptions,
+    /// Their masses, in their frames.
+    masses: &'a [Mass],
+    /// The density of bodies whose masses are not given, kilograms per cubic metre.
+    density: f64,
+    /// Seconds.
+    time_step: f64,
 }
 
 impl Model<'_> {
     fn document(&self, keyframes: &Keyframes<'_>) -> String {
-        let servos = Servos::new(self.bodies, self.options.density);
+        let servos = Servos::new(self.bodies, self.masses);
         let mut names = Names::of(self.mechanism);
         let mut base = Element::new("body").with("name", "base");
         base = base.children(geoms::shapes(&self.bodies[0]));
@@ -99,8 +101,7 @@ impl Model<'_> {
         let mut first = 1;
         for (number, leg) in self.mechanism.legs.iter().enumerate() {
             let links = leg.joints.len().saturating_sub(1);
-            let chain =
-                Chain { leg, first: number == 0, links: &self.bodies[first..first + links] };
+            let chain = Chain { leg, first: number == 0, links: first..first + links };
             first += links;
             let (tree, end) = self.chain(&chain, &servos, &mut names, &mut equality);
             if let Some(tree) = tree {
@@ -125,14 +126,14 @@ impl Model<'_> {
     /// The element `mujoco` with everything that comes before the bodies.
     fn heading(&self) -> Element {
         let option = Element::new("option")
-            .numbers("timestep", &[self.options.time_step])
+            .numbers("timestep", &[self.time_step])
             .with("integrator", "implicitfast")
             .with("solver", "Newton");
         // Bodies touch where they are joined, and their shapes are not those of a real mechanism.
         let geom = Element::new("geom")
             .with("contype", "0")
             .with("conaffinity", "0")
-            .numbers("density", &[self.options.density]);
+            .numbers("density", &[self.density]);
         // The smallest mechanisms have moments of inertia that MuJoCo takes for none.
         let compiler = Element::new("compiler")
             .with("angle", "radian")
@@ -155,15 +156,16 @@ impl Model<'_> {
         names: &mut Names,
         equality: &mut Element,
     ) -> (Option<Element>, String) {
-        let platform = &self.bodies[self.bodies.len() - 1];
+        let platform = self.bodies.len() - 1;
         let mut open: Vec<Element> = Vec::new();
         let mut parent = &self.bodies[0];
         let mut name = String::new();
         for (i, joint) in chain.leg.joints.iter().enumerate() {
             let end = i + 1 == chain.leg.joints.len();
-            let body = chain.links.get(i).unwrap_or(platform);
+            let number = if end { platform } else { chain.links.start + i };
+            let body = &self.bodies[number];
             name = if end && chain.first {
-                platform.name.clone()
+                PLATFORM.to_owned()
             } else {
                 names.body(format!("{}.{}", chain.leg.name, joint.name))
             };
@@ -176,9 +178,8 @@ impl Model<'_> {
                     equality.push(self.stiff(coupling));
                 }
             }
-            let mass = Mass::of_body(body, self.options.density);
             let share = if end { 1.0 / self.mechanism.legs.len() as f64 } else { 1.0 };
-            element.push(geoms::inertial(&mass.share(share)));
+            element.push(geoms::inertial(&self.masses[number].share(share)));
             // The end of another leg is the platform, drawn already.
             if !end || chain.first {
                 element = element.children(geoms::shapes(body));
@@ -207,7 +208,7 @@ impl Model<'_> {
     /// A constraint that is as stiff as the time step allows.
     fn stiff(&self, constraint: Element) -> Element {
         constraint
-            .numbers("solref", &[SOLREF_STEPS * self.options.time_step, 1.0])
+            .numbers("solref", &[SOLREF_STEPS * self.time_step, 1.0])
             .numbers("solimp", &SOLIMP)
     }
 
@@ -248,8 +249,8 @@ struct Chain<'a> {
     leg: &'a Leg,
     /// Whether it is the first leg, which carries the platform.
     first: bool,
-    /// Its bodies without the last one.
-    links: &'a [Body],
+    /// The numbers of its bodies, without the last one.
+    links: Range<usize>,
 }
 
 /// The name of the platform's body.

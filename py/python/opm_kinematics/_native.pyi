@@ -166,6 +166,52 @@ class Explorer:
     def _repr_html_(self) -> str: ...
 
 @final
+class Joint:
+    """A joint of a leg at home, in base coordinates. Its lists have an entry for each of its coordinates: one, two or three."""
+
+    @property
+    def name(self) -> str:
+        """Name of the joint."""
+    @property
+    def kind(self) -> str:
+        """``"revolute"``, ``"prismatic"``, ``"helical"``, ``"cylindrical"``, ``"universal"`` or ``"spherical"``."""
+    @property
+    def axis(self) -> tuple[float, float, float] | None:
+        """Unit vector along the axis; None for a spherical joint."""
+    @property
+    def axis2(self) -> tuple[float, float, float] | None:
+        """Unit vector along a universal joint's axis next to the platform; None for others."""
+    @property
+    def point(self) -> tuple[float, float, float]:
+        """A point of the axis, metres; the centre of a universal or spherical joint; where a prismatic joint is drawn."""
+    @property
+    def pitch(self) -> float | None:
+        """Advance of a helical joint, metres per radian; None for others."""
+    @property
+    def actuated(self) -> bool:
+        """Whether a motor drives it."""
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of its coordinates, as in `joints`."""
+    @property
+    def units(self) -> list[str]:
+        """``"m"`` or ``"rad"``."""
+    @property
+    def home(self) -> list[float]:
+        """The values at home, metres and radians."""
+    @property
+    def limits(self) -> list[tuple[float, float] | None]:
+        """The lowest and the highest value, or None."""
+    @property
+    def max_rate(self) -> list[float | None]:
+        """The largest rate, per second, or None."""
+    @property
+    def max_acceleration(self) -> list[float | None]:
+        """The largest acceleration, per second squared, or None."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
 class Linkage:
     """A single loop that decomposes into the loops of two sections, which share an imaginary joint.
 
@@ -263,7 +309,37 @@ class Linkage:
         OpmError
             There is no joint of this name.
         """
-    def to_mjcf(self, *, density: float = 2700.0, time_step: float = 0.001) -> str:
+    def to_urdf(self, *, density: float | None = None) -> str:
+        """The mechanism as a tree of links (URDF): the text of an XML file.
+
+        URDF has no loops; :meth:`to_closures` closes them. Joints have the names and the values of `joints`, but a ball is
+        three revolute joints ``NAME.1``, ``NAME.2`` and ``NAME.3``. A helical joint has a slide that follows it, which
+        Pinocchio reads with ``mimic=True``. The platform is the link ``platform``. It is the file that ``opm export urdf``
+        writes.
+
+        Parameters
+        ----------
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
+
+        Returns
+        -------
+        str
+            For ``pinocchio.buildModelFromXML``, or a file.
+
+        Raises
+        ------
+        OpmError
+            The density is not positive.
+        """
+    def to_closures(self) -> str:
+        """What closes the loops of the tree of :meth:`to_urdf`: the text of a YAML file.
+
+        It is what the loader of Gepetto's example-parallel-robots for Pinocchio reads: ``closed_loop`` has pairs of links
+        that coincide, ``type`` their type, and ``name_mot`` the actuated joints.
+        """
+    def to_mjcf(self, *, density: float | None = None, time_step: float = 0.001) -> str:
         """The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
 
         Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
@@ -272,8 +348,9 @@ class Linkage:
 
         Parameters
         ----------
-        density : float
-            Density of all bodies, kilograms per cubic metre.
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
         time_step : float
             Time step of the simulation, seconds; the loops are held as stiffly as it allows.
 
@@ -560,7 +637,104 @@ class Manipulator:
         OpmError
             The pose is out of reach.
         """
-    def to_mjcf(self, *, density: float = 2700.0, time_step: float = 0.001) -> str:
+    def mjcf_reference(
+        self, motion: str | PathLike[str], *, time_step: float = 0.001, mode: str | None = None
+    ) -> tuple[list[str], NDArray[np.float64]]:
+        """A motion in the coordinates of the model of :meth:`to_mjcf`: a row for each time step of a simulation.
+
+        A control leads the joint's value by what the servo lags, so that the model follows. It is the table that
+        ``opm export mjcf --trajectory`` writes.
+
+        Parameters
+        ----------
+        motion : path or str
+            A motion file, a table of poses (``.csv``), or the name of a shipped motion.
+        time_step : float
+            Time step of the simulation, seconds: that of :meth:`to_mjcf`.
+        mode : str, optional
+            ``"home"``, or a sign for every two-valued choice; if not given, the mode of the file, or home.
+
+        Returns
+        -------
+        tuple of (list of str, (n, 1 + nq + nu) ndarray)
+            Names of the columns, and the rows: the time, the values of ``data.qpos``, and those of ``data.ctrl``.
+
+        Raises
+        ------
+        OSError
+            The file cannot be read.
+        OpmError
+            Lists every problem of the file with its line and column; or the mechanism cannot follow the motion, or it has more
+            than a million time steps.
+        """
+    def to_urdf(self, *, density: float | None = None) -> str:
+        """The mechanism as a tree of links (URDF): the text of an XML file.
+
+        URDF has no loops; :meth:`to_closures` closes them. Joints have the names and the values of `joints`, but a ball is
+        three revolute joints ``NAME.1``, ``NAME.2`` and ``NAME.3``. A helical joint has a slide that follows it, which
+        Pinocchio reads with ``mimic=True``. The platform is the link ``platform``. It is the file that ``opm export urdf``
+        writes.
+
+        Parameters
+        ----------
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
+
+        Returns
+        -------
+        str
+            For ``pinocchio.buildModelFromXML``, or a file.
+
+        Raises
+        ------
+        OpmError
+            The density is not positive.
+        """
+    def to_closures(self) -> str:
+        """What closes the loops of the tree of :meth:`to_urdf`: the text of a YAML file.
+
+        It is what the loader of Gepetto's example-parallel-robots for Pinocchio reads: ``closed_loop`` has pairs of links
+        that coincide, ``type`` their type, and ``name_mot`` the actuated joints.
+        """
+    def to_joints(self) -> str:
+        """The mechanism as a file that lists its joints, in metres and radians, whatever the form of its own file.
+
+        It gives the same joint values at the same poses, in the same working modes. Imaginary joints are called ``tau.LEG``
+        there, and are zero at home. It is the file that ``opm convert --joints`` writes, apart from the units.
+
+        Returns
+        -------
+        str
+            For :meth:`parse`, or a file.
+        """
+    @property
+    def legs(self) -> dict[str, list[Joint]]:
+        """The joints of each leg, from base to platform, by the legs' names."""
+    @property
+    def reference_point(self) -> tuple[float, float, float]:
+        """The platform's reference point at home, base coordinates, metres."""
+    def twist_jacobian(
+        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+    ) -> NDArray[np.float64]:
+        """The platform's twist for unit rates of the task coordinates.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+            One row for each pose, one column for each task coordinate; metres and radians.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. One for each processor if not given.
+
+        Returns
+        -------
+        (n, 6, d) ndarray
+            The rows are the angular velocity, then the velocity of the platform's reference point, both along the axes of the
+            base, rad/s and m/s. NaN where the pose is out of reach.
+        """
+    def to_mjcf(self, *, density: float | None = None, time_step: float = 0.001) -> str:
         """The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
 
         Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
@@ -569,8 +743,9 @@ class Manipulator:
 
         Parameters
         ----------
-        density : float
-            Density of all bodies, kilograms per cubic metre.
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
         time_step : float
             Time step of the simulation, seconds; the loops are held as stiffly as it allows.
 

@@ -299,6 +299,7 @@ fn turntable(rng: &mut Rng) -> Option<Manipulator> {
         legs,
         platform: Point3::origin(),
         task: Default::default(),
+        bodies: Default::default(),
     };
     Manipulator::new(mechanism).ok()
 }

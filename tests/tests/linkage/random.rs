@@ -125,5 +125,11 @@ pub fn linkage(rng: &mut Rng, pattern: [usize; 2]) -> Mechanism {
     let leg = rng.usize(..2);
     let joint = rng.usize(..legs[leg].joints.len());
     legs[leg].joints[joint].actuated = true;
-    Mechanism { name: "random".into(), legs, platform: far, task: TaskHints::default() }
+    Mechanism {
+        name: "random".into(),
+        legs,
+        platform: far,
+        task: TaskHints::default(),
+        bodies: Default::default(),
+    }
 }

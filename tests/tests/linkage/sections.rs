@@ -180,7 +180,13 @@ fn mechanism(rng: &mut Rng, shared: Shared, mut sections: [Section; 2]) -> Mecha
     let joint = rng.usize(..legs[leg].joints.len());
     legs[leg].joints[joint].actuated = true;
     let platform = by * Point3::new(0.3, 0.2, -rng.f64());
-    Mechanism { name: "random".into(), legs, platform, task: TaskHints::default() }
+    Mechanism {
+        name: "random".into(),
+        legs,
+        platform,
+        task: TaskHints::default(),
+        bodies: Default::default(),
+    }
 }
 
 /// A random value within half a revolution or some metres of home.

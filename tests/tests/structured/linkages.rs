@@ -76,7 +76,13 @@ fn apart(mut lower: Vec<Joint>, upper: Vec<Joint>) -> Mechanism {
     lower[0].actuated = true;
     let legs = vec![Leg::new("lower", lower), Leg::new("upper", upper)];
     let platform = Point3::origin();
-    Mechanism { name: "structured".into(), legs, platform, task: TaskHints::default() }
+    Mechanism {
+        name: "structured".into(),
+        legs,
+        platform,
+        task: TaskHints::default(),
+        bodies: Default::default(),
+    }
 }
 
 /// Planar loops with a pivot at the origin, which is the imaginary joint, about z.

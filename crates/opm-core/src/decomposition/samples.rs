@@ -47,6 +47,7 @@ pub(crate) fn mechanism(name: &str, legs: Vec<Vec<Joint>>) -> Mechanism {
         legs: legs.into_iter().enumerate().map(leg).collect(),
         platform: Point3::origin(),
         task: TaskHints::default(),
+        bodies: Default::default(),
     }
 }
 

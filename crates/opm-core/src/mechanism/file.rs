@@ -41,8 +41,12 @@
 //! | `normal` | the plane's normal about which `y` and the angle are positive | planes that share a translation and have an angle or `y` |
 //! | `origin` | the point that lengths are measured from | all sections with a length among their coordinates |
 //! | `coordinates` | `"euler-angles"` (default) or `"tilt-torsion"`: the angles of an orientation, [`OrientationCoordinates`](super::OrientationCoordinates); in the files of families too | the one with `zeta xi psi` |
+//! | `home` | the values of task coordinates at home, such as `{ x = 10, xi = 5 }`; without it lengths follow from the geometry, and angles are zero | all sections |
 //!
 //! Every key may be left out. `opm decompose` prints the resulting frames.
+//!
+//! `[bodies]`, in both forms, says what the bodies weigh, for models of simulators: `density` in kilograms per cubic metre,
+//! and `masses`, a table of kilograms by the names of bodies: `platform`, or the joint that carries a link.
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
 //! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Some names are columns of tables and
@@ -50,6 +54,8 @@
 //! `mode`, `branch`, and the imaginary joints of the legs (`tau.leg1`). An unknown key is a
 //! problem, and its message suggests the nearest known key.
 
+#[cfg(feature = "files")]
+mod bodies;
 mod change;
 pub(crate) mod checks;
 mod heading;

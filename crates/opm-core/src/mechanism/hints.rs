@@ -1,6 +1,7 @@
 //! How the platform's pose is measured, where the geometry alone leaves it open.
 
 use crate::mechanism::leg::Section;
+use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 
@@ -23,6 +24,26 @@ pub struct TaskHints {
     /// geometry.
     pub home: Vec<(String, f64)>,
 }
+
+/// The task coordinates whose values at home a file can give. Tilt and torsion follow from the Euler angles, in whose place
+/// they stand.
+pub(crate) const HOME_COORDINATES: [(&str, Quantity); 12] = {
+    use Quantity::{Angle, Length};
+    [
+        ("x", Length),
+        ("y", Length),
+        ("z", Length),
+        ("h", Length),
+        ("w", Length),
+        ("theta", Angle),
+        ("phi", Angle),
+        ("zeta", Angle),
+        ("xi", Angle),
+        ("psi", Angle),
+        ("mu", Angle),
+        ("nu", Angle),
+    ]
+};
 
 /// The angles with which the orientation of a spherical section is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -91,6 +112,8 @@ pub enum TaskKey {
     Axis,
     /// `coordinates`: [`TaskHints::coordinates`].
     Coordinates,
+    /// `home`: [`TaskHints::home`].
+    Home,
     /// `axis` of a section: [`FrameHints::axis`].
     AxisOf(Section),
     /// `x` of a section: [`FrameHints::x`].
@@ -104,11 +127,12 @@ pub enum TaskKey {
 }
 
 impl TaskKey {
-    /// The last part of the key: `x`, `w`, `normal`, `origin`, `axis`, or `coordinates`.
+    /// The last part of the key: `x`, `w`, `normal`, `origin`, `axis`, `coordinates`, or `home`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Axis | Self::AxisOf(_) => "axis",
             Self::Coordinates => "coordinates",
+            Self::Home => "home",
             Self::X(_) => "x",
             Self::W(_) => "w",
             Self::Normal(_) => "normal",
@@ -121,7 +145,7 @@ impl fmt::Display for TaskKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.name();
         match self {
-            Self::Axis | Self::Coordinates => f.write_str(name),
+            Self::Axis | Self::Coordinates | Self::Home => f.write_str(name),
             Self::AxisOf(section)
             | Self::X(section)
             | Self::W(section)

@@ -29,6 +29,20 @@ pub enum JointKind {
     Spherical,
 }
 
+impl JointKind {
+    /// The `type` in mechanism files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Revolute => "revolute",
+            Self::Prismatic => "prismatic",
+            Self::Helical { .. } => "helical",
+            Self::Cylindrical => "cylindrical",
+            Self::Universal { .. } => "universal",
+            Self::Spherical => "spherical",
+        }
+    }
+}
+
 /// The limits of how fast one joint coordinate moves. Trajectories are compared with them; reach, workspaces and
 /// inverse kinematics do not depend on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

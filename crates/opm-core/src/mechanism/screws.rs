@@ -1,6 +1,6 @@
 //! Mechanisms built from the screws of their joints alone.
 
-use super::{Mechanism, TaskHints};
+use super::{BodyMasses, Mechanism, TaskHints};
 use crate::group::screw::Screw;
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::Leg;
@@ -120,7 +120,8 @@ impl Mechanism {
             .into_iter()
             .map(|(name, joints)| Leg::new(name, joints.into_iter().map(build).collect()))
             .collect();
-        Ok(Self { name: name.into(), legs, platform, task: TaskHints::default() })
+        let (task, bodies) = (TaskHints::default(), BodyMasses::default());
+        Ok(Self { name: name.into(), legs, platform, task, bodies })
     }
 }
 

@@ -219,6 +219,7 @@ fn listed<const N: usize>(coordinates: [(CoordinateKind, f64); N]) -> Vec<TaskCo
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanism::HOME_COORDINATES;
 
     #[test]
     fn a_name_is_that_of_one_kind() {
@@ -227,5 +228,17 @@ mod tests {
             assert_eq!(TaskCoordinate::new(kind, 0.5).kind(), kind);
         }
         assert_eq!(CoordinateKind::from_name("xI"), None);
+    }
+
+    #[test]
+    fn a_file_can_give_the_home_of_every_kind() {
+        use CoordinateKind::{Azimuth, Tilt, Torsion};
+        let kinds = CoordinateKind::ALL.into_iter();
+        let given = kinds.filter(|kind| !matches!(kind, Azimuth | Tilt | Torsion));
+        let mut given: Vec<_> = given.map(|kind| (kind.name(), kind.quantity())).collect();
+        let mut known = HOME_COORDINATES.to_vec();
+        given.sort_by_key(|(name, _)| *name);
+        known.sort_by_key(|(name, _)| *name);
+        assert_eq!(known, given);
     }
 }

@@ -74,7 +74,7 @@ pub enum TaskError {
         problem: FrameProblem,
     },
     /// The mechanism names a coordinate that its subspaces do not have.
-    #[error("home gives `{name}`, but the task coordinates are {expected}")]
+    #[error("[task] home gives `{name}`, but the task coordinates are {expected}")]
     Unknown {
         /// The name given.
         name: String,
@@ -89,11 +89,10 @@ impl TaskError {
         match self {
             Self::Axis { .. } => Some(TaskKey::Axis),
             Self::Frame { key, .. } => Some(*key),
-            Self::Subspace { .. }
-            | Self::Screw
-            | Self::Height { .. }
-            | Self::JointName { .. }
-            | Self::Unknown { .. } => None,
+            Self::Unknown { .. } => Some(TaskKey::Home),
+            Self::Subspace { .. } | Self::Screw | Self::Height { .. } | Self::JointName { .. } => {
+                None
+            }
         }
     }
 }

@@ -217,7 +217,7 @@ impl Checked<'_> {
             TaskKey::W(_) => self.hints.w,
             TaskKey::Normal(_) => self.hints.normal,
             TaskKey::AxisOf(_) => self.hints.axis,
-            TaskKey::Axis | TaskKey::Coordinates | TaskKey::Origin(_) => None,
+            TaskKey::Axis | TaskKey::Coordinates | TaskKey::Home | TaskKey::Origin(_) => None,
         };
         given.map(Unit::new_normalize)
     }

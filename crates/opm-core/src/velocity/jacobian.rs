@@ -263,6 +263,24 @@ impl Manipulator {
         Ok(regular)
     }
 
+    /// The platform's twist `(ω; v)` for unit rates of the task coordinates at the pose of `jacobians`: a column for each.
+    /// `ω` is the angular velocity and `v` the velocity of the platform's reference point, both in base directions, rad/s
+    /// and m/s. They are NaN where dependent coordinates do not follow from the others. The product is allocated.
+    pub fn twist_by_pose(&self, jacobians: &Jacobians) -> Matrix6xX<f64> {
+        let mut by_all = &jacobians.platform * &jacobians.pose;
+        let lower = self.task().lower.isometry(&jacobians.v).rotation;
+        for mut column in by_all.column_iter_mut() {
+            for first in [0, 3] {
+                let turned = lower * column.fixed_rows::<3>(first).into_owned();
+                column.fixed_rows_mut::<3>(first).copy_from(&turned);
+            }
+        }
+        match &jacobians.by_independent {
+            Some(rates) => by_all * rates,
+            None => by_all,
+        }
+    }
+
     /// Computes the rates of the joints alone, at a pose that is in reach. [`Jacobians::pose`] and
     /// [`Jacobians::platform`] are not computed. Returns `false` if some joints have no rates.
     #[inline(always)]

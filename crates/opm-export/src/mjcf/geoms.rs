@@ -1,9 +1,10 @@
 //! The shapes and the masses of bodies.
 
+use crate::color::{MATERIALS, color};
 use crate::mass::Mass;
 use crate::xml::Element;
 use nalgebra::{UnitQuaternion, Vector3};
-use opm_core::skeleton::{Body, Material, Part, Solid};
+use opm_core::skeleton::{Body, Part, Solid};
 
 /// The shapes of a body.
 pub fn shapes(body: &Body) -> impl Iterator<Item = Element> {
@@ -22,9 +23,7 @@ pub fn inertial(mass: &Mass) -> Element {
 
 /// The colours.
 pub fn materials() -> Element {
-    use Material::{Actuated, Base, Link, Passive, Platform};
-    let all = [Base, Link, Actuated, Passive, Platform];
-    Element::new("asset").children(all.map(|material| {
+    Element::new("asset").children(MATERIALS.map(|material| {
         Element::new("material").with("name", material.name()).numbers("rgba", &color(material))
     }))
 }
@@ -52,16 +51,4 @@ fn geom(part: &Part) -> Element {
         }
     };
     shape.with("material", part.material.name())
-}
-
-/// The colour of a material.
-fn color(material: Material) -> [f64; 4] {
-    match material {
-        Material::Base => [0.25, 0.27, 0.3, 1.0],
-        Material::Link => [0.7, 0.72, 0.75, 1.0],
-        Material::Actuated => [0.9, 0.5, 0.1, 1.0],
-        Material::Passive => [0.55, 0.75, 0.9, 1.0],
-        Material::Platform => [0.15, 0.4, 0.75, 1.0],
-        Material::Imaginary => [0.6, 0.6, 0.6, 0.3],
-    }
 }

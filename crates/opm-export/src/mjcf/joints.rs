@@ -2,6 +2,7 @@
 
 use super::list;
 use super::servo::Servos;
+use crate::names::unique;
 use crate::xml::Element;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use opm_core::mechanism::Mechanism;
@@ -49,18 +50,15 @@ impl Names {
         }
     }
 
+    /// A name for the slide of a helical joint.
+    fn slide(&mut self, joint: &Joint) -> String {
+        unique(&mut self.joints, format!("{}.slide", joint.name))
+    }
+
     /// A name for a body, as it is wanted or with underscores behind.
     pub fn body(&mut self, wanted: String) -> String {
         unique(&mut self.bodies, wanted)
     }
-}
-
-fn unique(taken: &mut BTreeSet<String>, wanted: String) -> String {
-    let mut name = wanted;
-    while !taken.insert(name.clone()) {
-        name.push('_');
-    }
-    name
 }
 
 /// The joints between a body and its parent, the one nearest to the parent first.
@@ -93,7 +91,7 @@ pub fn joints(joint: &Joint, body: &Body, servos: &Servos, names: &mut Names) ->
         JointKind::Spherical => vec![alone(servos.armed(one("ball", &joint.name, None), joint, 0))],
         JointKind::Helical { pitch } => {
             let hinge = &joint.coordinates[0].name;
-            let slide = unique(&mut names.joints, format!("{}.slide", joint.name));
+            let slide = names.slide(joint);
             let (follows, leads, ratio) = if pitch.abs() < LARGE_PITCH {
                 (&**hinge, &*slide, 1.0 / pitch)
             } else {
@@ -118,6 +116,42 @@ fn limited(element: Element, coordinate: &JointCoordinate) -> Element {
         Some(limits) => element.with("limited", "true").with("range", list(&limits)),
         None => element,
     }
+}
+
+/// A number of a posture.
+pub enum Column {
+    /// One of `qpos`.
+    Position(String),
+    /// One of `ctrl`.
+    Control(String),
+}
+
+/// The names of the values of a posture: the positions, then the controls, each in the order of the model. A quaternion is
+/// `NAME.w`, `NAME.x`, `NAME.y`, `NAME.z`.
+pub fn columns(mechanism: &Mechanism) -> impl Iterator<Item = Column> {
+    let mut names = Names::of(mechanism);
+    let (mut positions, mut controls) = (Vec::new(), Vec::new());
+    for joint in mechanism.joints() {
+        let own = || joint.coordinates.iter().map(|c| c.name.clone());
+        match joint.kind {
+            JointKind::Spherical => {
+                positions.extend(["w", "x", "y", "z"].map(|part| format!("{}.{part}", joint.name)));
+            }
+            JointKind::Helical { .. } => {
+                positions.extend(own());
+                positions.push(names.slide(joint));
+            }
+            JointKind::Revolute
+            | JointKind::Prismatic
+            | JointKind::Cylindrical
+            | JointKind::Universal { .. } => positions.extend(own()),
+        }
+        if joint.actuated {
+            controls.extend(own());
+        }
+    }
+    let positions = positions.into_iter().map(Column::Position);
+    positions.chain(controls.into_iter().map(Column::Control))
 }
 
 /// The values of a posture; `joints` has one for each coordinate, leg by leg.

@@ -15,6 +15,8 @@ use std::f64::consts::TAU;
 
 /// The natural frequency of a servo on its load, radians per second: 20 Hz.
 const FREQUENCY: f64 = 20.0 * TAU;
+/// A reference that is this many seconds ahead makes up for the lag of a servo: its damping over its stiffness.
+pub const LEAD: f64 = 2.0 / FREQUENCY;
 /// The inertia of a motor, as a share of its load.
 const ARMATURE: f64 = 0.1;
 
@@ -26,11 +28,9 @@ pub struct Servos {
 
 impl Servos {
     /// The first of the bodies is the base.
-    pub fn new(bodies: &[Body], density: f64) -> Self {
-        let masses = bodies[1..].iter().map(|body| {
-            let mass = Mass::of_body(body, density);
-            mass.moved(body.origin.coords)
-        });
+    pub fn new(bodies: &[Body], masses: &[Mass]) -> Self {
+        let moving = bodies.iter().zip(masses).skip(1);
+        let masses = moving.map(|(body, mass)| mass.moved(body.origin.coords));
         Self { moving: Mass::sum(&masses.collect::<Vec<_>>()) }
     }
 

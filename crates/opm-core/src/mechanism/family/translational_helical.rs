@@ -29,7 +29,7 @@ use crate::chain::translational::TranslationalChain;
 use crate::group::{CylindricalDisplacement, JointDisplacement};
 use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::mechanism::leg::{ImaginaryLabel, Leg};
-use crate::mechanism::{Mechanism, TaskHints};
+use crate::mechanism::{BodyMasses, Mechanism, TaskHints};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -125,6 +125,7 @@ impl TranslationalHelical {
                 home: vec![("x".into(), x), ("y".into(), y), ("phi".into(), phi)],
                 ..TaskHints::default()
             },
+            bodies: BodyMasses::default(),
         })
     }
 }

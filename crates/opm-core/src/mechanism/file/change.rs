@@ -77,7 +77,8 @@ pub fn text(mechanism: &Mechanism, family: Option<&Family>, units: FileUnits) ->
             // The frames of a family are given.
             let coordinates = mechanism.task.coordinates;
             let hints = TaskHints { coordinates, ..TaskHints::default() };
-            family.write_in(units) + &writer::task(&hints, units, Digits::All)
+            let task = writer::task(&hints, units, Digits::All);
+            family.write_in(units) + &task + &writer::bodies(&mechanism.bodies)
         }
         None => write(mechanism, units, Digits::All),
     }

@@ -5,13 +5,15 @@ use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
 use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
 use crate::mechanism::leg::{Leg, Section};
-use crate::mechanism::{FrameHints, Mechanism, OrientationCoordinates, TaskHints, TaskKey};
+use crate::mechanism::{
+    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, TaskHints, TaskKey,
+};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
 
-pub(super) const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "leg"];
+pub(super) const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "bodies", "leg"];
 pub(super) const LEG_KEYS: &[&str] = &["name", "joints"];
-pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates"];
+pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates", "home"];
 /// The keys of `[task]` in the file of a family, of which the frames are given.
 pub(super) const FAMILY_TASK_KEYS: &[&str] = &["coordinates"];
 pub(super) const FRAME_KEYS: &[&str] = &["x", "axis", "w", "normal", "origin"];
@@ -139,7 +141,8 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         let problem = format!("found {count} {tables} [[leg]], expected at least 2 legs");
         root.reader.report(at, problem);
     }
-    (Mechanism { name: name.to_owned(), legs, platform, task }, locations)
+    let bodies = BodyMasses::default();
+    (Mechanism { name: name.to_owned(), legs, platform, task, bodies }, locations)
 }
 
 /// Reads `[task]`: how the pose is measured. Whether it fits the geometry is checked later.
@@ -149,8 +152,19 @@ fn read_task(task: &Table<'_>, locations: &mut Locations<usize>) -> TaskHints {
         lower: read_frame(task, Section::Lower, locations),
         upper: read_frame(task, Section::Upper, locations),
         coordinates: read_angles(task, locations),
-        home: Vec::new(),
+        home: read_home(task, locations),
     }
+}
+
+/// Reads the values of task coordinates at home. Whether the mechanism has these coordinates is checked later.
+fn read_home(task: &Table<'_>, locations: &mut Locations<usize>) -> Vec<(String, f64)> {
+    let value = task_value(task, TaskKey::Home, locations);
+    let Some(home) = value.and_then(|value| value.table(&HOME_COORDINATES.map(|(name, _)| name)))
+    else {
+        return Vec::new();
+    };
+    let read = |(name, quantity)| Some((str::to_owned(name), home.get(name)?.quantity(quantity)?));
+    HOME_COORDINATES.into_iter().filter_map(read).collect()
 }
 
 /// Reads which angles an orientation is written with.

@@ -3,7 +3,7 @@
 use super::problem::{FileErrors, Locations, Problem};
 use super::reader::{Reader, Table};
 use super::units::{AngleUnit, FileUnits, LengthUnit};
-use super::{MechanismFile, joints};
+use super::{MechanismFile, bodies, joints};
 use crate::chain::Branch;
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::{AssemblyError, AssemblyReason, FORMS, Family};
@@ -11,6 +11,9 @@ use toml::de::DeTable;
 
 /// The format number that this version reads.
 pub(crate) const FORMAT: i64 = 1;
+
+/// The keys that the file of every family may have.
+pub(super) const FAMILY_KEYS: &[&str] = &["task", "bodies"];
 
 /// Reads the text of a mechanism file.
 ///
@@ -70,17 +73,19 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     let name = head(root, "mechanism")?;
     let units = root.reader.units();
     let Some(family) = root.get("family") else {
-        let (mechanism, noted) = joints::read(root, name);
+        let (mut mechanism, noted) = joints::read(root, name);
+        mechanism.bodies = bodies::read(root, &mechanism);
         let places = Locations::default();
         return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
     };
     let form = family.word(&FORMS)?;
-    root.allow(&[form.keys, &["task"]].concat());
+    root.allow(&[form.keys, FAMILY_KEYS].concat());
     let mut noted = Locations::default();
     let task = root.get("task").and_then(|value| value.table(joints::FAMILY_TASK_KEYS));
     let coordinates = task.map(|task| joints::read_angles(&task, &mut noted)).unwrap_or_default();
     let (family, mut mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
     mechanism.task.coordinates = coordinates;
+    mechanism.bodies = bodies::read(root, &mechanism);
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
     Some((MechanismFile { mechanism, units, mode, family, places }, noted))
 }

@@ -314,6 +314,13 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// The keys, in alphabetic order.
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        let mut keys: Vec<&str> = self.entries.keys().map(|key| &**key.get_ref()).collect();
+        keys.sort_unstable();
+        keys.into_iter()
+    }
+
     /// The value of an optional key.
     pub(crate) fn get(&self, key: &str) -> Option<Value<'a>> {
         let (key, value) = self.entries.get_key_value(key)?;

@@ -2,7 +2,9 @@
 
 use super::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
-use crate::mechanism::{Mechanism, OrientationCoordinates, TaskHints};
+use crate::mechanism::{
+    BodyMasses, HOME_COORDINATES, Mechanism, OrientationCoordinates, TaskHints,
+};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
@@ -23,8 +25,8 @@ const DECIMALS: usize = 12;
 /// The same for components of unit vectors.
 const UNIT_DECIMALS: usize = 14;
 
-/// Writes a mechanism as a file that lists its joints. The names of imaginary joints and the home
-/// values of task coordinates, which a family can set, have no place in such a file and are lost.
+/// Writes a mechanism as a file that lists its joints. The names of imaginary joints and their values at home, which a
+/// family sets, have no place in such a file and are lost: there they are `tau.LEG`, and zero at home.
 pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String {
     let writer = Writer { units, digits };
     let mut text = format!(
@@ -35,6 +37,7 @@ pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String 
     );
     let _ = write!(text, "\n[platform]\npoint = {}\n", writer.point(mechanism.platform));
     text.push_str(&writer.task(&mechanism.task));
+    text.push_str(&bodies(&mechanism.bodies));
     for leg in &mechanism.legs {
         let _ = write!(text, "\n[[leg]]\nname = {}\njoints = [\n", quoted(&leg.name));
         for joint in &leg.joints {
@@ -48,6 +51,19 @@ pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String 
 /// The table `[task]` of a mechanism, or nothing if there are no hints.
 pub(super) fn task(hints: &TaskHints, units: FileUnits, digits: Digits) -> String {
     Writer { units, digits }.task(hints)
+}
+
+/// The table `[bodies]` of a mechanism, or nothing if no mass is given.
+pub(super) fn bodies(given: &BodyMasses) -> String {
+    let mut text = String::new();
+    if let Some(density) = given.density {
+        let _ = writeln!(text, "density = {density:?}");
+    }
+    if !given.masses.is_empty() {
+        let masses = given.masses.iter().map(|(name, mass)| format!("{} = {mass:?}", quoted(name)));
+        let _ = writeln!(text, "masses = {{ {} }}", masses.collect::<Vec<_>>().join(", "));
+    }
+    if text.is_empty() { text } else { format!("\n[bodies]\n{text}") }
 }
 
 #[derive(Clone, Copy)]
@@ -77,6 +93,14 @@ impl Writer {
                 lines.push(format!("{name} = {{ {} }}", keys.join(", ")));
             }
         }
+        let home = hints.home.iter().filter_map(|(name, value)| {
+            let (_, quantity) = HOME_COORDINATES.into_iter().find(|(known, _)| known == name)?;
+            Some(format!("{name} = {}", self.number(*value, quantity)))
+        });
+        let home: Vec<_> = home.collect();
+        if !home.is_empty() {
+            lines.push(format!("home = {{ {} }}", home.join(", ")));
+        }
         if hints.coordinates != OrientationCoordinates::default() {
             lines.push(format!("coordinates = {}", quoted(hints.coordinates.name())));
         }
@@ -85,24 +109,17 @@ impl Writer {
 
     /// The entries of a joint, one per key.
     fn entries(self, joint: &Joint) -> Vec<String> {
-        let (kind, second, pitch) = match joint.kind {
-            JointKind::Revolute => ("revolute", None, None),
-            JointKind::Prismatic => ("prismatic", None, None),
-            JointKind::Helical { pitch } => ("helical", None, Some(pitch)),
-            JointKind::Cylindrical => ("cylindrical", None, None),
-            JointKind::Universal { second } => ("universal", Some(second), None),
-            JointKind::Spherical => ("spherical", None, None),
-        };
+        let kind = joint.kind.name();
         let mut entries =
             vec![format!("name = {}", quoted(&joint.name)), format!("type = \"{kind}\"")];
         if joint.kind != JointKind::Spherical {
             entries.push(format!("axis = {}", self.direction(&joint.axis)));
         }
-        if let Some(second) = second {
+        if let JointKind::Universal { second } = joint.kind {
             entries.push(format!("axis2 = {}", self.direction(&second)));
         }
         entries.push(format!("point = {}", self.point(joint.point)));
-        if let Some(pitch) = pitch {
+        if let JointKind::Helical { pitch } = joint.kind {
             entries.push(format!("pitch = {}", self.number(pitch, Quantity::Length)));
         }
         if joint.actuated {

@@ -10,6 +10,7 @@ use crate::mechanism::family::{
 };
 use crate::mechanism::file::joints::FAMILY_TASK_KEYS;
 use crate::mechanism::file::parameters::{joint_keys, keys};
+use crate::mechanism::file::read::FAMILY_KEYS;
 use crate::mechanism::joint::MotionLimit;
 use serde_json::{Value, json};
 
@@ -168,7 +169,7 @@ fn form_of(family: &FamilyForm) -> Value {
     legs.dedup();
     let task = form(FAMILY_TASK_KEYS, &[], &[]);
     narrower.push(("task", task));
-    form(&[family.keys, &["task"]].concat(), &legs, &narrower)
+    form(&[family.keys, FAMILY_KEYS].concat(), &legs, &narrower)
 }
 
 /// Whether a leg must have the parameter.

@@ -4,11 +4,11 @@ use super::Properties;
 use super::values::{
     array, cases, closed, described, direction, exactly, form, name, number, object, point,
 };
-use crate::mechanism::OrientationCoordinates;
 use crate::mechanism::file::joints::{
     FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
 };
 use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
+use crate::mechanism::{HOME_COORDINATES, OrientationCoordinates};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
@@ -53,6 +53,7 @@ fn task_key(key: &str) -> Value {
         "lower" => frame("The frame of the lower section, next to the base."),
         "upper" => frame("The frame of the upper section, next to the platform."),
         "coordinates" => orientation_coordinates(),
+        "home" => home(),
         _ => Value::Bool(true),
     }
 }
@@ -65,6 +66,15 @@ fn orientation_coordinates() -> Value {
                         (azimuth tilt torsion, with R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)).",
         "enum": words,
     })
+}
+
+/// What `home` means.
+fn home() -> Value {
+    let coordinate = |(name, quantity)| {
+        (str::to_owned(name), number("the value of this task coordinate at home", quantity))
+    };
+    let what = "The values of task coordinates at home, where they are not those that follow from the geometry.";
+    closed(what, HOME_COORDINATES.into_iter().map(coordinate).collect(), &[])
 }
 
 fn frame_key(key: &str) -> Value {

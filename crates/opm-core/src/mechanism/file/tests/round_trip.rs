@@ -3,7 +3,7 @@
 use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, write};
 use crate::mechanism::joint::{Joint, JointKind, MotionLimits};
 use crate::mechanism::leg::Leg;
-use crate::mechanism::{FrameHints, Mechanism, TaskHints};
+use crate::mechanism::{BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, TaskHints};
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;
 
@@ -74,8 +74,12 @@ prop_compose! {
 prop_compose! {
     fn task()(
         axis in proptest::option::of(direction()), lower in frame(), upper in frame(),
+        home in prop::sample::subsequence(&HOME_COORDINATES[..], 0..=HOME_COORDINATES.len()),
+        values in prop::collection::vec(-3.0..3.0_f64, HOME_COORDINATES.len()),
     ) -> TaskHints {
-        TaskHints { axis: axis.map(Unit::into_inner), lower, upper, ..TaskHints::default() }
+        let home = home.into_iter().zip(values).map(|((name, _), value)| (name.to_owned(), value));
+        let axis = axis.map(Unit::into_inner);
+        TaskHints { axis, lower, upper, home: home.collect(), ..TaskHints::default() }
     }
 }
 
@@ -92,7 +96,8 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
     let names = names.unwrap().prop_filter("a name", |name| {
         !name.contains(|c: char| c.is_control() || ",=\"".contains(c))
     });
-    (names, legs, point(), task()).prop_map(|(name, legs, platform, task)| {
+    let weights = (proptest::option::of(1.0..9e3_f64), prop::collection::vec(0.01..9.0_f64, 0..30));
+    (names, legs, point(), task(), weights).prop_map(|(name, legs, platform, task, weights)| {
         let mut number = 0;
         let mut legs: Vec<Leg> = legs
             .into_iter()
@@ -112,7 +117,11 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
             })
             .collect();
         legs[0].joints[0].actuated = true;
-        Mechanism { name, legs, platform, task }
+        let mut mechanism = Mechanism { name, legs, platform, task, bodies: BodyMasses::default() };
+        let names = mechanism.body_names().map(str::to_owned);
+        let masses = names.zip(weights.1).collect();
+        mechanism.bodies = BodyMasses { density: weights.0, masses };
+        mechanism
     })
 }
 
@@ -158,6 +167,12 @@ proptest! {
             prop_assert_eq!(read.is_some(), written.is_some());
             let off = read.unwrap_or_default() - written.unwrap_or_default();
             prop_assert!(off.norm() < WRITTEN, "{text}");
+        }
+        prop_assert_eq!(&read.bodies, &mechanism.bodies);
+        prop_assert_eq!(read.task.home.len(), mechanism.task.home.len());
+        for (read, written) in read.task.home.iter().zip(&mechanism.task.home) {
+            prop_assert_eq!(&read.0, &written.0);
+            prop_assert!((read.1 - written.1).abs() < WRITTEN);
         }
         let names = |m: &Mechanism| -> Vec<_> {
             m.legs.iter().map(|leg| (leg.name.clone(), leg.joints.len())).collect()

@@ -1,0 +1,49 @@
+//! The joints of a mechanism as data: what a program needs to build it.
+
+use super::triple_json;
+use opm_core::mechanism::Mechanism;
+use opm_core::mechanism::joint::{Joint, JointCoordinate, JointKind};
+use serde_json::{Map, Value, json};
+
+/// Adds the reference point, and every joint with the keys of a mechanism file. All of it is at home, SI.
+pub fn insert(json: &mut Map<String, Value>, mechanism: &Mechanism) {
+    json.insert("reference_point".to_owned(), json!(triple_json(&mechanism.platform.coords)));
+    let of_leg = mechanism
+        .legs
+        .iter()
+        .flat_map(|leg| leg.joints.iter().map(|joint| joint_json(&leg.name, joint)));
+    json.insert("joints".to_owned(), of_leg.collect());
+}
+
+fn joint_json(leg: &str, joint: &Joint) -> Value {
+    let axis = (joint.kind != JointKind::Spherical).then(|| triple_json(&joint.axis));
+    let (second, pitch) = match joint.kind {
+        JointKind::Universal { second } => (Some(triple_json(&second)), None),
+        JointKind::Helical { pitch } => (None, Some(pitch)),
+        JointKind::Revolute
+        | JointKind::Prismatic
+        | JointKind::Cylindrical
+        | JointKind::Spherical => (None, None),
+    };
+    // One value, or an array with one for each coordinate, as in a file.
+    let each = |value: fn(&JointCoordinate) -> Value| match &*joint.coordinates {
+        [one] => value(one),
+        several => several.iter().map(value).collect(),
+    };
+    json!({
+        "name": joint.name,
+        "leg": leg,
+        "type": joint.kind.name(),
+        "axis": axis,
+        "axis2": second,
+        "point": triple_json(&joint.point.coords),
+        "pitch": pitch,
+        "actuated": joint.actuated,
+        "coordinates": joint.coordinates.iter().map(|c| &*c.name).collect::<Vec<_>>(),
+        "unit": each(|c| c.quantity.unit().into()),
+        "home": each(|c| c.home.into()),
+        "limits": each(|c| json!(c.limits)),
+        "max_rate": each(|c| json!(c.motion_limits.max_rate)),
+        "max_acceleration": each(|c| json!(c.motion_limits.max_acceleration)),
+    })
+}
