@@ -435,6 +435,31 @@ def test_a_motion_is_played_and_its_violations_are_those_of_the_command_line(exp
     explorer.page.click("#problems button")
 
 
+def test_a_link_has_the_motion(explore, tmp_path):
+    explorer = explore()
+    explorer.choose("motion", "plano-spherical-sinusoids")
+    shipped = explorer.page.evaluate("location.hash")
+    assert "motion=plano-spherical-sinusoids" in shipped and "motion.file" not in shipped
+    table = tmp_path / "away.csv"
+    table.write_text("t,y [mm]\n0,0\n2,20\n")
+    explorer.page.set_input_files("#file", table)
+    explorer.page.wait_for_function("document.querySelector('#motion').value === 'away.csv'")
+    explorer.ready()
+    told = explorer.text("motion-summary")
+    assert "follows all 201 samples" in told
+    other = explore(explorer.page.evaluate("location.hash"))
+    assert (other.value("motion"), other.text("motion-summary")) == ("away.csv", told)
+    other.page.locator("#time").fill("2")
+    other.ready()
+    assert float(other.value("pose-y")) == pytest.approx(20, abs=1e-4)
+    # Back is the motion before.
+    explorer.page.go_back()
+    explorer.page.wait_for_function("document.querySelector('#motion').value === 'plano-spherical-sinusoids'")
+    explorer.ready()
+    assert "follows all 1001 samples" in explorer.text("motion-summary")
+    assert explore(shipped).value("motion") == "plano-spherical-sinusoids"
+
+
 def test_a_sum_of_sinusoids_is_followed(explore, opm, tmp_path):
     explorer = explore("#pose.x=10")
     explorer.choose("motion", "sinusoids")

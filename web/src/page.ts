@@ -58,7 +58,7 @@ export class Page {
   private readonly bodyPanel = new BodyPanel((body) => this.set({ body }, true));
   private readonly kinds = new KindPanel((kind) => this.set({ kind }, true));
   private readonly player = new Player({
-    chosen: () => this.follow(),
+    chosen: (motion) => this.set({ motion }, true),
     placed: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
     pose: () => this.fullPose(),
   });
@@ -276,7 +276,7 @@ export class Page {
       this.slice.build(description);
       this.bodyPanel.build(description);
       this.kinds.build(kinds, description.angle);
-      this.player.build(description, this.shippedMotions);
+      this.player.build(description, this.shippedMotions, this.state.motion);
       byId("mode").replaceChildren(...description.modes.map((mode) => element("option", { value: mode }, mode || "the only one")));
     }
     if (rebuilt) {
@@ -289,12 +289,13 @@ export class Page {
 
   private show(): void {
     if (!this.description) return;
-    const { pose, changes, slice, body, kind, mode } = this.state;
+    const { pose, changes, slice, body, kind, mode, motion } = this.state;
     this.pose.update(pose);
     this.dimensions.update(this.description, changes);
     this.slice.update(slice, sliceAxes(slice, this.sweeper.fitted, this.description), this.fullPose());
     this.bodyPanel.update(body);
     this.kinds.update(kind);
+    this.player.update(motion);
     if (!this.kinds.wanted) this.slice.setKind(null);
     this.placeBody();
     byId<HTMLSelectElement>("mode").value = mode ?? this.description.home_mode;

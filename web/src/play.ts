@@ -3,6 +3,7 @@
 import { byId, element, short } from "./dom";
 import { plot, timeAt, type Curve } from "./plot";
 import { Sinusoids } from "./sinusoids";
+import type { MotionState } from "./state";
 import type { Description, FittedAxis, Followed, ShippedMotion } from "./types";
 
 /** A motion file. */
@@ -12,8 +13,8 @@ export interface MotionFile {
 }
 
 export interface PlayEvents {
-  /** Another motion is to be followed, or none. */
-  chosen(): void;
+  /** A person chose another motion, or none. */
+  chosen(motion: MotionState | null): void;
   /** The platform is to be at this pose, in the mode of the motion. */
   placed(pose: Record<string, number>, mode: string, final: boolean): void;
   pose(): Record<string, number>;
@@ -29,7 +30,7 @@ export class Player {
   private readonly button = byId<HTMLButtonElement>("play");
   private readonly joint = byId<HTMLSelectElement>("plot-joint");
   private readonly canvas = byId<HTMLCanvasElement>("motion-plot");
-  private readonly sinusoids = new Sinusoids(() => this.start());
+  private readonly sinusoids = new Sinusoids(() => this.choose());
   private shipped: ShippedMotion[] = [];
   private dropped: MotionFile | null = null;
   private description: Description | null = null;
@@ -39,9 +40,10 @@ export class Player {
   private drawing = false;
   /** The motion that is to be followed. */
   file: MotionFile | null = null;
+  private chosen: MotionState | null = null;
 
   constructor(private readonly events: PlayEvents) {
-    this.select.addEventListener("change", () => this.start());
+    this.select.addEventListener("change", () => this.choose());
     this.button.addEventListener("click", () => (this.playing ? this.stop() : this.run()));
     this.slider.addEventListener("input", () => this.seek(this.slider.valueAsNumber, false));
     this.slider.addEventListener("change", () => this.seek(this.slider.valueAsNumber, true));
@@ -57,17 +59,30 @@ export class Player {
     new ResizeObserver(() => this.draw()).observe(this.canvas);
   }
 
-  /** The motions for a mechanism. */
-  build(description: Description, shipped: ShippedMotion[]): void {
+  /** The motions for a mechanism, and the one that is chosen. */
+  build(description: Description, shipped: ShippedMotion[], motion: MotionState | null): void {
     this.stop();
     this.description = description;
     this.shipped = shipped.filter(({ mechanism }) => description.name.startsWith(mechanism));
-    this.dropped = null;
-    this.list();
-    this.select.value = "";
     this.joint.replaceChildren(...description.joints.map(({ name, unit }, i) => element("option", { value: String(i) }, `${name} (${unit})`)));
     this.sinusoids.build(description.coordinates, []);
+    this.take(motion);
+  }
+
+  /** Follows the motion of the state, if it is another one. */
+  update(motion: MotionState | null): void {
+    if (this.description && JSON.stringify(motion) !== JSON.stringify(this.chosen)) this.take(motion);
+  }
+
+  private take(motion: MotionState | null): void {
+    this.dropped = motion && motion.text !== null ? { name: motion.name, text: motion.text } : null;
+    this.list();
+    this.select.value = motion?.name ?? "";
+    // A name that is not known is none.
+    if (this.select.selectedIndex < 0) this.select.value = "";
+    if (motion) byId<HTMLDetailsElement>("motions").open = true;
     this.start();
+    this.chosen = motion;
   }
 
   setRanges(axes: FittedAxis[]): void {
@@ -80,7 +95,15 @@ export class Player {
     this.list();
     this.select.value = file.name;
     byId<HTMLDetailsElement>("motions").open = true;
+    this.choose();
+  }
+
+  /** Follows the chosen motion, which becomes that of the state. */
+  private choose(): void {
     this.start();
+    const shipped = this.shipped.some(({ name }) => name === this.select.value);
+    this.chosen = shipped ? { name: this.select.value, text: null } : this.file;
+    this.events.chosen(this.chosen);
   }
 
   private list(): void {
@@ -93,7 +116,7 @@ export class Player {
     this.select.value = chosen;
   }
 
-  /** Has the chosen motion followed from its start. */
+  /** The chosen motion, which is to be followed from its start. */
   private start(): void {
     this.stop();
     const { value } = this.select;
@@ -104,7 +127,6 @@ export class Player {
         : value === OWN ? { name: "sinusoids.toml", text: this.sinusoids.file(this.events.pose(), this.description) }
           : this.dropped;
     this.set(null, null);
-    this.events.chosen();
   }
 
   /** Takes a motion as the mechanism follows it. */

@@ -12,6 +12,13 @@ export interface State {
   slice: SliceState;
   body: BodyState;
   kind: KindState;
+  motion: MotionState | null;
+}
+
+/** The motion of the platform: a shipped one by its name, or a file with its text. */
+export interface MotionState {
+  name: string;
+  text: string | null;
 }
 
 /** The slice: its coordinates, and what is not the default of the mechanism. */
@@ -49,6 +56,7 @@ export function initial(): State {
     slice: { x: null, y: null, nx: POINTS, ny: POINTS, ends: {}, colour: "none" },
     body: { show: false, axes: null, others: "pose" },
     kind: { name: "grid", turn: null },
+    motion: null,
   };
 }
 
@@ -72,7 +80,9 @@ export async function toAddress(state: State): Promise<string> {
   if (ny !== POINTS) query.set("slice.ny", String(ny));
   for (const end of ENDS) if (ends[end] !== undefined) query.set(`slice.${end}`, String(ends[end]));
   if (colour !== "none") query.set("slice.colour", colour);
-  const { body, kind } = state;
+  const { body, kind, motion } = state;
+  if (motion) query.set("motion", motion.name);
+  if (motion && motion.text !== null) query.set("motion.file", await pack(motion.text));
   if (body.show) query.set("body", body.others);
   if (body.axes) query.set("body.axes", body.axes.join(":"));
   if (kind.name !== "grid") query.set("kind", kind.name);
@@ -109,6 +119,11 @@ export async function fromAddress(hash: string): Promise<State> {
   state.body = { show: body !== null, axes: query.get("body.axes")?.split(":") ?? null, others: body === "any" ? "any" : "pose" };
   const turn = number(query.get("kind.turn"));
   state.kind = { name: query.get("kind") ?? "grid", turn: Number.isFinite(turn) ? turn : null };
+  const [motion, moved] = [query.get("motion"), query.get("motion.file")];
+  if (motion !== null) {
+    const text = moved === null ? null : await unpackText(moved).catch(() => undefined);
+    if (text !== undefined) state.motion = { name: motion, text };
+  }
   const [example, file] = [query.get("example"), query.get("file")];
   if (example !== null) state.source = { kind: "example", name: example };
   if (file !== null) {
