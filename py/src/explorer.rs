@@ -2,6 +2,7 @@
 
 use crate::error::failed;
 use crate::manipulator::Manipulator;
+use crate::pickle::pickled;
 use opm_study::recording::partial;
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -62,6 +63,8 @@ impl Explorer {
         format!("<Explorer of {}: {} bytes of HTML>", self.name, self.html.len())
     }
 }
+
+pickled!(Explorer { name, html });
 
 /// A page that shows a mechanism and its workspace in a browser: the mechanism in space, to be moved; slices and kinds of its
 /// workspace, which follow every dimension; motions. The page needs no network.
