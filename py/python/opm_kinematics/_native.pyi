@@ -13,6 +13,7 @@ __all__ = [
     "Explorer",
     "Inscribed",
     "Intersection",
+    "Joint",
     "LegSplit",
     "Linkage",
     "Manipulator",
