@@ -21,8 +21,15 @@ use std::process::{Command, ExitCode};
 const TOLERANCE: f64 = 0.05;
 
 /// The pieces of work that are counted.
-const WORKS: [&str; 6] =
-    ["rows", "rows-with-limits-on-angles", "inverse", "inverse-drives", "forward", "velocity"];
+const WORKS: [&str; 7] = [
+    "rows",
+    "rows-with-limits-on-angles",
+    "inverse",
+    "inverse-drives",
+    "forward",
+    "forward-near",
+    "velocity",
+];
 
 /// Prints the capabilities of valgrind's processor.
 const INSTRUCTIONS: &str = "instructions";
@@ -76,6 +83,15 @@ fn solve(work: &str, manipulator: &Manipulator) {
         .iter()
         .map(|solution| manipulator.actuated().iter().map(|&i| solution.joints()[i]).collect())
         .collect();
+    // A millimetre and a degree away in every coordinate.
+    let near: Vec<Vec<f64>> = poses
+        .iter()
+        .map(|pose| {
+            let aside = [1e-3, 1e-3].into_iter().chain([1_f64.to_radians(); 3]);
+            pose.iter().zip(aside).map(|(q, aside)| q + aside).collect()
+        })
+        .collect();
+    let mut buffer = manipulator.near_buffer();
     let mut motion = manipulator.joint_motion();
     let rates = [0.1, -0.2, 0.5, 0.3, -0.4];
     counted(&mut || {
@@ -88,6 +104,11 @@ fn solve(work: &str, manipulator: &Manipulator) {
                     let _ = black_box(manipulator.inverse_actuated(&poses[i], mode, &mut drives));
                 }
                 "forward" => drop(black_box(manipulator.forward(&actuated[i]))),
+                "forward-near" => {
+                    let found =
+                        manipulator.forward_near_into(&actuated[i], &near[i], mode, &mut buffer);
+                    let _ = black_box(found);
+                }
                 "velocity" => {
                     let moved = manipulator.velocity(&solutions[i], &rates, &rates, &mut motion);
                     let _ = black_box(moved);

@@ -72,6 +72,7 @@ use mode::ModeLayout;
 use nalgebra::Isometry3;
 use plan::Plan;
 use pulp::Arch;
+pub(crate) use solution::SolvedPose;
 use std::ops::Range;
 
 /// The largest number of choices in a [`Mode`].

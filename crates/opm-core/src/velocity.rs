@@ -430,28 +430,41 @@ impl Manipulator {
         at: &Solution,
         number: usize,
     ) -> LegDifferential {
-        let (task, length) = (self.task(), self.characteristic_length());
-        let coordinates = self.coordinates();
-        let of = |section: Section| {
-            let compiled = leg.section(section);
-            if rows == Rows::Driven && leg.split_section != section && !compiled.driven {
-                return Differential::UNUSED;
+        let of = (leg, number);
+        LegDifferential {
+            lower: self.section_differential(of, Section::Lower, rows, at),
+            upper: self.section_differential(of, Section::Upper, rows, at),
+        }
+    }
+
+    /// The differential of a section of a leg, for some rows.
+    #[inline(always)]
+    fn section_differential(
+        &self,
+        (leg, number): (&CompiledLeg, usize),
+        section: Section,
+        rows: Rows,
+        at: &Solution,
+    ) -> Differential {
+        let (task, coordinates) = (self.task(), self.coordinates());
+        let compiled = leg.section(section);
+        if rows == Rows::Driven && leg.split_section != section && !compiled.driven {
+            return Differential::UNUSED;
+        }
+        let displacements = at.legs[number].section(section);
+        // Revolutions that the joints' values count do not change the rates of actuated joints.
+        let vector = |first: usize| match rows {
+            Rows::All => {
+                Vector3::from_fn(|i, _| at.joints[first + i] - coordinates[first + i].home)
             }
-            let displacements = at.legs[number].section(section);
-            // Revolutions that the joints' values count do not change the rates of actuated joints.
-            let vector = |first: usize| match rows {
-                Rows::All => {
-                    Vector3::from_fn(|i, _| at.joints[first + i] - coordinates[first + i].home)
-                }
-                Rows::Driven => Vector3::from_fn(|i, _| displacements[i].value()),
-            };
-            let kind = match section {
-                Section::Lower => task.lower.kind,
-                Section::Upper => task.upper.kind,
-            };
-            Differential::new(kind, compiled, displacements, vector, length)
+            Rows::Driven => Vector3::from_fn(|i, _| displacements[i].value()),
         };
-        LegDifferential { lower: of(Section::Lower), upper: of(Section::Upper) }
+        let kind = match section {
+            Section::Lower => task.lower.kind,
+            Section::Upper => task.upper.kind,
+        };
+        let length = self.characteristic_length();
+        Differential::new(kind, compiled, displacements, vector, length)
     }
 
     /// Rates and accelerations of a leg's joints, for the twists of the two sections.

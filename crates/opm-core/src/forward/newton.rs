@@ -3,14 +3,15 @@
 use super::accept::Place;
 use super::near::{NotFound, Stop};
 use super::{Assembly, NearError};
+use crate::chain::limits::Limits;
 use crate::group::{JointDisplacement, LocalTwist};
-use crate::manipulator::{ChainCoordinate, Manipulator, Mode, PoseError, Section, Solution};
+use crate::manipulator::{ChainCoordinate, Manipulator, Mode, Section, Solution, SolvedPose};
 use crate::mechanism::joint::JointKind;
 use crate::numeric::Quantity;
 use crate::numeric::least_squares::{LeastSquares, MOST};
 use crate::velocity::{Jacobians, Rows};
 use pulp::{Simd, WithSimd};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// The largest number of steps. Newton's method takes three from a near start, and about six from a good one.
 const STEPS: u32 = 60;
@@ -25,14 +26,9 @@ const HALVINGS: u32 = 20;
 /// taken only as long as they reduce the error, and with the last Jacobian: another one would not be better.
 const ARRIVED: f64 = 1e-11;
 
-/// The joints have their values to within this, in radians and shares of the size, which is their rounding: no step
-/// is taken.
-const EXACT: f64 = 1e-15;
-
-/// A step with a new Jacobian that leaves this share of the error or less is followed by one with the same Jacobian,
-/// which leaves twice this share of the rest. Two such steps together have third order, and the second one costs a third
-/// of the first: F. A. Potra, V. Pták, "Nondiscrete induction and iterative processes" (1984).
-const KEPT: f64 = 0.1;
+/// The joints have their values to within this, in radians and shares of the size, which is the rounding of some
+/// operations: no step is taken.
+const EXACT: f64 = 4e-15;
 
 /// What is left of a column of the Jacobian counts as zero below this share of the longest. Lengths are over the
 /// size.
@@ -44,16 +40,15 @@ const SINGULAR: f64 = 1e-9;
 pub struct NearBuffer {
     /// The displacements of the actuated joints from home, radians and metres.
     pub(super) displacements: Vec<f64>,
-    /// For every actuated coordinate, whether it is an angle modulo 2π.
-    modulo: Vec<bool>,
-    /// The present pose, independent task coordinates.
-    pose: Vec<f64>,
+    /// The actuated joints of the legs' chains.
+    driven: Vec<DrivenJoint>,
     /// The solution at the present pose.
     solution: Solution,
-    /// The pose that a step leads to, its coordinates with dependent ones, and the solution there.
-    next: Vec<f64>,
-    all: Vec<f64>,
+    /// The solution at the pose that a step leads to.
     tried: Solution,
+    /// Buffers for the independent coordinates of a pose, and for all of them.
+    pose: Vec<f64>,
+    all: Vec<f64>,
     /// The actuated joints' wanted values minus their present ones, in radians and shares of the size.
     error: Vec<f64>,
     /// The same after a step.
@@ -75,10 +70,40 @@ impl NearBuffer {
     pub fn assembly(&self) -> &Assembly {
         &self.assembly
     }
+}
 
-    /// The report of a run without an assembly.
-    fn ended(&self, why: Stop, steps: u32, off: f64) -> NotFound {
-        NotFound { why, steps, off, pose: self.pose.clone() }
+/// An actuated joint of a leg's chain.
+#[derive(Clone, Debug)]
+struct DrivenJoint {
+    leg: usize,
+    section: Section,
+    /// Its number among the joints of the chain.
+    place: usize,
+    /// Its number among the actuated joints.
+    number: usize,
+    /// Its value at home, radians or metres.
+    home: f64,
+    limits: Limits,
+    /// Whether it is an angle modulo 2π.
+    modulo: bool,
+    /// What an error counts as: one over the size for a length, one for an angle.
+    weight: f64,
+}
+
+impl DrivenJoint {
+    /// The wanted value minus that of a solution, in radians or shares of the size.
+    #[inline]
+    fn error(&self, wanted: &[f64], solution: &Solution) -> f64 {
+        let displacement = &solution.legs[self.leg].section(self.section)[self.place];
+        let moved = match displacement {
+            JointDisplacement::Direction(_) => self.limits.report_angle(displacement.value()),
+            JointDisplacement::Value(value) => *value,
+        };
+        let off = wanted[self.number] - (self.home + moved);
+        match self.modulo && off.abs() > PI {
+            true => off - TAU * (off / TAU).round(),
+            false => off * self.weight,
+        }
     }
 }
 
@@ -91,12 +116,11 @@ impl Manipulator {
             [self.task_coordinates().len(), jacobians.joints.ncols()].map(Vec::with_capacity);
         NearBuffer {
             displacements: Vec::with_capacity(actuated),
-            modulo: self.modulo_revolutions(),
-            pose: self.home_pose(),
+            driven: self.driven_joints(),
             solution: self.solution(),
-            next: independent,
-            all,
             tried: self.solution(),
+            pose: independent,
+            all,
             error: vec![0.0; actuated],
             error_after: vec![0.0; actuated],
             right: vec![0.0; actuated + locked],
@@ -122,6 +146,43 @@ impl Manipulator {
             }
         }
         units
+    }
+
+    /// The actuated joints of all chains.
+    fn driven_joints(&self) -> Vec<DrivenJoint> {
+        let modulo = self.modulo_revolutions();
+        let mut found = Vec::new();
+        for (leg, compiled) in self.legs.iter().enumerate() {
+            for section in [Section::Lower, Section::Upper] {
+                for (place, joint) in compiled.section(section).coordinates.iter().enumerate() {
+                    let Some(joint @ ChainCoordinate { actuated: Some(number), .. }) = joint else {
+                        continue;
+                    };
+                    let ChainCoordinate { home, limits, .. } = *joint;
+                    let (number, modulo) = (*number, modulo[*number]);
+                    let weight = self.weight(joint.number);
+                    found.push(DrivenJoint {
+                        leg,
+                        section,
+                        place,
+                        number,
+                        home,
+                        limits,
+                        modulo,
+                        weight,
+                    });
+                }
+            }
+        }
+        found
+    }
+
+    /// What an error of a joint coordinate counts as: one for an angle, one over the size for a length.
+    fn weight(&self, coordinate: usize) -> f64 {
+        match self.coordinates()[coordinate].quantity {
+            Quantity::Angle => 1.0,
+            Quantity::Length => self.closure.size.recip(),
+        }
     }
 
     /// For every actuated coordinate, whether it is an angle modulo 2π.
@@ -151,14 +212,11 @@ pub(super) struct Newton<'a> {
 impl Newton<'_> {
     /// Starts at a pose, takes steps until the joints have the wanted values, and writes the assembly to the buffer.
     pub fn run(&self, start: &[f64], at: &mut NearBuffer) -> Result<(), NearError> {
-        let reached = self.manipulator.close(start, self.mode, &mut at.solution)?;
-        at.pose.clear();
-        at.pose.extend_from_slice(start);
-        if !reached {
+        if !self.manipulator.close(start, self.mode, &mut at.solution)? {
             let why = Stop::OutOfReach(at.solution.unreachable[0]);
-            return Err(at.ended(why, 0, f64::INFINITY).into());
+            return Err(NotFound { why, steps: 0, off: f64::INFINITY, pose: start.to_vec() }.into());
         }
-        self.write_error(&at.solution, &at.modulo, &mut at.error);
+        self.write_error(&at.solution, &at.driven, &mut at.error);
         let (mut steps, mut kept) = (0, false);
         while steps < STEPS && most(&at.error) > EXACT {
             let before = most(&at.error);
@@ -170,64 +228,43 @@ impl Newton<'_> {
                 Err(_) if arrived => break,
                 // Another Jacobian may do what the last one does not.
                 Err(_) if kept => {}
-                Err(why) => return Err(at.ended(why, steps, most(&at.error)).into()),
+                Err(why) => return Err(self.ended(at, why, steps, most(&at.error))),
             }
-            kept = !kept && most(&at.error) <= KEPT * before;
+            // Where a step leaves e of an error e₀, the next one with the same Jacobian leaves 2 e²/e₀: F. A. Potra, V. Pták,
+            // "Nondiscrete induction and iterative processes" (1984). A new Jacobian pays only where that is too much.
+            let after = most(&at.error);
+            kept = !kept && 2.0 * after * after <= EXACT * before;
         }
         let off = most(&at.error);
         if off.is_nan() || off > ARRIVED {
-            return Err(at.ended(Stop::Steps, steps, off).into());
-        }
-        if steps == 0 {
-            self.restate(at)?;
+            return Err(self.ended(at, Stop::Steps, steps, off));
         }
         self.assemble(at);
         let residual = at.assembly.residual;
         match residual > self.manipulator.largest_residual() {
-            true => Err(at.ended(Stop::Stalled, steps, residual).into()),
+            true => Err(self.ended(at, Stop::Stalled, steps, residual)),
             false => Ok(()),
         }
     }
 
+    /// The report of a run without an assembly.
+    #[cold]
+    fn ended(&self, at: &mut NearBuffer, why: Stop, steps: u32, off: f64) -> NearError {
+        self.write_pose(at);
+        NotFound { why, steps, off, pose: at.pose.clone() }.into()
+    }
+
     /// Writes the actuated joints' wanted values minus those of a solution, in radians and shares of the size.
-    fn write_error(&self, solution: &Solution, modulo: &[bool], error: &mut [f64]) {
+    fn write_error(&self, solution: &Solution, driven: &[DrivenJoint], error: &mut [f64]) {
         let m = self.manipulator;
-        let mut write = |number: usize, coordinate: usize, value: f64| {
-            let off = self.wanted[number] - value;
-            error[number] = match m.coordinates()[coordinate].quantity {
-                Quantity::Angle if modulo[number] => off - TAU * (off / TAU).round(),
-                Quantity::Angle => off,
-                Quantity::Length => off / m.closure.size,
-            };
-        };
-        for (leg, compiled) in m.legs.iter().enumerate() {
-            for section in [Section::Lower, Section::Upper] {
-                if !compiled.section(section).driven {
-                    continue;
-                }
-                let coordinates = compiled.section(section).coordinates.iter();
-                let displacements = solution.legs[leg].section(section);
-                for (coordinate, displacement) in coordinates.zip(displacements) {
-                    let Some(ChainCoordinate { number, actuated: Some(actuated), home, limits }) =
-                        coordinate
-                    else {
-                        continue;
-                    };
-                    let moved = match displacement {
-                        JointDisplacement::Direction(_) => {
-                            limits.report_angle(displacement.value())
-                        }
-                        JointDisplacement::Value(value) => *value,
-                    };
-                    write(*actuated, *number, home + moved);
-                }
-            }
+        for joint in driven {
+            error[joint.number] = joint.error(self.wanted, solution);
         }
         for lift in m.lifts() {
-            let ChainCoordinate { number, actuated: Some(actuated), .. } = lift.coordinate else {
-                continue;
-            };
-            write(actuated, number, solution.joints[number]);
+            if let ChainCoordinate { number, actuated: Some(actuated), .. } = lift.coordinate {
+                let off = self.wanted[actuated] - solution.joints[number];
+                error[actuated] = off * m.weight(number);
+            }
         }
     }
 
@@ -249,11 +286,10 @@ impl Newton<'_> {
             let scale = share * 0.5_f64.powi(halving as i32);
             match self.try_step(&step, scale, at) {
                 Ok(()) => {
-                    self.write_error(&at.tried, &at.modulo, &mut at.error_after);
+                    self.write_error(&at.tried, &at.driven, &mut at.error_after);
                     if norm(&at.error_after) < norm(&at.error) {
                         std::mem::swap(&mut at.solution, &mut at.tried);
                         std::mem::swap(&mut at.error, &mut at.error_after);
-                        std::mem::swap(&mut at.pose, &mut at.next);
                         return Ok(());
                     }
                     stop = Stop::Stalled;
@@ -286,29 +322,39 @@ impl Newton<'_> {
         let moved_b = upper.first_order(&upper_twist).after(&b);
         let moved_v = v.after(&lower.first_order(&lower_twist));
         let rise = m.task().rise(&at.solution.solved.pose) + along;
-        m.task().write_pose(&moved_v, &moved_b, rise, &mut at.all);
-        m.write_independent(&mut at.all, &mut at.next);
-        match m.close(&at.next, self.mode, &mut at.tried) {
-            Ok(true) => Ok(()),
-            Ok(false) => Err(Stop::OutOfReach(at.tried.unreachable[0])),
-            Err(_) => Err(Stop::Stalled),
+        let reached = if m.dependent_coordinates().is_empty() {
+            // The legs need no coordinates, which would cost sines and arctangents.
+            let solved = &mut at.tried.solved;
+            let (v, b, rise) = m.task().described_factors(&moved_v, &moved_b, rise);
+            (solved.v, solved.b) = (v, b);
+            m.task().set_rise(rise, &mut solved.pose);
+            m.close_displaced(self.mode, &mut at.tried)
+        } else {
+            m.task().write_pose(&moved_v, &moved_b, rise, &mut at.all);
+            m.write_independent(&mut at.all, &mut at.pose);
+            m.close(&at.pose, self.mode, &mut at.tried).map_err(|_| Stop::Stalled)?
+        };
+        match reached {
+            true => Ok(()),
+            false => Err(Stop::OutOfReach(at.tried.unreachable[0])),
         }
     }
 
-    /// Solves the present pose again with its coordinates as a step would give them: angles within π of home.
-    fn restate(&self, at: &mut NearBuffer) -> Result<(), PoseError> {
+    /// Writes the coordinates of the present pose, angles within π of home.
+    fn write_pose(&self, at: &mut NearBuffer) {
         let m = self.manipulator;
-        let (v, b) = (at.solution.solved.v, at.solution.solved.b);
-        let rise = m.task().rise(&at.solution.solved.pose);
-        m.task().write_pose(&v, &b, rise, &mut at.all);
+        let SolvedPose { pose, v, b } = &mut at.solution.solved;
+        m.task().write_pose(v, b, m.task().rise(pose), &mut at.all);
+        if m.dependent_coordinates().is_empty() {
+            pose.copy_from_slice(&at.all);
+        }
         m.write_independent(&mut at.all, &mut at.pose);
-        m.close(&at.pose, self.mode, &mut at.solution)?;
-        Ok(())
     }
 
     /// Writes the assembly at the present pose.
     fn assemble(&self, at: &mut NearBuffer) {
         let m = self.manipulator;
+        self.write_pose(at);
         let NearBuffer { displacements, pose, solution, joints, assembly, .. } = at;
         m.write_closed(solution);
         let target = solution.displacement(m);
@@ -339,11 +385,7 @@ impl WithSimd for Linearise<'_> {
         for ((number, joints), by) in joints.enumerate().zip(units) {
             let column = system.column_mut(number);
             for (entry, &coordinate) in column.iter_mut().zip(m.actuated()) {
-                let rate = joints[coordinate] * *by;
-                *entry = match m.coordinates()[coordinate].quantity {
-                    Quantity::Angle => rate,
-                    Quantity::Length => rate / m.closure.size,
-                };
+                *entry = joints[coordinate] * *by * m.weight(coordinate);
             }
             let locked = &locked[number * locked_rows..(number + 1) * locked_rows];
             for (entry, rate) in column[rows..].iter_mut().zip(locked) {
@@ -382,7 +424,7 @@ mod tests {
                 let mut at = m.near_buffer();
                 assert!(m.inverse(&home, m.home_mode(), &mut at.solution).unwrap().is_some());
                 let newton = Newton { manipulator: &m, wanted: &wanted, mode: m.home_mode() };
-                newton.write_error(&at.solution, &at.modulo, &mut at.error);
+                newton.write_error(&at.solution, &at.driven, &mut at.error);
                 let mut before = most(&at.error);
                 while before > 1e-12 {
                     assert!(newton.linearise(&mut at));

@@ -129,8 +129,24 @@ impl Manipulator {
         if self.dependent.is_some() && !self.displace_dependent(pose, mode, out, revolutions) {
             return Ok(false);
         }
-        self.arch.dispatch(Close { manipulator: self, pose, mode, out });
+        self.arch.dispatch(Close { manipulator: self, pose: Some(pose), mode, out });
         Ok(out.unreachable.is_empty())
+    }
+
+    /// Solves the legs and the lifts as [`Manipulator::close`] does, for the displacements `v` and `b` and the height that
+    /// `out` holds, whatever the other coordinates are that it holds.
+    pub(crate) fn close_displaced(&self, mode: Mode, out: &mut Solution) -> bool {
+        self.arch.dispatch(Close { manipulator: self, pose: None, mode, out });
+        out.unreachable.is_empty()
+    }
+
+    /// Takes a pose and its displacements. Where coordinates are dependent, `out` has all of them already.
+    #[inline(always)]
+    fn displace(&self, pose: &[f64], out: &mut Solution) {
+        if self.dependent.is_none() {
+            out.solved.pose.copy_from_slice(pose);
+            (out.solved.v, out.solved.b) = self.task.sections(pose);
+        }
     }
 
     /// Writes the values of all joints after [`Manipulator::close`], angles within half a revolution of home.
@@ -211,14 +227,10 @@ impl Manipulator {
         }
     }
 
-    /// Solves every leg at a pose. Where coordinates are dependent, `out` has all of them already.
+    /// Solves every leg at the displacements that `out` holds.
     #[inline(always)]
-    fn close_legs(&self, pose: &[f64], mode: Mode, out: &mut Solution, revolutions: Revolutions) {
+    fn close_legs(&self, mode: Mode, out: &mut Solution, revolutions: Revolutions) {
         let task = &self.task;
-        if self.dependent.is_none() {
-            out.solved.pose.copy_from_slice(pose);
-            (out.solved.v, out.solved.b) = task.sections(pose);
-        }
         out.unreachable.clear();
         out.within_limits = true;
         let Solution { solved, taus, legs, unreachable, .. } = &mut *out;
@@ -356,7 +368,8 @@ impl WithSimd for Solve<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, pose, mode, out, revolutions } = self;
-        manipulator.close_legs(pose, mode, out, revolutions);
+        manipulator.displace(pose, out);
+        manipulator.close_legs(mode, out, revolutions);
         let mut angles = Angles::new(AngleOf::Leg(0));
         for number in 0..manipulator.legs.len() {
             if out.unreachable.iter().all(|missed| missed.leg != number) {
@@ -370,10 +383,11 @@ impl WithSimd for Solve<'_> {
     }
 }
 
-/// The legs and the lifts at a pose, with the instructions of the processor at hand.
+/// The legs and the lifts at a pose, or at the displacements that the solution holds, with the instructions of the
+/// processor at hand.
 struct Close<'a> {
     manipulator: &'a Manipulator,
-    pose: &'a [f64],
+    pose: Option<&'a [f64]>,
     mode: Mode,
     out: &'a mut Solution,
 }
@@ -384,7 +398,10 @@ impl WithSimd for Close<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, pose, mode, out } = self;
-        manipulator.close_legs(pose, mode, out, Revolutions::NearHome);
+        if let Some(pose) = pose {
+            manipulator.displace(pose, out);
+        }
+        manipulator.close_legs(mode, out, Revolutions::NearHome);
         if manipulator.task.height.is_some() {
             manipulator.write_lifts(out);
         }

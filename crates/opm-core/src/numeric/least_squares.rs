@@ -14,6 +14,8 @@ pub(crate) struct LeastSquares {
     /// The matrix, and after the decomposition `Q`, column by column.
     entries: Vec<f64>,
     upper: [[f64; MOST]; MOST],
+    /// One over the diagonal of `upper`.
+    inverse: [f64; MOST],
     order: [usize; MOST],
 }
 
@@ -21,7 +23,8 @@ impl LeastSquares {
     /// A buffer for matrices of this size.
     pub fn new(rows: usize, columns: usize) -> Self {
         let entries = vec![0.0; rows * columns];
-        Self { rows, columns, entries, upper: [[0.0; MOST]; MOST], order: [0; MOST] }
+        let (upper, inverse, order) = ([[0.0; MOST]; MOST], [0.0; MOST], [0; MOST]);
+        Self { rows, columns, entries, upper, inverse, order }
     }
 
     /// The entries of a column of the matrix, to be written.
@@ -56,6 +59,7 @@ impl LeastSquares {
             let (done, rest) = self.entries.split_at_mut((k + 1) * self.rows);
             let unit = &mut done[k * self.rows..];
             let inverse = length.recip();
+            self.inverse[k] = inverse;
             for x in &mut *unit {
                 *x *= inverse;
             }
@@ -77,7 +81,7 @@ impl LeastSquares {
         }
         for k in (0..n).rev() {
             let known: f64 = (k + 1..n).map(|j| self.upper[k][j] * found[j]).sum();
-            found[k] = (found[k] - known) / self.upper[k][k];
+            found[k] = (found[k] - known) * self.inverse[k];
         }
         let mut ordered = [0.0; MOST];
         for (&column, value) in self.order[..n].iter().zip(found) {

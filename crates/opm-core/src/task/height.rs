@@ -80,6 +80,14 @@ impl Task {
         })
     }
 
+    /// Changes the height in the coordinates of a pose to this one above home, metres, if there is one.
+    #[inline]
+    pub(crate) fn set_rise(&self, rise: f64, pose: &mut [f64]) {
+        if let Some(height) = &self.height {
+            pose[height.coordinate] = self.coordinates[height.coordinate].home + rise;
+        }
+    }
+
     /// The height above its home, metres, for the values of a section's coordinates; `None` if the section has no height.
     #[doc(hidden)]
     pub fn rise_in(&self, section: Section, of_section: &[f64]) -> Option<f64> {

@@ -45,19 +45,8 @@ impl Task {
         let number = |i: usize| i + usize::from(i >= height);
         let lower_count = self.lower_count - usize::from(height < self.lower_count);
         let home = |i: usize| self.coordinates[number(i)].home;
-        // Moves the displacement along I to the factor that is not taken modulo I. Of an inclined one, a part is height.
-        let mut rise = rise;
-        let (v, handed) = match self.shared() {
-            Some(MotionType::Rotation) => self.without_shared_rotation(v),
-            Some(MotionType::Translation) => {
-                let translation = self.shared_translation(b);
-                rise = self.rise_of_leg(rise, translation);
-                (self.lower_intersection.after(v, translation), translation.inverse())
-            }
-            None => (*v, JointDisplacement::Value(0.0)),
-        };
         let rotation = self.shared() == Some(MotionType::Rotation);
-        let b = self.upper_intersection.before(b, handed);
+        let (v, b, rise) = self.described_factors(v, b, rise);
         match v {
             Displacement::Identity(_) => {}
             Displacement::Planar(g) => {
@@ -127,6 +116,30 @@ impl Task {
         if height < self.coordinates.len() {
             pose.insert(height, self.coordinates[height].home + rise);
         }
+    }
+
+    /// The factors `v` and `b` that coordinates describe, and the height above home, metres, that goes with them: the
+    /// displacement along the intersection motion is moved to the factor that is not taken modulo that motion. Of an
+    /// inclined one, a part is height.
+    pub(crate) fn described_factors(
+        &self,
+        v: &Displacement,
+        b: &Displacement,
+        rise: f64,
+    ) -> (Displacement, Displacement, f64) {
+        let (v, handed, rise) = match self.shared() {
+            Some(MotionType::Rotation) => {
+                let (v, rotation) = self.without_shared_rotation(v);
+                (v, rotation, rise)
+            }
+            Some(MotionType::Translation) => {
+                let translation = self.shared_translation(b);
+                let v = self.lower_intersection.after(v, translation);
+                (v, translation.inverse(), self.rise_of_leg(rise, translation))
+            }
+            None => (*v, JointDisplacement::Value(0.0), rise),
+        };
+        (v, self.upper_intersection.before(b, handed), rise)
     }
 
     /// The angles of a displacement of a sphere from home, those nearest to the values at home.

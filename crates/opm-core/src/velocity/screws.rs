@@ -19,7 +19,7 @@ pub(crate) struct Screws {
 
 impl Screws {
     /// The displaced screws of joints, from their screws at home and their displacements.
-    #[inline]
+    #[inline(always)]
     pub fn new(
         kind: SubspaceKind,
         home: &[LocalTwist; 3],
@@ -62,7 +62,7 @@ impl Screws {
 
     /// The reciprocal screws `rⱼ` times the determinant of the screws, and that determinant:
     /// `sᵢ · rⱼ = δᵢⱼ det`.
-    #[inline]
+    #[inline(always)]
     pub fn reciprocal(&self) -> ([LocalTwist; 3], f64) {
         let [s1, s2, s3] = &self.moved;
         let rows = [s2.cross(s3), s3.cross(s1), s1.cross(s2)];

@@ -36,7 +36,7 @@ impl Differential {
     /// The differential of a section, whose joints have these displacements. For a spherical joint, `vector`
     /// gives its rotation vector from home in base coordinates, by the number of its first coordinate; full
     /// revolutions count. `length` is the characteristic length, metres.
-    #[inline]
+    #[inline(always)]
     pub fn new(
         kind: SubspaceKind,
         section: &CompiledSection,
@@ -84,7 +84,7 @@ impl Differential {
     }
 
     /// The differential for displaced screws, whose determinant has the unit `scale`.
-    #[inline]
+    #[inline(always)]
     fn of_screws(screws: Screws, scale: f64) -> Self {
         let (crosses, determinant) = screws.reciprocal();
         let measure = determinant / scale;
