@@ -13,9 +13,23 @@
 //! ```
 
 mod c;
+mod golden;
 mod names;
+mod rust;
+mod text;
+mod tree;
 
 pub use c::{CCode, c};
+pub use rust::rust;
+
+/// The kinematics of one mechanism in a language: the files of a package.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Package {
+    /// The mechanism's name, as an identifier.
+    pub name: String,
+    /// The names of the files, with `/` between folders, and what they hold.
+    pub files: Vec<(String, String)>,
+}
 
 /// Why no code can be written for a mechanism.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -31,4 +45,9 @@ pub enum GenerateError {
         /// The most that there may be.
         most: u32,
     },
+    /// The closed forms have what the other languages do not know: this is a defect of opm.
+    #[error("the closed forms cannot be written in this language, which is a defect of opm: {0}")]
+    Unread(String),
 }
+#[doc(hidden)]
+pub fn text(m: &opm_core::Manipulator) -> String { c::dump(m) }

@@ -1,0 +1,8 @@
+//! Generated code of every language, run and compared with `opm-core`.
+
+mod c;
+mod comparison;
+mod compiled;
+mod drawn;
+mod program;
+mod rust;
