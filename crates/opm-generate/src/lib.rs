@@ -15,11 +15,13 @@
 mod c;
 mod golden;
 mod names;
+mod python;
 mod rust;
 mod text;
 mod tree;
 
 pub use c::{CCode, c};
+pub use python::python;
 pub use rust::rust;
 
 /// The kinematics of one mechanism in a language: the files of a package.

@@ -57,22 +57,12 @@ fn kinematics(code: &Code) -> String {
     format!(
         "//! The closed forms, in the letters of the method: `L(q_lower) U(q_upper) = v b`, and `tau` for the displacement along\n\
          //! what the two subgroups share. A status is zero, or says why there is no answer.\n\n\
-         use super::Real;\nuse super::math::{{{}}};\n\n{text}",
+         #![allow(missing_docs, non_snake_case, non_upper_case_globals)]\n\nuse super::Real;\nuse super::math::{{{}}};\n\n{text}",
         used.join(", ")
     )
 }
 
 fn lib(m: &Manipulator, code: &Code, name: &str) -> String {
-    let public = ["Geometry", "DEFAULT"].map(str::to_owned).into_iter();
-    let used = ["Joint", "Complex", "Vector", "Rotation", "Frame"].map(str::to_owned);
-    let named = code.structs.iter().map(|one| crate::text::camel(&one.name));
-    let own = geometry_types(code);
-    let types = named.filter(|name| used.contains(name) || own.contains(name));
-    let constants = code.enums.iter().flat_map(|names| &names.entries);
-    let constants = constants.map(|entry| entry.name.to_uppercase());
-    let mut exports: Vec<String> = public.chain(types).chain(constants).collect();
-    exports.sort();
-    exports.dedup();
     let signs = m.format_mode(m.home_mode());
     let mode = match signs.is_empty() {
         true => "There is one mode, 0.".to_owned(),
@@ -83,37 +73,13 @@ fn lib(m: &Manipulator, code: &Code, name: &str) -> String {
         .replace("VERSION", env!("CARGO_PKG_VERSION"))
         .replace("HOME_MODE", &m.home_mode().bits().to_string())
         .replace("//! MODE", &format!("//! {mode}"))
-        .replace("CRATE", name)
-        .replace("EXPORTS", &exports.join(", "));
+        .replace("CRATE", name);
     let home = format!(
         "\n/// The pose at home.\npub const HOME: [Real; COORDINATES] = [{}];\n",
         listed(&m.home_pose())
     );
     let forward = code.functions.iter().any(|function| function.name == "forward");
     text + &home + if forward { FORWARD } else { "" }
-}
-
-/// The types that the geometry consists of.
-fn geometry_types(code: &Code) -> Vec<String> {
-    use crate::tree::Type;
-    let mut found: Vec<&str> = vec!["geometry"];
-    let mut at = 0;
-    while let Some(name) = found.get(at) {
-        let known = code.structs.iter().find(|one| one.name == *name);
-        for member in known.map_or(&[][..], |one| &one.members) {
-            let mut kind = &member.kind;
-            while let Type::Array(of, _) = kind {
-                kind = of;
-            }
-            if let Type::Struct(name) = kind
-                && !found.contains(&&**name)
-            {
-                found.push(name);
-            }
-        }
-        at += 1;
-    }
-    found.into_iter().map(crate::text::camel).collect()
 }
 
 /// A test that compares the code with poses that opm solved.

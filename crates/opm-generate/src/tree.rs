@@ -7,6 +7,7 @@
 mod expressions;
 mod functions;
 mod lexer;
+pub mod lower;
 mod parser;
 pub mod visit;
 

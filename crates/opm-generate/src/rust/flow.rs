@@ -14,17 +14,24 @@ pub fn is_assigned(body: &[Statement], name: &str) -> bool {
     found
 }
 
+/// Whether the first thing that is done to a variable is to assign all of it.
+pub fn is_overwritten(body: &[Statement], name: &str) -> bool {
+    match body.iter().find(|statement| visit::mentions(statement, name)) {
+        Some(Statement::Assign { place, op: None, value }) => {
+            matches!(place.node, Node::Variable(_)) && !visit::reads(value, name)
+        }
+        Some(whole @ (Statement::For { body, .. } | Statement::Block(body))) => {
+            let tested = visit::own(whole).into_iter().any(|expr| visit::reads(expr, name));
+            !tested && is_overwritten(body, name)
+        }
+        _ => false,
+    }
+}
+
 /// Whether a part of a variable is assigned, or it is written through, before all of it is assigned.
 pub fn needs_value(body: &[Statement], name: &str) -> bool {
-    let first = body.iter().find(|statement| visit::mentions(statement, name));
-    if let Some(Statement::Assign { place, op: None, value }) = first
-        && matches!(place.node, Node::Variable(_))
-        && !visit::reads(value, name)
-    {
+    if is_overwritten(body, name) {
         return false;
-    }
-    if let Some(Statement::For { body, .. } | Statement::Block(body)) = first {
-        return needs_value(body, name);
     }
     let mut found = false;
     visit::statements(body, &mut |statement| {

@@ -35,17 +35,11 @@ type Bound = (String, u8);
 pub fn module(code: &Code) -> String {
     let mut text = String::new();
     for names in &code.enums {
-        if !names.comment.is_empty() {
-            text += &commented(&names.comment, "// ", "");
-        }
+        text += &commented(&names.comment, "// ", "");
         for entry in &names.entries {
-            if !entry.comment.is_empty() {
-                text += &commented(&entry.comment, "/// ", "");
-            } else {
-                let _ = writeln!(text, "#[allow(missing_docs)]");
-            }
-            let name = constant(&entry.name);
-            let _ = writeln!(text, "pub const {name}: usize = {};", entry.value);
+            text += &commented(&entry.comment, "/// ", "");
+            // Names of joints may differ in their case alone.
+            let _ = writeln!(text, "pub const {}: usize = {};", entry.name, entry.value);
         }
         text += "\n";
     }
@@ -86,7 +80,7 @@ fn structure(one: &Struct) -> String {
     let default = if arrays { "" } else { "Default, " };
     let _ = writeln!(
         text,
-        "#[allow(missing_docs, non_snake_case)]\n#[derive(Clone, Copy, Debug, {default}PartialEq)]\npub struct {} {{",
+        "#[derive(Clone, Copy, Debug, {default}PartialEq)]\npub struct {} {{",
         camel(&one.name)
     );
     for member in &one.members {
@@ -170,7 +164,7 @@ impl<'a> Printer<'a> {
             ref result => format!(" -> {}", kind(result)),
         };
         let mut text = commented(&function.comment, "/// ", "");
-        let public = if function.public { "pub " } else { "" };
+        let public = if function.public { "pub(crate) " } else { "" };
         if parameters.len() > 7 {
             text += "#[allow(clippy::too_many_arguments)]\n";
         }
@@ -264,6 +258,7 @@ impl<'a> Printer<'a> {
             true => format!("mut {declared}"),
             false => declared.to_owned(),
         };
+        let init = init.filter(|_| !flow::is_overwritten(rest, name));
         match (init, of) {
             (Some(init), Type::Struct(_)) => format!("{} = {}", changed(name), self.expr(init)),
             (Some(init), of) => format!("{}: {} = {}", changed(name), kind(of), self.expr(init)),
@@ -306,7 +301,7 @@ impl<'a> Printer<'a> {
                 _ => (number.clone(), WHOLE),
             },
             Node::Constant(name) => match expr.kind {
-                Type::Int => (format!("{} as i32", constant(name)), CAST),
+                Type::Int => (format!("{name} as i32"), CAST),
                 _ => (constant(name), WHOLE),
             },
             Node::Infinity => ("Real::INFINITY".into(), WHOLE),
@@ -379,7 +374,7 @@ impl<'a> Printer<'a> {
     fn index(&self, index: &Expr) -> String {
         match &index.node {
             Node::Number(number) => number.clone(),
-            Node::Constant(name) => constant(name),
+            Node::Constant(name) => name.clone(),
             _ => format!("{} as usize", self.inside(index, CAST)),
         }
     }

@@ -5,4 +5,5 @@ mod comparison;
 mod compiled;
 mod drawn;
 mod program;
+mod python;
 mod rust;

@@ -61,7 +61,7 @@ impl Compiled {
                     .replace("#![no_std]\n", "")
                     .replace("#![forbid(unsafe_code)]\n", "")
             });
-            let _ = writeln!(main, "#[path = \"m{number}/src/lib.rs\"]\nmod m{number};");
+            let _ = writeln!(main, "#[path = \"m{number}/src/lib.rs\"]\n#[allow(dead_code, unused_imports)]\nmod m{number};");
             let forward = lib.contains("pub fn forward(");
             let _ = writeln!(calls, "        {number} => run!(m{number}, {forward}),");
         }

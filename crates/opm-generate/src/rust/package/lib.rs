@@ -29,7 +29,7 @@ pub type Real = f64;
 mod kinematics;
 mod math;
 
-pub use kinematics::{EXPORTS};
+pub use kinematics::*;
 
 /// Every joint at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
