@@ -14,6 +14,7 @@
 
 mod c;
 mod golden;
+mod matlab;
 mod names;
 mod python;
 mod rust;
@@ -21,6 +22,7 @@ mod text;
 mod tree;
 
 pub use c::{CCode, c};
+pub use matlab::matlab;
 pub use python::python;
 pub use rust::rust;
 
@@ -31,6 +33,21 @@ pub struct Package {
     pub name: String,
     /// The names of the files, with `/` between folders, and what they hold.
     pub files: Vec<(String, String)>,
+}
+
+impl From<CCode> for Package {
+    fn from(code: CCode) -> Self {
+        let files = code.files().into_iter().map(|(name, text)| (name, text.to_owned())).collect();
+        Self { name: code.name, files }
+    }
+}
+
+/// Writes the kinematics of a mechanism in C99, as [`c()`] does, as the files of a package.
+///
+/// # Errors
+/// The mechanism has more two-valued choices than an `unsigned` has bits.
+pub fn c_package(manipulator: &opm_core::Manipulator) -> Result<Package, GenerateError> {
+    c(manipulator).map(Package::from)
 }
 
 /// Why no code can be written for a mechanism.

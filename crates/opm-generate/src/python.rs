@@ -68,7 +68,7 @@ fn module(m: &Manipulator, code: &Code) -> String {
     let nearest = code.functions.iter().find(|function| function.name == "nearest");
     let takes_mode = nearest.is_some_and(|function| {
         let mode = function.parameters.iter().find(|p| p.name == "mode");
-        mode.is_some_and(|mode| ways::is_kept(function, mode))
+        mode.is_some_and(|mode| crate::tree::flow::is_kept(function, mode))
     });
     MODULE
         .replace("TITLE", &title(m))

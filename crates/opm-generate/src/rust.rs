@@ -3,7 +3,6 @@
 //! The closed forms are those of the C code, printed from their tree into a module that is not public. Around it stands an
 //! interface as is usual in Rust: arrays of the right length, and `Result`.
 
-mod flow;
 mod print;
 
 use crate::golden::{listed, poses};

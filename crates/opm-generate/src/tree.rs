@@ -5,6 +5,7 @@
 //! the type of every expression; a language is a printer of the tree, and a frame of its own around it.
 
 mod expressions;
+pub mod flow;
 mod functions;
 mod lexer;
 pub mod lower;
@@ -132,7 +133,7 @@ pub enum Statement {
     Call(Expr),
     If { test: Expr, then: Vec<Statement>, otherwise: Vec<Statement> },
     /// `for (i = from; i < to && test; ++i)`
-    For { name: String, kind: Type, from: Expr, to: Expr, test: Option<Expr>, body: Vec<Statement> },
+    For { name: String, from: Expr, to: Expr, test: Option<Expr>, body: Vec<Statement> },
     Block(Vec<Statement>),
     Return(Option<Expr>),
     Continue,

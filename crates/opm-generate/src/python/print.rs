@@ -4,8 +4,9 @@
 //! keeps what the other poses have, and a function remembers which poses have returned, and what. Where a function has
 //! returned something else than zero, what it wrote has no meaning, nor have its own variables: they need not be kept.
 
-use super::ways::{Ways, is_kept};
+use super::ways::Ways;
 use crate::text::commented;
+use crate::tree::flow::is_kept;
 use crate::tree::{BUILT_IN, Code, Expr, Function, Node, Op, Pass, Statement, Type};
 use std::fmt::Write;
 
@@ -181,10 +182,11 @@ impl Printer<'_> {
         let found = place.declared.iter().rev().find(|(name, _)| name == variable);
         let depth = found.map_or(0, |(_, depth)| *depth);
         let mut masks: Vec<String> = place.masks[depth.min(place.masks.len())..].to_vec();
-        // A struct has no meaning where the function has returned something else than zero.
+        // What has no meaning where the function has returned something else than zero: a struct, and what had no value before.
         let outside = self.function.parameters.iter().any(|p| {
-            let written = p.pass == Pass::Write && is_kept(self.function, p);
-            p.name == variable && written && !matches!(p.kind, Type::Struct(_)) && depth == 0
+            let meant = is_kept(self.function, p) && !matches!(p.kind, Type::Struct(_));
+            let written = p.pass == Pass::Write && (meant || self.ways.succeeds_early);
+            p.name == variable && written && depth == 0
         });
         if outside && self.open {
             masks.push("open_".into());

@@ -1,9 +1,9 @@
 //! The closed forms, as Rust.
 
-use super::flow;
 use crate::text::{camel, commented, literal};
 use crate::tree::{
-    BUILT_IN, Code, Expr, Function, Node, Op, Parameter, Pass, Statement, Struct, Type, Value, visit,
+    BUILT_IN, Code, Expr, Function, Node, Op, Parameter, Pass, Statement, Struct, Type, Value, flow,
+    visit,
 };
 use std::fmt::Write;
 

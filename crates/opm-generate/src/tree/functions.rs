@@ -162,7 +162,7 @@ impl Parser {
         let (to, test) = bound(&name, whole).ok_or("a loop that does not count")?;
         self.expect("{")?;
         let body = self.block(result)?;
-        Ok(Statement::For { name, to: to.converted(&kind), kind, from, test, body })
+        Ok(Statement::For { name, to: to.converted(&kind), from, test, body })
     }
 
     fn assignment(&mut self, all: &mut Vec<Statement>) -> Result<(), String> {

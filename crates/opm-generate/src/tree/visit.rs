@@ -1,6 +1,6 @@
 //! Walks through a tree.
 
-use super::{Expr, Function, Node, Pass, Statement};
+use super::{Code, Expr, Function, Node, Pass, Statement};
 
 /// Every statement, from outside to inside.
 pub fn statements(body: &[Statement], see: &mut impl FnMut(&Statement)) {
@@ -175,4 +175,29 @@ pub fn flatten(body: &mut Vec<Statement>) {
             block.splice(at..=at, inner);
         }
     });
+}
+
+/// Gives functions other names, where there is one.
+pub fn rename_functions(code: &mut Code, new: &impl Fn(&str) -> Option<String>) {
+    for function in &mut code.functions {
+        if let Some(other) = new(&function.name) {
+            function.name = other;
+        }
+        blocks(&mut function.body, &mut |block| {
+            for statement in block {
+                own_mut(statement).into_iter().for_each(|expr| rename_calls(expr, new));
+            }
+        });
+    }
+}
+
+fn rename_calls(expr: &mut Expr, new: &impl Fn(&str) -> Option<String>) {
+    if let Node::Call(name, _) = &mut expr.node
+        && let Some(other) = new(name)
+    {
+        *name = other;
+    }
+    for part in parts_mut(expr) {
+        rename_calls(part, new);
+    }
 }

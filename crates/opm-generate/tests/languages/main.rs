@@ -4,6 +4,7 @@ mod c;
 mod comparison;
 mod compiled;
 mod drawn;
+mod matlab;
 mod program;
 mod python;
 mod rust;

@@ -13,11 +13,11 @@ pub trait Program {
 /// How many numbers there are of each kind.
 #[derive(Clone, Copy)]
 pub struct Shape {
-    coordinates: usize,
-    joints: usize,
-    imaginary: usize,
-    actuated: usize,
-    legs: usize,
+    pub coordinates: usize,
+    pub joints: usize,
+    pub imaginary: usize,
+    pub actuated: usize,
+    pub legs: usize,
 }
 
 /// A question: a mode and a pose, and a pose that is reached from there.
