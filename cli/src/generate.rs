@@ -1,26 +1,39 @@
 //! `opm generate`: the kinematics of a mechanism as source code.
 
-use crate::args::{CArgs, GenerateArgs, Language, Output};
+use crate::args::{CodeArgs, GenerateArgs, Language, Output};
 use crate::failure::Failure;
 use crate::load;
 use crate::target::Target;
+use opm_core::Manipulator;
+use opm_generate::{GenerateError, Package};
 use std::fs;
 
 pub fn run(args: &GenerateArgs, output: &Output) -> Result<(), Failure> {
     match &args.language {
-        Language::C(args) => run_c(args, output),
+        Language::C(args) => write(args, opm_generate::c_package, output),
+        Language::Rust(args) => write(args, opm_generate::rust, output),
+        Language::Python(args) => write(args, opm_generate::python, output),
+        Language::Matlab(args) => write(args, opm_generate::matlab, output),
     }
 }
 
-fn run_c(args: &CArgs, output: &Output) -> Result<(), Failure> {
+/// Writes the files of a language.
+fn write(
+    args: &CodeArgs,
+    generate: impl Fn(&Manipulator) -> Result<Package, GenerateError>,
+    output: &Output,
+) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
-    let code = opm_generate::c(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
+    let code = generate(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
     let folder = &args.output;
+    let files: Vec<_> =
+        code.files.iter().map(|(name, text)| (folder.join(name), text)).collect();
     fs::create_dir_all(folder).map_err(|error| Failure::at(folder.display(), error))?;
-    let named = code.files().into_iter().map(|(name, text)| (folder.join(name), text));
-    let files: Vec<_> = named.collect();
     for (path, _) in &files {
+        if let Some(inner) = path.parent() {
+            fs::create_dir_all(inner).map_err(|error| Failure::at(inner.display(), error))?;
+        }
         loaded.refuse_as_output(path, &[])?;
     }
     // All of them can be written before the first one is.
@@ -28,7 +41,7 @@ fn run_c(args: &CArgs, output: &Output) -> Result<(), Failure> {
     for (target, (_, text)) in targets?.into_iter().zip(&files) {
         target.commit(text.as_bytes())?;
     }
-    let names: Vec<String> = code.files().into_iter().map(|(name, _)| name).collect();
+    let names: Vec<&str> = code.files.iter().map(|(name, _)| &**name).collect();
     output.note(format_args!("{}: {}", folder.display(), names.join(", ")));
     Ok(())
 }

@@ -15,9 +15,11 @@ mod nearest;
 mod pose;
 mod rates;
 mod steps;
+mod twist;
 
 use crate::GenerateError;
 use crate::names::{comment, identifiers, prefix};
+use crate::tree;
 use geometry::{Geometry, complex, number, rotation, vector};
 use leg::{Function, Given, given};
 use opm_core::Manipulator;
@@ -76,30 +78,9 @@ impl CCode {
 /// # Errors
 /// The mechanism has more two-valued choices than an `unsigned` has bits.
 pub fn c(manipulator: &Manipulator) -> Result<CCode, GenerateError> {
-    let choices = manipulator.choices();
-    if choices > MOST_CHOICES {
-        return Err(GenerateError::Choices { choices, most: MOST_CHOICES });
-    }
-    let writer = Writer::new(manipulator);
+    let writer = Writer::new(manipulator)?;
     let name = prefix(&manipulator.mechanism().name);
-    let geometry = writer.geometry();
-    let body = writer.body();
-    let definition = geometry.definition();
-    let types = library::types(&format!("{definition}{}", library::functions(&body)));
-    let header = format!(
-        "{}#ifndef {guard}\n#define {guard}\n\n{}{types}{}{definition}\n{}\n#endif\n",
-        writer.head("The closed-form kinematics of"),
-        writer.scalars(),
-        "/* The geometry of the mechanism, metres and radians. */\n",
-        writer.declarations(),
-        guard = format_args!("{}_H", name.to_uppercase()),
-    );
-    let source = format!(
-        "{}#include \"{name}.h\"\n\n#include <math.h>\n\ntypedef NAME_real real;\n\n#define R(x) ((real)(x))\n\n{}\n{}{body}",
-        writer.head("The closed-form kinematics of"),
-        geometry.default_value(),
-        library::functions(&body),
-    );
+    let [header, source] = writer.files(&name);
     let of_mechanism = |text: &str| library::with_prefix(text, &name);
     let (header, source) = (of_mechanism(&header), of_mechanism(&source));
     let test = of_mechanism(
@@ -117,6 +98,12 @@ pub fn c(manipulator: &Manipulator) -> Result<CCode, GenerateError> {
     Ok(CCode { name, header, source, test, golden, cmake, linuxcnc })
 }
 
+/// The same code as a tree, from which other languages are printed.
+pub(crate) fn tree(manipulator: &Manipulator) -> Result<tree::Code, GenerateError> {
+    let files = Writer::new(manipulator)?.files("NAME");
+    tree::parse(&files.concat()).map_err(GenerateError::Unread)
+}
+
 /// What is known of a mechanism while its code is written. The code has the prefix of the library until it is complete.
 struct Writer<'a> {
     manipulator: &'a Manipulator,
@@ -129,13 +116,40 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(manipulator: &'a Manipulator) -> Self {
+    fn new(manipulator: &'a Manipulator) -> Result<Self, GenerateError> {
+        let choices = manipulator.choices();
+        if choices > MOST_CHOICES {
+            return Err(GenerateError::Choices { choices, most: MOST_CHOICES });
+        }
         let names = manipulator.coordinates().iter().map(|c| &*c.name);
         let fields = identifiers(names).into_iter().map(|name| format!("q_{name}")).collect();
         let (task, forms) = (manipulator.task(), manipulator.closed_forms());
         let mut writer = Self { manipulator, task, forms, fields, legs: Vec::new() };
         writer.legs = (0..writer.forms.legs.len()).map(|leg| writer.leg_functions(leg)).collect();
-        writer
+        Ok(writer)
+    }
+
+    /// The header and the source file, with the prefix of the library; `name` is that of the files.
+    fn files(&self, name: &str) -> [String; 2] {
+        let geometry = self.geometry();
+        let body = self.body();
+        let definition = geometry.definition();
+        let types = library::types(&format!("{definition}{}", library::functions(&body)));
+        let header = format!(
+            "{}#ifndef {guard}\n#define {guard}\n\n{}{types}{}{definition}\n{}\n#endif\n",
+            self.head("The closed-form kinematics of"),
+            self.scalars(),
+            "/* The geometry of the mechanism, metres and radians. */\n",
+            self.declarations(),
+            guard = format_args!("{}_H", name.to_uppercase()),
+        );
+        let source = format!(
+            "{}#include \"{name}.h\"\n\n#include <math.h>\n\ntypedef NAME_real real;\n\n#define R(x) ((real)(x))\n\n{}\n{}{body}",
+            self.head("The closed-form kinematics of"),
+            geometry.default_value(),
+            library::functions(&body),
+        );
+        [header, source]
     }
 
     /// The first comment of a file.
@@ -410,3 +424,4 @@ impl<'a> Writer<'a> {
         Given::Value
     }
 }
+pub(crate) fn dump(m: &Manipulator) -> String { Writer::new(m).unwrap().files("NAME").concat() }

@@ -13,9 +13,42 @@
 //! ```
 
 mod c;
+mod golden;
+mod matlab;
 mod names;
+mod python;
+mod rust;
+mod text;
+mod tree;
 
 pub use c::{CCode, c};
+pub use matlab::matlab;
+pub use python::python;
+pub use rust::rust;
+
+/// The kinematics of one mechanism in a language: the files of a package.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Package {
+    /// The mechanism's name, as an identifier.
+    pub name: String,
+    /// The names of the files, with `/` between folders, and what they hold.
+    pub files: Vec<(String, String)>,
+}
+
+impl From<CCode> for Package {
+    fn from(code: CCode) -> Self {
+        let files = code.files().into_iter().map(|(name, text)| (name, text.to_owned())).collect();
+        Self { name: code.name, files }
+    }
+}
+
+/// Writes the kinematics of a mechanism in C99, as [`c()`] does, as the files of a package.
+///
+/// # Errors
+/// The mechanism has more two-valued choices than an `unsigned` has bits.
+pub fn c_package(manipulator: &opm_core::Manipulator) -> Result<Package, GenerateError> {
+    c(manipulator).map(Package::from)
+}
 
 /// Why no code can be written for a mechanism.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -31,4 +64,9 @@ pub enum GenerateError {
         /// The most that there may be.
         most: u32,
     },
+    /// The closed forms have what the other languages do not know: this is a defect of opm.
+    #[error("the closed forms cannot be written in this language, which is a defect of opm: {0}")]
+    Unread(String),
 }
+#[doc(hidden)]
+pub fn text(m: &opm_core::Manipulator) -> String { c::dump(m) }

@@ -42,6 +42,12 @@ int NAME_transform(const NAME_geometry *geometry, const NAME_real pose[], unsign
 int NAME_jacobian(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode,
                   NAME_real jacobian[NAME_JOINTS * NAME_COORDINATES]);
 
+/* The platform's twist for unit rates of the coordinates of the pose: the rows of the angular velocity x, y, z and of the
+   velocity of the reference point x, y, z, base coordinates. It returns what NAME_transform returns; what NAME_jacobian
+   returns, where coordinates follow from those of the pose. */
+int NAME_twist(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode,
+               NAME_real twist[6 * NAME_COORDINATES]);
+
 /* The rates of all joints for given rates of the coordinates of the pose. It returns what NAME_jacobian returns; or
    -NAME_COORDINATES - i where rate i, from 1, is no number. */
 int NAME_rates(const NAME_geometry *geometry, const NAME_real pose[], unsigned mode, const NAME_real rates[],

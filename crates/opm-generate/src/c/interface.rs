@@ -33,6 +33,7 @@ impl Writer<'_> {
             self.limits(),
             self.transform() + "\n",
             self.rates(),
+            self.twist(),
             self.forward(),
         ];
         parts.concat()
@@ -274,6 +275,29 @@ impl Writer<'_> {
             .to_owned()
     }
 
+    /// The displacement of a section in base coordinates, from its symbol.
+    pub fn body_of(&self, section: Section, symbol: &str) -> String {
+        let zero = "NAME_vector_of(0, 0, 0)";
+        let identity = "NAME_about_third(NAME_complex_of(1, 0))";
+        let (rotation, translation) = match kind(self.task, section) {
+            SubspaceKind::Identity => (identity.to_owned(), zero.to_owned()),
+            SubspaceKind::Planar => (
+                format!("NAME_about_third({symbol}.rotation)"),
+                format!("NAME_vector_of({symbol}.translation.re, {symbol}.translation.im, 0)"),
+            ),
+            SubspaceKind::Spherical => (symbol.to_owned(), zero.to_owned()),
+            SubspaceKind::Cylindrical => (
+                format!("NAME_about_third(NAME_unit({symbol}.angle))"),
+                format!("NAME_vector_of(0, 0, {symbol}.advance)"),
+            ),
+            SubspaceKind::TranslationalPlane => {
+                (identity.to_owned(), format!("NAME_vector_of({symbol}.re, {symbol}.im, 0)"))
+            }
+            SubspaceKind::TranslationalSpace => (identity.to_owned(), symbol.to_owned()),
+        };
+        format!("NAME_body_of(&g->{}_frame, {rotation}, {translation})", word(section))
+    }
+
     /// The public function of the platform's pose.
     fn transform(&self) -> String {
         let complete = format!("    status = NAME_complete(g, pose, mode, q, unmet);\n{RETURN}");
@@ -286,31 +310,10 @@ impl Writer<'_> {
             body += UNMET;
         }
         body += &self.prelude(&format!("{calls}{rise}"), &complete);
-        let of = |section: Section, symbol: &str| {
-            let zero = "NAME_vector_of(0, 0, 0)";
-            let identity = "NAME_about_third(NAME_complex_of(1, 0))";
-            let (rotation, translation) = match kind(self.task, section) {
-                SubspaceKind::Identity => (identity.to_owned(), zero.to_owned()),
-                SubspaceKind::Planar => (
-                    format!("NAME_about_third({symbol}.rotation)"),
-                    format!("NAME_vector_of({symbol}.translation.re, {symbol}.translation.im, 0)"),
-                ),
-                SubspaceKind::Spherical => (symbol.to_owned(), zero.to_owned()),
-                SubspaceKind::Cylindrical => (
-                    format!("NAME_about_third(NAME_unit({symbol}.angle))"),
-                    format!("NAME_vector_of(0, 0, {symbol}.advance)"),
-                ),
-                SubspaceKind::TranslationalPlane => {
-                    (identity.to_owned(), format!("NAME_vector_of({symbol}.re, {symbol}.im, 0)"))
-                }
-                SubspaceKind::TranslationalSpace => (identity.to_owned(), symbol.to_owned()),
-            };
-            format!("NAME_body_of(&g->{}_frame, {rotation}, {translation})", word(section))
-        };
-        let _ = writeln!(body, "    body = {};", of(Section::Lower, "v"));
+        let _ = writeln!(body, "    body = {};", self.body_of(Section::Lower, "v"));
         if upper {
             let _ =
-                writeln!(body, "    body = NAME_body_product(body, {});", of(Section::Upper, "b"));
+                writeln!(body, "    body = NAME_body_product(body, {});", self.body_of(Section::Upper, "b"));
         }
         match self.forms.height.map(|height| height.section) {
             None => {}

@@ -979,6 +979,13 @@ static inline NAME_body NAME_body_product(NAME_body g, NAME_body h)
     return p;
 }
 
+/* The velocity of a point that a twist of a section moves: w and v in the section's frame, the rest in base coordinates. */
+static inline NAME_vector NAME_velocity_at(const NAME_frame *f, NAME_vector w, NAME_vector v, NAME_vector point)
+{
+    const NAME_vector arm = NAME_add(point, -1, f->origin);
+    return NAME_add(NAME_rotated(f->axes, v), 1, NAME_cross(NAME_rotated(f->axes, w), arm));
+}
+
 /* The rotation about the third direction by a direction. */
 static inline NAME_rotation NAME_about_third(NAME_complex e)
 {

@@ -54,13 +54,7 @@ impl Writer<'_> {
         let all = self.task.coordinates.len();
         let mut body = format!("    NAME_displacements at;\n    NAME_twists t[{all}];\n");
         if self.dependent() {
-            let joints = self.fields.len();
-            let _ = writeln!(
-                body,
-                "    real all[{}], locked[{}];",
-                joints * all,
-                (first_lacking * all).max(1)
-            );
+            let _ = writeln!(body, "    real locked[{}];", (first_lacking * all).max(1));
             body += UNMET;
         }
         let columns = self.columns();
@@ -81,17 +75,27 @@ impl Writer<'_> {
                 );
             }
         }
-        if self.dependent() {
-            body += &self.of_independent(first_lacking);
+        let dependent = self.dependent();
+        if dependent {
+            body += &self.eliminated(first_lacking);
         } else {
             body = body.replace(", all", ", jacobian");
         }
         let unused = if uses(&calls, "at") { "" } else { "    (void)at;\n" };
-        let none = if calls.is_empty() { "    (void)t;\n    (void)jacobian;\n" } else { "" };
-        let body = format!("{body}{unused}{none}");
+        let output = if dependent { "all" } else { "jacobian" };
+        let none = match calls.is_empty() {
+            true => format!("    (void)t;\n    (void){output};\n"),
+            false => String::new(),
+        };
+        let body = format!("{body}{unused}{none}    return 0;\n");
+        let head = "int NAME_jacobian(const NAME_geometry *g, const NAME_real pose[], unsigned mode,\n                 \
+             NAME_real jacobian[NAME_JOINTS * NAME_COORDINATES])\n";
+        let jacobian = match dependent {
+            true => self.of_independent(head, &body),
+            false => format!("{head}{{\n{body}}}\n\n"),
+        };
         format!(
-            "{functions}int NAME_jacobian(const NAME_geometry *g, const NAME_real pose[], unsigned mode,\n                 \
-             NAME_real jacobian[NAME_JOINTS * NAME_COORDINATES])\n{{\n{body}    return 0;\n}}\n\n\
+            "{functions}{jacobian}\
              int NAME_rates(const NAME_geometry *g, const NAME_real pose[], unsigned mode, const NAME_real rates[],\n                 \
              NAME_real joint_rates[])\n{{\n    real jacobian[NAME_JOINTS * NAME_COORDINATES];\n    int i, j;\n    \
              int status = NAME_jacobian(g, pose, mode, jacobian);\n{RETURN}    \
@@ -103,7 +107,7 @@ impl Writer<'_> {
     }
 
     /// Statements that give the twists `t` of the sections for a unit rate of each coordinate.
-    fn columns(&self) -> String {
+    pub fn columns(&self) -> String {
         let mut text = String::new();
         let count = self.task.coordinates.len();
         let mut twists = vec![[ZERO.to_owned(), ZERO.to_owned(), "0".to_owned()]; count];
@@ -512,15 +516,25 @@ impl Writer<'_> {
         }
     }
 
-    /// Statements that give the Jacobian from the rates by all coordinates, with those rates of the coordinates that follow
-    /// at which no joint moves that a leg lacks.
-    fn of_independent(&self, lacking: usize) -> String {
+    /// The coordinates that are given, and those that follow.
+    fn own_and_follow(&self) -> [Vec<usize>; 2] {
+        let own = self.forms.independent.clone();
+        let follow = (0..self.task.coordinates.len()).filter(|i| !own.contains(i)).collect();
+        [own, follow]
+    }
+
+    /// How many rates there are of the coordinates that follow by those that are given.
+    pub fn follow_rates(&self) -> usize {
+        let [own, follow] = self.own_and_follow();
+        (own.len() * follow.len()).max(1)
+    }
+
+    /// Statements that give `follow`, the rates of the coordinates that follow at which no joint moves that a leg lacks.
+    fn eliminated(&self, lacking: usize) -> String {
         let count = self.task.coordinates.len();
-        let own = &self.forms.independent;
-        let follow: Vec<usize> = (0..count).filter(|i| !own.contains(i)).collect();
-        let list =
-            |numbers: &[usize]| numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        let [own, follow] = self.own_and_follow();
         let (sides, unknowns) = (own.len(), follow.len());
+        let width = sides + unknowns;
         let units: Vec<&str> = follow
             .iter()
             .map(|&i| match self.task.coordinates[i].quantity {
@@ -528,33 +542,62 @@ impl Writer<'_> {
                 Quantity::Length => "g->size",
             })
             .collect();
-        let mut text = String::new();
-        let width = sides + unknowns;
-        let own_list = if own.is_empty() { "0".to_owned() } else { list(own) };
-        let _ = write!(
-            text,
-            "    {{\n        const int own[{0}] = {{ {own_list} }}, follow[{unknowns}] = {{ {1} }};\n        \
-             const real unit[{unknowns}] = {{ {2} }};\n        \
-             real a[{3}], x[{4}];\n        int i, j, k;\n        \
+        format!(
+            "    {{\n        const int given[{0}] = {{ {1} }}, sought[{unknowns}] = {{ {2} }};\n        \
+             const real unit[{unknowns}] = {{ {3} }};\n        \
+             real a[{4}];\n        int i, j;\n        \
              for (i = 0; i < {lacking}; ++i) {{\n            \
              for (j = 0; j < {unknowns}; ++j) {{\n                \
-             a[i * {width} + j] = locked[i * {count} + follow[j]] * unit[j];\n            }}\n            \
+             a[i * {width} + j] = locked[i * {count} + sought[j]] * unit[j];\n            }}\n            \
              for (j = 0; j < {sides}; ++j) {{\n                \
-             a[i * {width} + {unknowns} + j] = -locked[i * {count} + own[j]];\n            }}\n        }}\n        \
-             if (NAME_eliminate(a, {lacking}, {unknowns}, {sides}, x)) {{\n            \
+             a[i * {width} + {unknowns} + j] = -locked[i * {count} + given[j]];\n            }}\n        }}\n        \
+             if (NAME_eliminate(a, {lacking}, {unknowns}, {sides}, follow)) {{\n            \
              return 2 * NAME_LEGS + 1;\n        }}\n        \
-             for (i = 0; i < NAME_JOINTS; ++i) {{\n            \
+             for (i = 0; i < {unknowns}; ++i) {{\n            \
              for (j = 0; j < {sides}; ++j) {{\n                \
-             jacobian[i * {sides} + j] = all[i * {count} + own[j]];\n                \
-             for (k = 0; k < {unknowns}; ++k) {{\n                    \
-             jacobian[i * {sides} + j] += all[i * {count} + follow[k]] * unit[k] * x[k * {sides} + j];\n                \
-             }}\n            }}\n        }}\n    }}\n",
+             follow[i * {sides} + j] *= unit[i];\n            }}\n        }}\n    }}\n",
             sides.max(1),
-            list(&follow),
+            listed(&own),
+            listed(&follow),
             units.join(", "),
             lacking * width,
-            (unknowns * sides).max(1),
-        );
-        text
+        )
     }
+
+    /// The Jacobian where coordinates follow, with the functions that it shares with the twist: the rates by all coordinates,
+    /// and their sums for those that are given.
+    fn of_independent(&self, head: &str, body: &str) -> String {
+        let count = self.task.coordinates.len();
+        let [own, follow] = self.own_and_follow();
+        let (sides, unknowns) = (own.len(), follow.len());
+        format!(
+            "/* The rates of all joints by all coordinates, and those of the coordinates that follow by the others. It returns what\n   \
+             NAME_jacobian returns. */\n\
+             static int NAME_differentiate(const NAME_geometry *g, const real pose[], unsigned mode, real all[], real follow[])\n\
+             {{\n{body}}}\n\n\
+             /* Rates by the coordinates of a pose, from rows of those by all coordinates. */\n\
+             static void NAME_by_pose(const real all[], int rows, const real follow[], real by_pose[])\n\
+             {{\n    const int given[{0}] = {{ {1} }}, sought[{unknowns}] = {{ {2} }};\n    int i, j, k;\n    \
+             for (i = 0; i < rows; ++i) {{\n        \
+             for (j = 0; j < {sides}; ++j) {{\n            \
+             by_pose[i * {sides} + j] = all[i * {count} + given[j]];\n            \
+             for (k = 0; k < {unknowns}; ++k) {{\n                \
+             by_pose[i * {sides} + j] += all[i * {count} + sought[k]] * follow[k * {sides} + j];\n            \
+             }}\n        }}\n    }}\n}}\n\n\
+             {head}{{\n    real all[{3}], follow[{4}];\n    \
+             const int status = NAME_differentiate(g, pose, mode, all, follow);\n{RETURN}    \
+             NAME_by_pose(all, NAME_JOINTS, follow, jacobian);\n    return 0;\n}}\n\n",
+            sides.max(1),
+            listed(&own),
+            listed(&follow),
+            self.fields.len() * count,
+            self.follow_rates(),
+        )
+    }
+}
+
+/// Numbers as the elements of an array, which has at least one.
+fn listed(numbers: &[usize]) -> String {
+    let each: Vec<String> = numbers.iter().map(usize::to_string).collect();
+    if each.is_empty() { "0".to_owned() } else { each.join(", ") }
 }

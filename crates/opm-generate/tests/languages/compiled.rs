@@ -1,6 +1,7 @@
 //! Generated C, compiled by the C compiler at hand, and called through a small program that reads poses from its input.
 
-use opm_core::{Manipulator, Mode};
+use crate::program::{Answer, Program, Question, Shape, ask};
+use opm_core::Manipulator;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -36,71 +37,9 @@ pub enum Real {
 }
 
 /// Several mechanisms in one program.
-pub struct Program {
+pub struct Compiled {
     folder: TempDir,
     shapes: Vec<Shape>,
-}
-
-/// How many numbers there are of each kind.
-#[derive(Clone, Copy)]
-struct Shape {
-    coordinates: usize,
-    joints: usize,
-    imaginary: usize,
-    actuated: usize,
-    legs: usize,
-}
-
-/// A question: a mode and a pose, and a pose that is reached from there.
-#[derive(Clone, Debug)]
-pub struct Question {
-    pub mode: Mode,
-    pub pose: Vec<f64>,
-    pub next: Vec<f64>,
-}
-
-/// What the functions return and write for a question.
-#[derive(Debug)]
-pub struct Answer {
-    /// Of `NAME_inverse`.
-    pub status: f64,
-    pub joints: Vec<f64>,
-    pub imaginary: Vec<f64>,
-    /// Of `NAME_actuated`.
-    pub actuated_status: f64,
-    pub actuated: Vec<f64>,
-    /// Of `NAME_deficits`: that of the lower and that of the upper section of each leg.
-    pub deficits_status: f64,
-    pub deficits: Vec<f64>,
-    /// Of `NAME_limits`, for the joints.
-    pub limits: f64,
-    /// Of `NAME_transform`.
-    pub transform_status: f64,
-    pub position: Vec<f64>,
-    pub rotation: Vec<f64>,
-    /// Of `NAME_nearest`, for the next pose and the joints.
-    pub nearest_status: f64,
-    pub nearest_mode: f64,
-    pub nearest_joints: Vec<f64>,
-    pub nearest_imaginary: Vec<f64>,
-    /// Of `NAME_jacobian`.
-    pub jacobian_status: f64,
-    pub jacobian: Vec<f64>,
-    /// Of `NAME_rates`, for the coordinates of the next pose as rates.
-    pub rates_status: f64,
-    pub rates: Vec<f64>,
-    /// Of `NAME_forward`, from the next pose to the actuated joints; nothing where there is no such function.
-    pub forward: Option<Forward>,
-}
-
-/// What `NAME_forward` returns and writes.
-#[derive(Debug)]
-pub struct Forward {
-    pub status: f64,
-    pub residual: f64,
-    pub pose: Vec<f64>,
-    /// The status where the last actuated joint is no number.
-    pub refused: f64,
 }
 
 /// What answers a record of the input: a mode, a pose, and the next one.
@@ -116,7 +55,7 @@ const RUN: &str = "
         NAME##_real pose[2 * NAME##_COORDINATES], joints[NAME##_JOINTS], imaginary[NAME##_IMAGINARY + 1]; \\
         NAME##_real actuated[NAME##_ACTUATED + 1], deficits[2 * NAME##_LEGS], position[3], rotation[9]; \\
         NAME##_real next[NAME##_JOINTS], next_imaginary[NAME##_IMAGINARY + 1]; \\
-        NAME##_real jacobian[NAME##_JOINTS * NAME##_COORDINATES]; \\
+        NAME##_real jacobian[NAME##_JOINTS * NAME##_COORDINATES], twist[6 * NAME##_COORDINATES]; \\
         NAME##_real residual = -77; \\
         unsigned next_mode = 0; \\
         if (fread(given, sizeof given, 1, stdin) != 1) return 2; \\
@@ -146,6 +85,9 @@ const RUN: &str = "
         for (i = 0; i < NAME##_JOINTS * NAME##_COORDINATES; ++i) jacobian[i] = -77; \\
         WRITE(NAME##_jacobian(g, pose, mode, jacobian)); \\
         WRITE_ALL(jacobian, NAME##_JOINTS * NAME##_COORDINATES); \\
+        for (i = 0; i < 6 * NAME##_COORDINATES; ++i) twist[i] = -77; \\
+        WRITE(NAME##_twist(g, pose, mode, twist)); \\
+        WRITE_ALL(twist, 6 * NAME##_COORDINATES); \\
         WRITE(NAME##_rates(g, pose, mode, pose + NAME##_COORDINATES, next)); \\
         WRITE_ALL(next, NAME##_JOINTS); \\
         FORWARD(NAME); \\
@@ -166,9 +108,16 @@ const FORWARD: &str = "
 #define NO_FORWARD(NAME) do { (void)residual; WRITE(0); } while (0)
 ";
 
-impl Program {
+impl Program for Compiled {
+    fn ask(&self, number: usize, questions: &[Question]) -> Vec<Answer> {
+        let mut command = Command::new(self.folder.path().join("driver"));
+        ask(command.arg(number.to_string()), self.shapes[number], questions)
+    }
+}
+
+impl Compiled {
     /// Compiles the code of mechanisms with different names. `flags` are further ones of the compiler.
-    pub fn new(manipulators: &[&Manipulator], real: Real, flags: &[&str]) -> Option<Self> {
+    pub fn new(manipulators: &[Manipulator], real: Real, flags: &[&str]) -> Option<Self> {
         let compiler = compiler()?;
         let folder = tempfile::tempdir().expect("a directory for temporary files");
         let mut sources: Vec<PathBuf> = Vec::new();
@@ -233,81 +182,7 @@ impl Program {
             .args(["-o", "driver", "driver.c"])
             .args(objects)
             .arg("-lm"));
-        let shape = |m: &&Manipulator| Shape {
-            coordinates: m.task_coordinates().len(),
-            joints: m.coordinates().len(),
-            imaginary: m.imaginary().len(),
-            actuated: m.actuated().len(),
-            legs: m.mechanism().legs.len(),
-        };
-        Some(Self { folder, shapes: manipulators.iter().map(shape).collect() })
-    }
-
-    /// The answers of one mechanism.
-    pub fn ask(&self, number: usize, questions: &[Question]) -> Vec<Answer> {
-        let shape = self.shapes[number];
-        let mut input = Vec::new();
-        for Question { mode, pose, next } in questions {
-            assert_eq!((pose.len(), next.len()), (shape.coordinates, shape.coordinates));
-            input.extend(u32::try_from(mode.bits()).expect("few choices").to_ne_bytes());
-            input.extend(pose.iter().chain(next).flat_map(|value| value.to_ne_bytes()));
-        }
-        let mut child = Command::new(self.folder.path().join("driver"))
-            .arg(number.to_string())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program that was compiled");
-        let mut stdin = child.stdin.take().expect("a pipe");
-        let writer = std::thread::spawn(move || stdin.write_all(&input));
-        let output = child.wait_with_output().expect("it ends");
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success() && told.is_empty(), "{}: {told}", output.status);
-        writer.join().expect("it writes").expect("all is read");
-        let numbers: Vec<f64> = output
-            .stdout
-            .chunks_exact(8)
-            .map(|bytes| f64::from_ne_bytes(bytes.try_into().expect("eight bytes")))
-            .collect();
-        let mut numbers = numbers.into_iter();
-        let answers = questions.iter().map(|_| Answer::read(&mut numbers, shape)).collect();
-        assert_eq!(numbers.next(), None);
-        answers
-    }
-}
-
-impl Answer {
-    fn read(numbers: &mut impl Iterator<Item = f64>, shape: Shape) -> Self {
-        let mut take = |count: usize| -> Vec<f64> { numbers.by_ref().take(count).collect() };
-        let one = |values: Vec<f64>| values[0];
-        Self {
-            status: one(take(1)),
-            joints: take(shape.joints),
-            imaginary: take(shape.imaginary),
-            actuated_status: one(take(1)),
-            actuated: take(shape.actuated),
-            deficits_status: one(take(1)),
-            deficits: take(2 * shape.legs),
-            limits: one(take(1)),
-            transform_status: one(take(1)),
-            position: take(3),
-            rotation: take(9),
-            nearest_status: one(take(1)),
-            nearest_mode: one(take(1)),
-            nearest_joints: take(shape.joints),
-            nearest_imaginary: take(shape.imaginary),
-            jacobian_status: one(take(1)),
-            jacobian: take(shape.joints * shape.coordinates),
-            rates_status: one(take(1)),
-            rates: take(shape.joints),
-            forward: (one(take(1)) == 1.0).then(|| Forward {
-                status: one(take(1)),
-                residual: one(take(1)),
-                pose: take(shape.coordinates),
-                refused: one(take(1)),
-            }),
-        }
+        Some(Self { folder, shapes: manipulators.iter().map(Shape::of).collect() })
     }
 }
 

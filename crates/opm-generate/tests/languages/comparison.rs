@@ -1,15 +1,12 @@
-//! Generated C, compiled and compared with `opm-core`.
+//! The comparison of generated code with `opm-core`.
 
-mod compiled;
-mod drawn;
-
-use compiled::{Answer, Program, Question, Real, compiled_by, linuxcnc, programs_of};
-use drawn::{Drawn, random_mechanisms, shipped};
+use crate::drawn::Drawn;
+use crate::program::{Answer, Program, Question};
 use fastrand::Rng;
 use opm_core::manipulator::{ActuatedJoints, Solution};
 use opm_core::nalgebra::Isometry3;
 use opm_core::velocity::Jacobians;
-use opm_core::{Manipulator, Mode, Quantity};
+use opm_core::{Manipulator, Quantity};
 use std::f64::consts::{PI, TAU};
 
 /// How far a joint may be off, radians or metres over one or the joint's value, where the joints move no more than
@@ -22,9 +19,6 @@ const REGULAR: f64 = 0.01;
 
 /// How far the legs may be from the platform in `float`, radians or shares of the size: some ten operations' rounding.
 const FLOAT: f64 = 1e-5;
-
-/// Poses of each shipped mechanism, and of each random one: 10⁵ in all.
-const POSES: [usize; 2] = [3_000, 200];
 
 /// What is compared at every pose, and what was compared.
 struct Comparison<'a> {
@@ -111,6 +105,7 @@ impl<'a> Comparison<'a> {
             return;
         }
         self.regular += 1;
+        self.compare_twist(answer, place);
         let expected = self.jacobians.joints_by_pose();
         let columns = m.task_coordinates().len();
         for (i, c) in m.coordinates().iter().enumerate() {
@@ -127,6 +122,27 @@ impl<'a> Comparison<'a> {
                 size += (found * question.next[j]).abs();
             }
             assert!((answer.rates[i] - rate).abs() <= ROUNDING * size, "{place}");
+        }
+    }
+
+    /// The platform's twist is opm's, for every coordinate.
+    fn compare_twist(&self, answer: &Answer, place: &str) {
+        let m = self.manipulator;
+        if answer.twist_status != 0.0 {
+            // Only where coordinates follow, and have no rates.
+            assert_eq!(answer.twist_status, answer.jacobian_status, "{place}");
+            return;
+        }
+        let expected = m.twist_by_pose(&self.jacobians);
+        let columns = m.task_coordinates().len();
+        for i in 0..6 {
+            for (j, of_pose) in m.task_coordinates().iter().enumerate() {
+                let unit = if i < 3 { 1.0 } else { m.characteristic_length() };
+                let unit = unit / self::unit(m, of_pose.quantity);
+                let far = 1.0 + expected[(i, j)].abs() / unit;
+                let off = (answer.twist[i * columns + j] - expected[(i, j)]).abs() / unit;
+                assert!(off <= 1e-9 * far * far, "{place}: {i} {j} {off:e} {:?}", answer.twist);
+            }
         }
     }
 
@@ -263,7 +279,7 @@ impl<'a> Comparison<'a> {
 }
 
 /// What an angle or a length is compared with.
-fn unit(m: &Manipulator, quantity: Quantity) -> f64 {
+pub fn unit(m: &Manipulator, quantity: Quantity) -> f64 {
     match quantity {
         Quantity::Angle => 1.0,
         Quantity::Length => m.characteristic_length(),
@@ -301,9 +317,8 @@ fn off(m: &Manipulator, found: (&[f64], &[f64]), expected: (&[f64], &[f64])) -> 
     if found.0.iter().chain(found.1).any(|value| !value.is_finite()) { f64::INFINITY } else { most }
 }
 
-fn compare_all(manipulators: &[Manipulator], flags: &[&str], poses: usize, seed: u64) {
-    let list: Vec<&Manipulator> = manipulators.iter().collect();
-    let Some(program) = Program::new(&list, Real::Double, flags) else { return };
+/// How exactly code is compared: in how many poses of each mechanism, drawn from a seed.
+pub fn compare_all(program: &impl Program, manipulators: &[Manipulator], poses: usize, seed: u64) {
     let mut rng = Rng::with_seed(seed);
     let (mut reached, mut missed, mut regular, mut found) = (0, 0, 0, [0; 2]);
     for (number, m) in manipulators.iter().enumerate() {
@@ -326,26 +341,11 @@ fn compare_all(manipulators: &[Manipulator], flags: &[&str], poses: usize, seed:
     assert!(regular > reached / 2 && found[0] > found[1] / 10 * 9, "{regular} {found:?}");
 }
 
-#[test]
-fn shipped_mechanisms_are_solved_as_by_opm() {
-    compare_all(&shipped(), &["-O2"], POSES[0], 1);
-}
-
-/// Of every pair of subspaces, with limits, spherical and universal joints, leaning lifts, and legs that constrain.
-#[test]
-fn random_mechanisms_are_solved_as_by_opm() {
-    compare_all(&random_mechanisms(2), &["-O0"], POSES[1], 3);
-}
-
 /// Joints in `float` close every leg. Poses that may be on either side of the boundary of reach are left out.
-#[test]
-fn joints_in_float_close_every_leg() {
-    let manipulators = shipped();
-    let list: Vec<&Manipulator> = manipulators.iter().collect();
-    let Some(program) = Program::new(&list, Real::Float, &["-O2"]) else { return };
+pub fn float_closes_every_leg(program: &impl Program, manipulators: &[Manipulator], poses: usize) {
     let mut rng = Rng::with_seed(5);
     for (number, m) in manipulators.iter().enumerate() {
-        let mut questions = Drawn { rng: &mut rng, manipulator: m }.questions(2_000);
+        let mut questions = Drawn { rng: &mut rng, manipulator: m }.questions(poses);
         for question in &mut questions {
             question.pose.iter_mut().for_each(|value| *value = f64::from(*value as f32));
         }
@@ -404,18 +404,14 @@ fn open(m: &Manipulator, joints: &[f64], g: &Isometry3<f64>) -> f64 {
 }
 
 /// On lines from a pose in reach to one out of it, the code and opm turn at the same place.
-#[test]
-fn reach_ends_where_it_does_for_opm() {
+pub fn reach_ends_where_it_does_for_opm(program: &impl Program, manipulators: &[Manipulator], poses: usize) {
     /// Rounding of the boundary's place, as a share of the line: a pose nearer to it may be on either side.
     const BOUNDARY: f64 = 1e-9;
-    let manipulators = shipped();
-    let list: Vec<&Manipulator> = manipulators.iter().collect();
-    let Some(program) = Program::new(&list, Real::Double, &["-O2"]) else { return };
     let mut rng = Rng::with_seed(7);
     let mut lines = 0;
     for (number, m) in manipulators.iter().enumerate() {
         let mut at = m.solution();
-        let drawn = Drawn { rng: &mut rng, manipulator: m }.questions(60);
+        let drawn = Drawn { rng: &mut rng, manipulator: m }.questions(poses);
         let mut questions = Vec::new();
         for pair in drawn.windows(2) {
             let mode = pair[0].mode;
@@ -444,157 +440,5 @@ fn reach_ends_where_it_does_for_opm() {
             assert_eq!(answer.status == 0.0, reached, "{} {question:?}", m.mechanism().name);
         }
     }
-    assert!(lines > 100, "{lines}");
-}
-
-/// Numbers that are none are told; nothing is undefined then, or anywhere else.
-#[test]
-fn nothing_is_undefined() {
-    let names = [
-        "plano-spherical-5dof",
-        "five-bar",
-        "translational-helical-3dof",
-        "schoenflies-column-4dof",
-    ];
-    let manipulators = names.map(|name| Manipulator::example(name).unwrap());
-    let list: Vec<&Manipulator> = manipulators.iter().collect();
-    for real in [Real::Double, Real::Float] {
-        let flags = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
-        let Some(program) = Program::new(&list, real, &flags) else { return };
-        let mut rng = Rng::with_seed(11);
-        for (number, m) in manipulators.iter().enumerate() {
-            let mut questions = Drawn { rng: &mut rng, manipulator: m }.questions(300);
-            let count = m.task_coordinates().len();
-            let wrong = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e80, -1e80];
-            for (i, question) in questions.iter_mut().enumerate().take(100).skip(50) {
-                question.next[i % count] = wrong[i % 3];
-            }
-            for (i, question) in questions.iter_mut().enumerate().skip(100) {
-                if real == Real::Double || !wrong[i % 5].is_finite() || i % 5 < 3 {
-                    question.pose[i % count] = wrong[i % 5];
-                    question.next[(i + 1) % count] = wrong[(i + 2) % 3];
-                }
-            }
-            for (i, answer) in program.ask(number, &questions).iter().enumerate().skip(50) {
-                if i < 100 {
-                    let refused = -((count + i % count) as f64 + 1.0);
-                    assert!(answer.status != 0.0 || answer.rates_status == refused, "{answer:?}");
-                    continue;
-                }
-                if real == Real::Double || i % 5 < 3 {
-                    assert_eq!(
-                        answer.status,
-                        -((i % count) as f64 + 1.0),
-                        "{}",
-                        m.mechanism().name
-                    );
-                    assert!(answer.nearest_status < 0.0);
-                }
-            }
-        }
-    }
-}
-
-/// The test program that is written beside the code accepts it, and a changed geometry it does not.
-#[test]
-fn the_test_beside_the_code_finds_errors() {
-    for m in shipped() {
-        let code = opm_generate::c(&m).unwrap();
-        let wrong = code.source.replacen(".home + at.q_", ".home + R(0.01) + at.q_", 1);
-        let told = programs_of(&code, &[&code.source, &wrong]);
-        let Some([right, wrong]) = told.as_deref() else { return };
-        assert!(right.0, "{}", right.1);
-        if code.source.contains(".home + at.q_") {
-            assert!(!wrong.0, "{}: {}", code.name, wrong.1);
-        }
-    }
-}
-
-/// The bits of a mode are its signs, the first one lowest.
-#[test]
-fn bits_are_signs() {
-    let m = Manipulator::example("plano-spherical-5dof").unwrap();
-    for (number, mode) in m.modes().enumerate() {
-        let signs: String = m.format_mode(mode).chars().filter(|c| *c != ' ').collect();
-        let bits = signs.chars().rev().fold(0, |bits, sign| 2 * bits + u64::from(sign == '-'));
-        assert_eq!((mode.bits(), bits), (number as u64, number as u64));
-        assert_eq!(mode, Mode::clone(&m.parse_mode(&signs).unwrap()));
-    }
-}
-
-/// Every closed form and every condition of the library is in the code of a mechanism that is compared.
-#[test]
-fn every_closed_form_is_compared() {
-    let library = include_str!("../../src/c/library.c");
-    let all: Vec<Manipulator> = shipped().into_iter().chain(random_mechanisms(2)).collect();
-    let codes: Vec<_> = all.iter().map(|m| opm_generate::c(m).unwrap()).collect();
-    let forms = library.split("NAME_").filter_map(|rest| rest.split_once('('));
-    let forms = forms.map(|(name, _)| name).filter(|name| {
-        ["solve_", "value_", "axis_", "zero_"].iter().any(|begin| name.starts_with(begin))
-    });
-    for form in forms {
-        let used = codes.iter().filter(|code| code.source.contains(&format!("_{form}("))).count();
-        assert!(used > 0, "no mechanism has {form}");
-    }
-}
-
-/// clang accepts the code, and so do C++ compilers, as C++17.
-#[test]
-fn every_compiler_accepts_the_code() {
-    let manipulators = shipped().into_iter().chain(random_mechanisms(2).into_iter().step_by(16));
-    let codes: Vec<_> = manipulators.map(|m| opm_generate::c(&m).unwrap()).collect();
-    let cpp = ["-x", "c++", "-std=c++17"];
-    for (compiler, flags) in
-        [("clang", &["-std=c99"][..]), ("c++", &cpp[..]), ("clang++", &cpp[..])]
-    {
-        if let Some(told) = compiled_by(compiler, flags, &codes) {
-            assert_eq!(told, "", "{compiler}");
-        }
-    }
-}
-
-/// The module for LinuxCNC gives opm's actuated joints, in millimetres and degrees, and finds the pose again.
-#[test]
-fn linuxcnc_moves_as_opm_does() {
-    let mut modules = 0;
-    for m in shipped() {
-        let code = opm_generate::c(&m).unwrap();
-        if code.linuxcnc.is_none() {
-            continue;
-        }
-        modules += 1;
-        let mut pose = m.home_pose();
-        let mut axes = [0.0; 9];
-        let (mut angles, mut lengths) = (3..6, 6..9);
-        for (value, c) in pose.iter_mut().zip(m.task_coordinates()) {
-            *value += 0.02 * unit(&m, c.quantity);
-            let axis = match (c.quantity, ["x", "y", "z"].iter().position(|name| *name == c.name)) {
-                (Quantity::Length, Some(axis)) => axis,
-                (Quantity::Length, None) => lengths.next().unwrap(),
-                (Quantity::Angle, _) => angles.next().unwrap(),
-            };
-            axes[axis] = match c.quantity {
-                Quantity::Length => *value * 1e3,
-                Quantity::Angle => value.to_degrees(),
-            };
-        }
-        let name = &m.mechanism().name;
-        let Some(answer) = linuxcnc(&code, axes) else { return };
-        let mut at = m.solution();
-        let at = m.inverse(&pose, m.home_mode(), &mut at).unwrap();
-        let at = at.unwrap_or_else(|| panic!("{name} does not reach a pose near home"));
-        assert_eq!(answer[0], 0.0, "{name}");
-        for (place, &joint) in m.actuated().iter().enumerate() {
-            let expected = match m.coordinates()[joint].quantity {
-                Quantity::Length => at.joints()[joint] * 1e3,
-                Quantity::Angle => at.joints()[joint].to_degrees(),
-            };
-            assert!((answer[1 + place] - expected).abs() < 1e-8, "{name}: {answer:?}");
-        }
-        assert_eq!(answer[17], 0.0, "{name}: {answer:?}");
-        for (axis, expected) in axes.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-            assert!((answer[18 + axis] - expected).abs() < 1e-6, "{name}: {answer:?} {axes:?}");
-        }
-    }
-    assert!(modules > 8, "{modules}");
+    assert!(lines > 2 * manipulators.len(), "{lines}");
 }

@@ -1,6 +1,6 @@
 //! The mechanisms and the poses that generated code is tested with.
 
-use crate::compiled::Question;
+use crate::program::Question;
 use fastrand::Rng;
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::{Manipulator, Quantity};

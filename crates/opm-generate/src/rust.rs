@@ -1,0 +1,106 @@
+//! Source code in Rust: a package without allocation that needs no standard library.
+//!
+//! The closed forms are those of the C code, printed from their tree into a module that is not public. Around it stands an
+//! interface as is usual in Rust: arrays of the right length, and `Result`.
+
+mod print;
+
+use crate::golden::{listed, poses};
+use crate::names::prefix;
+use crate::tree::Code;
+use crate::{GenerateError, Package, c};
+use opm_core::Manipulator;
+use opm_core::numeric::Quantity;
+use std::fmt::Write;
+
+const LIB: &str = include_str!("rust/package/lib.rs");
+const FORWARD: &str = include_str!("rust/package/forward.rs");
+const MATH: &str = include_str!("rust/package/math.rs");
+const TEST: &str = include_str!("rust/package/golden.rs");
+const CARGO: &str = include_str!("rust/package/Cargo.toml.txt");
+
+/// Writes the kinematics of a mechanism as a package of Rust.
+///
+/// # Errors
+/// The mechanism has more two-valued choices than a `u32` has bits.
+pub fn rust(manipulator: &Manipulator) -> Result<Package, GenerateError> {
+    let code = c::tree(manipulator)?;
+    // A package has a lower-case name.
+    let name = prefix(&manipulator.mechanism().name).to_lowercase();
+    let files = [
+        ("Cargo.toml", CARGO.replace("CRATE", &name)),
+        ("src/lib.rs", lib(manipulator, &code, &name)),
+        ("src/kinematics.rs", kinematics(&code)),
+        ("src/math.rs", MATH.to_owned()),
+        ("tests/golden.rs", golden(manipulator, &name)),
+    ];
+    let files = files.map(|(file, text)| (file.to_owned(), text)).into();
+    Ok(Package { name, files })
+}
+
+fn kinematics(code: &Code) -> String {
+    let text = print::module(code);
+    let functions = ["abs", "acos", "asin", "atan2", "ceil", "cos", "max", "min", "round", "sin", "sqrt"];
+    let mut used: Vec<&str> = functions
+        .into_iter()
+        .filter(|name| {
+            let call = format!("{name}(");
+            text.match_indices(&call).any(|(at, _)| {
+                !text[..at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
+            })
+        })
+        .collect();
+    if text.contains("by_type(") {
+        used.push("by_type");
+    }
+    format!(
+        "//! The closed forms, in the letters of the method: `L(q_lower) U(q_upper) = v b`, and `tau` for the displacement along\n\
+         //! what the two subgroups share. A status is zero, or says why there is no answer.\n\n\
+         #![allow(missing_docs, non_snake_case, non_upper_case_globals)]\n\nuse super::Real;\nuse super::math::{{{}}};\n\n{text}",
+        used.join(", ")
+    )
+}
+
+fn lib(m: &Manipulator, code: &Code, name: &str) -> String {
+    let signs = m.format_mode(m.home_mode());
+    let mode = match signs.is_empty() {
+        true => "There is one mode, 0.".to_owned(),
+        false => format!("At home it is {}: `{signs}`.", m.home_mode().bits()),
+    };
+    let text = LIB
+        .replace("TITLE", &crate::names::comment(&m.mechanism().name))
+        .replace("VERSION", env!("CARGO_PKG_VERSION"))
+        .replace("HOME_MODE", &m.home_mode().bits().to_string())
+        .replace("//! MODE", &format!("//! {mode}"))
+        .replace("CRATE", name);
+    let home = format!(
+        "\n/// The pose at home.\npub const HOME: [Real; COORDINATES] = [{}];\n",
+        listed(&m.home_pose())
+    );
+    let forward = code.functions.iter().any(|function| function.name == "forward");
+    text + &home + if forward { FORWARD } else { "" }
+}
+
+/// A test that compares the code with poses that opm solved.
+fn golden(m: &Manipulator, name: &str) -> String {
+    let mut rows = String::new();
+    for golden in poses(m) {
+        let _ = writeln!(
+            rows,
+            "    ({}, {}, [{}], &[{}], &[{}]),",
+            golden.mode.bits(),
+            golden.status,
+            listed(&golden.pose),
+            listed(&golden.joints),
+            listed(&golden.imaginary)
+        );
+    }
+    let angles: Vec<&str> = (m.coordinates().iter())
+        .map(|c| if c.quantity == Quantity::Angle { "true" } else { "false" })
+        .collect();
+    TEST.replace("CRATE", name)
+        .replace("TITLE", &crate::names::comment(&m.mechanism().name))
+        .replace("VERSION", env!("CARGO_PKG_VERSION"))
+        .replace("ANGLES", &angles.join(", "))
+        .replace("    ROWS\n", &rows)
+}

@@ -1,0 +1,298 @@
+//! Closed forms as a tree, from which each language is printed.
+//!
+//! The closed forms are described once, in a small part of C: structs of numbers, functions with values, constant and
+//! changed parameters, `if`, counting `for`, `return`. [`parser`] reads what the C generator writes into this tree, with
+//! the type of every expression; a language is a printer of the tree, and a frame of its own around it.
+
+mod expressions;
+pub mod flow;
+mod functions;
+mod lexer;
+pub mod lower;
+mod parser;
+pub mod visit;
+
+pub use parser::parse;
+
+/// The code of one mechanism.
+#[derive(Clone, Debug, Default)]
+pub struct Code {
+    /// Names of numbers: how many there are of each, the joints, the coordinates.
+    pub enums: Vec<Enum>,
+    pub constants: Vec<Constant>,
+    pub structs: Vec<Struct>,
+    pub functions: Vec<Function>,
+    /// The geometry of the mechanism.
+    pub default: Value,
+}
+
+/// Names of the numbers from 0, or of counts.
+#[derive(Clone, Debug)]
+pub struct Enum {
+    pub comment: String,
+    pub entries: Vec<Entry>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Entry {
+    pub name: String,
+    pub value: usize,
+    pub comment: String,
+}
+
+/// A number with a name. Tolerances depend on the type of numbers.
+#[derive(Clone, Debug)]
+pub struct Constant {
+    pub name: String,
+    pub comment: String,
+    pub double: String,
+    pub float: String,
+}
+
+#[derive(Clone, Debug)]
+pub struct Struct {
+    pub name: String,
+    pub comment: String,
+    pub members: Vec<Member>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Member {
+    pub name: String,
+    pub kind: Type,
+    pub comment: String,
+}
+
+/// A constant of a struct's type, number by number.
+#[derive(Clone, Debug)]
+pub enum Value {
+    Number(f64),
+    List(Vec<Value>),
+}
+
+impl Default for Value {
+    fn default() -> Self {
+        Self::List(Vec::new())
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Type {
+    Void,
+    Bool,
+    Int,
+    /// A working mode, or bits of one.
+    Bits,
+    Real,
+    Struct(String),
+    /// The elements, and how many there are; 0 where a parameter does not say.
+    Array(Box<Type>, usize),
+}
+
+impl Type {
+    pub fn is_array(&self) -> bool {
+        matches!(self, Self::Array(..))
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Function {
+    pub name: String,
+    pub comment: String,
+    /// Whether it belongs to the interface.
+    pub public: bool,
+    pub parameters: Vec<Parameter>,
+    pub result: Type,
+    pub body: Vec<Statement>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    pub name: String,
+    pub kind: Type,
+    pub pass: Pass,
+}
+
+/// How an argument is passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    /// A copy.
+    Value,
+    /// A reference that is only read.
+    Read,
+    /// A reference that is written.
+    Write,
+}
+
+#[derive(Clone, Debug)]
+pub enum Statement {
+    Comment(String),
+    Declare { name: String, kind: Type, init: Option<Expr> },
+    /// `place = value`, or `place op= value`.
+    Assign { place: Expr, op: Option<Op>, value: Expr },
+    Call(Expr),
+    If { test: Expr, then: Vec<Statement>, otherwise: Vec<Statement> },
+    /// `for (i = from; i < to && test; ++i)`
+    For { name: String, from: Expr, to: Expr, test: Option<Expr>, body: Vec<Statement> },
+    Block(Vec<Statement>),
+    Return(Option<Expr>),
+    Continue,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    pub node: Node,
+    pub kind: Type,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Node {
+    /// As it is written in C, without a suffix.
+    Number(String),
+    /// A constant, or an entry of an enum.
+    Constant(String),
+    /// The number that is larger than all others.
+    Infinity,
+    Variable(String),
+    Member(Box<Expr>, String),
+    Index(Box<Expr>, Box<Expr>),
+    Negative(Box<Expr>),
+    Not(Box<Expr>),
+    Binary(Op, Box<Expr>, Box<Expr>),
+    /// The second where the first is true, else the third.
+    Choice(Box<Expr>, Box<Expr>, Box<Expr>),
+    /// Of a function, or of one of [`BUILT_IN`].
+    Call(String, Vec<Argument>),
+    /// A struct from all of its members, or an array from its elements.
+    Made(Vec<Expr>),
+    /// The conversion to the expression's type.
+    Cast(Box<Expr>),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Argument {
+    pub value: Expr,
+    pub pass: Pass,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Op {
+    Or,
+    And,
+    Equal,
+    Unequal,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    BitOr,
+    BitAnd,
+    ShiftLeft,
+    ShiftRight,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Remainder,
+}
+
+impl Op {
+    /// How closely it binds, as in C.
+    pub fn strength(self) -> u8 {
+        match self {
+            Self::Or => 1,
+            Self::And => 2,
+            Self::BitOr => 3,
+            Self::BitAnd => 4,
+            Self::Equal | Self::Unequal => 5,
+            Self::Less | Self::LessEqual | Self::Greater | Self::GreaterEqual => 6,
+            Self::ShiftLeft | Self::ShiftRight => 7,
+            Self::Add | Self::Subtract => 8,
+            Self::Multiply | Self::Divide | Self::Remainder => 9,
+        }
+    }
+
+    pub fn is_comparison(self) -> bool {
+        matches!(self.strength(), 5 | 6)
+    }
+
+    pub fn in_c(self) -> &'static str {
+        match self {
+            Self::Or => "||",
+            Self::And => "&&",
+            Self::Equal => "==",
+            Self::Unequal => "!=",
+            Self::Less => "<",
+            Self::LessEqual => "<=",
+            Self::Greater => ">",
+            Self::GreaterEqual => ">=",
+            Self::BitOr => "|",
+            Self::BitAnd => "&",
+            Self::ShiftLeft => "<<",
+            Self::ShiftRight => ">>",
+            Self::Add => "+",
+            Self::Subtract => "-",
+            Self::Multiply => "*",
+            Self::Divide => "/",
+            Self::Remainder => "%",
+        }
+    }
+}
+
+/// Functions of numbers that every language has.
+pub const BUILT_IN: [&str; 11] =
+    ["abs", "max", "min", "sqrt", "sin", "cos", "asin", "acos", "round", "ceil", "atan2"];
+
+impl Expr {
+    pub fn new(node: Node, kind: Type) -> Self {
+        Self { node, kind }
+    }
+
+    pub fn int(value: impl std::fmt::Display) -> Self {
+        Self::new(Node::Number(value.to_string()), Type::Int)
+    }
+
+    pub fn variable(name: &str, kind: Type) -> Self {
+        Self::new(Node::Variable(name.to_owned()), kind)
+    }
+
+    /// The variable that a place is in.
+    pub fn root(&self) -> Option<&str> {
+        match &self.node {
+            Node::Variable(name) => Some(name),
+            Node::Member(of, _) | Node::Index(of, _) => of.root(),
+            _ => None,
+        }
+    }
+
+    /// The expression as one that is true or false.
+    pub fn as_test(self) -> Self {
+        if self.kind == Type::Bool {
+            return self;
+        }
+        let zero = Self::new(Node::Number("0".into()), self.kind.clone());
+        Self::new(Node::Binary(Op::Unequal, Box::new(self), Box::new(zero)), Type::Bool)
+    }
+
+    /// The expression in another type of numbers.
+    pub fn converted(self, kind: &Type) -> Self {
+        match (&self.node, &self.kind) {
+            (_, own) if own == kind => self,
+            (_, Type::Array(..) | Type::Struct(_)) => self,
+            (Node::Number(_) | Node::Constant(_), Type::Int | Type::Bits)
+                if *kind != Type::Bool && !matches!(self.node, Node::Constant(_)) =>
+            {
+                Self::new(self.node, kind.clone())
+            }
+            (Node::Negative(of), Type::Int) if matches!(of.node, Node::Number(_)) => {
+                let of = of.clone().converted(kind);
+                Self::new(Node::Negative(Box::new(of)), kind.clone())
+            }
+            (Node::Choice(test, a, b), Type::Int) => {
+                let [a, b] = [a, b].map(|part| Box::new(part.clone().converted(kind)));
+                Self::new(Node::Choice(test.clone(), a, b), kind.clone())
+            }
+            _ => Self::new(Node::Cast(Box::new(self)), kind.clone()),
+        }
+    }
+}

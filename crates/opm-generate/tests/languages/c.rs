@@ -1,0 +1,185 @@
+//! Generated C, compiled and compared with `opm-core`.
+
+use crate::comparison::{compare_all, float_closes_every_leg, reach_ends_where_it_does_for_opm, unit};
+use crate::compiled::{Compiled, Real, compiled_by, linuxcnc, programs_of};
+use crate::drawn::{Drawn, random_mechanisms, shipped};
+use crate::program::Program;
+use fastrand::Rng;
+use opm_core::{Manipulator, Mode, Quantity};
+
+/// Poses of each shipped mechanism, and of each random one: 10⁵ in all.
+const POSES: [usize; 2] = [3_000, 200];
+
+#[test]
+fn shipped_mechanisms_are_solved_as_by_opm() {
+    let all = shipped();
+    let Some(program) = Compiled::new(&all, Real::Double, &["-O2"]) else { return };
+    compare_all(&program, &all, POSES[0], 1);
+    reach_ends_where_it_does_for_opm(&program, &all, 60);
+}
+
+/// Of every pair of subspaces, with limits, spherical and universal joints, leaning lifts, and legs that constrain.
+#[test]
+fn random_mechanisms_are_solved_as_by_opm() {
+    let all = random_mechanisms(2);
+    let Some(program) = Compiled::new(&all, Real::Double, &["-O0"]) else { return };
+    compare_all(&program, &all, POSES[1], 3);
+}
+
+#[test]
+fn joints_in_float_close_every_leg() {
+    let all = shipped();
+    let Some(program) = Compiled::new(&all, Real::Float, &["-O1"]) else { return };
+    float_closes_every_leg(&program, &all, 2_000);
+}
+
+/// Numbers that are none are told; nothing is undefined then, or anywhere else.
+#[test]
+fn nothing_is_undefined() {
+    let names = [
+        "plano-spherical-5dof",
+        "five-bar",
+        "translational-helical-3dof",
+        "schoenflies-column-4dof",
+    ];
+    let manipulators = names.map(|name| Manipulator::example(name).unwrap());
+    for real in [Real::Double, Real::Float] {
+        let flags = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+        let Some(program) = Compiled::new(&manipulators, real, &flags) else { return };
+        let mut rng = Rng::with_seed(11);
+        for (number, m) in manipulators.iter().enumerate() {
+            let mut questions = Drawn { rng: &mut rng, manipulator: m }.questions(300);
+            let count = m.task_coordinates().len();
+            let wrong = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e80, -1e80];
+            for (i, question) in questions.iter_mut().enumerate().take(100).skip(50) {
+                question.next[i % count] = wrong[i % 3];
+            }
+            for (i, question) in questions.iter_mut().enumerate().skip(100) {
+                if real == Real::Double || !wrong[i % 5].is_finite() || i % 5 < 3 {
+                    question.pose[i % count] = wrong[i % 5];
+                    question.next[(i + 1) % count] = wrong[(i + 2) % 3];
+                }
+            }
+            for (i, answer) in program.ask(number, &questions).iter().enumerate().skip(50) {
+                if i < 100 {
+                    let refused = -((count + i % count) as f64 + 1.0);
+                    assert!(answer.status != 0.0 || answer.rates_status == refused, "{answer:?}");
+                    continue;
+                }
+                if real == Real::Double || i % 5 < 3 {
+                    assert_eq!(
+                        answer.status,
+                        -((i % count) as f64 + 1.0),
+                        "{}",
+                        m.mechanism().name
+                    );
+                    assert!(answer.nearest_status < 0.0);
+                }
+            }
+        }
+    }
+}
+
+/// The test program that is written beside the code accepts it, and a changed geometry it does not.
+#[test]
+fn the_test_beside_the_code_finds_errors() {
+    for m in shipped() {
+        let code = opm_generate::c(&m).unwrap();
+        let wrong = code.source.replacen(".home + at.q_", ".home + R(0.01) + at.q_", 1);
+        let told = programs_of(&code, &[&code.source, &wrong]);
+        let Some([right, wrong]) = told.as_deref() else { return };
+        assert!(right.0, "{}", right.1);
+        if code.source.contains(".home + at.q_") {
+            assert!(!wrong.0, "{}: {}", code.name, wrong.1);
+        }
+    }
+}
+
+/// The bits of a mode are its signs, the first one lowest.
+#[test]
+fn bits_are_signs() {
+    let m = Manipulator::example("plano-spherical-5dof").unwrap();
+    for (number, mode) in m.modes().enumerate() {
+        let signs: String = m.format_mode(mode).chars().filter(|c| *c != ' ').collect();
+        let bits = signs.chars().rev().fold(0, |bits, sign| 2 * bits + u64::from(sign == '-'));
+        assert_eq!((mode.bits(), bits), (number as u64, number as u64));
+        assert_eq!(mode, Mode::clone(&m.parse_mode(&signs).unwrap()));
+    }
+}
+
+/// Every closed form and every condition of the library is in the code of a mechanism that is compared.
+#[test]
+fn every_closed_form_is_compared() {
+    let library = include_str!("../../src/c/library.c");
+    let all: Vec<Manipulator> = shipped().into_iter().chain(random_mechanisms(2)).collect();
+    let codes: Vec<_> = all.iter().map(|m| opm_generate::c(m).unwrap()).collect();
+    let forms = library.split("NAME_").filter_map(|rest| rest.split_once('('));
+    let forms = forms.map(|(name, _)| name).filter(|name| {
+        ["solve_", "value_", "axis_", "zero_"].iter().any(|begin| name.starts_with(begin))
+    });
+    for form in forms {
+        let used = codes.iter().filter(|code| code.source.contains(&format!("_{form}("))).count();
+        assert!(used > 0, "no mechanism has {form}");
+    }
+}
+
+/// clang accepts the code, and so do C++ compilers, as C++17.
+#[test]
+fn every_compiler_accepts_the_code() {
+    let manipulators = shipped().into_iter().chain(random_mechanisms(2).into_iter().step_by(16));
+    let codes: Vec<_> = manipulators.map(|m| opm_generate::c(&m).unwrap()).collect();
+    let cpp = ["-x", "c++", "-std=c++17"];
+    for (compiler, flags) in
+        [("clang", &["-std=c99"][..]), ("c++", &cpp[..]), ("clang++", &cpp[..])]
+    {
+        if let Some(told) = compiled_by(compiler, flags, &codes) {
+            assert_eq!(told, "", "{compiler}");
+        }
+    }
+}
+
+/// The module for LinuxCNC gives opm's actuated joints, in millimetres and degrees, and finds the pose again.
+#[test]
+fn linuxcnc_moves_as_opm_does() {
+    let mut modules = 0;
+    for m in shipped() {
+        let code = opm_generate::c(&m).unwrap();
+        if code.linuxcnc.is_none() {
+            continue;
+        }
+        modules += 1;
+        let mut pose = m.home_pose();
+        let mut axes = [0.0; 9];
+        let (mut angles, mut lengths) = (3..6, 6..9);
+        for (value, c) in pose.iter_mut().zip(m.task_coordinates()) {
+            *value += 0.02 * unit(&m, c.quantity);
+            let axis = match (c.quantity, ["x", "y", "z"].iter().position(|name| *name == c.name)) {
+                (Quantity::Length, Some(axis)) => axis,
+                (Quantity::Length, None) => lengths.next().unwrap(),
+                (Quantity::Angle, _) => angles.next().unwrap(),
+            };
+            axes[axis] = match c.quantity {
+                Quantity::Length => *value * 1e3,
+                Quantity::Angle => value.to_degrees(),
+            };
+        }
+        let name = &m.mechanism().name;
+        let Some(answer) = linuxcnc(&code, axes) else { return };
+        let mut at = m.solution();
+        let at = m.inverse(&pose, m.home_mode(), &mut at).unwrap();
+        let at = at.unwrap_or_else(|| panic!("{name} does not reach a pose near home"));
+        assert_eq!(answer[0], 0.0, "{name}");
+        for (place, &joint) in m.actuated().iter().enumerate() {
+            let expected = match m.coordinates()[joint].quantity {
+                Quantity::Length => at.joints()[joint] * 1e3,
+                Quantity::Angle => at.joints()[joint].to_degrees(),
+            };
+            assert!((answer[1 + place] - expected).abs() < 1e-8, "{name}: {answer:?}");
+        }
+        assert_eq!(answer[17], 0.0, "{name}: {answer:?}");
+        for (axis, expected) in axes.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            assert!((answer[18 + axis] - expected).abs() < 1e-6, "{name}: {answer:?} {axes:?}");
+        }
+    }
+    assert!(modules > 8, "{modules}");
+}

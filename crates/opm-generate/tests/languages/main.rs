@@ -1,0 +1,10 @@
+//! Generated code of every language, run and compared with `opm-core`.
+
+mod c;
+mod comparison;
+mod compiled;
+mod drawn;
+mod matlab;
+mod program;
+mod python;
+mod rust;
