@@ -14,11 +14,14 @@ use opm_mcap::workspace::SLICES_TOPIC;
 use opm_mcap::{RejectedCause, SliceReader};
 use opm_plot::color::{INK, Map};
 use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
-use opm_study::WorkspaceKind;
+use opm_study::recording::class_color;
+use opm_study::{ASPECT, WorkspaceKind};
 use opm_workspace::{Axis, mask_boundary};
 
 /// Largest number of slices that are chosen without --slice.
 const CHOSEN: u64 = 8;
+/// Largest number of aspects that a legend names.
+const MOST_NAMED: usize = 12;
 /// Share of the colour scale that the slices take: the brightest colours are not used.
 const COLORS: f64 = 0.95;
 /// A value below this share of a grid's largest value, or of one metre or radian, counts as zero.
@@ -36,6 +39,8 @@ pub struct Slices<'a> {
     tiles: Vec<(u64, Content)>,
     /// The values that colour the cells: the field, its range, its divisor.
     color: Option<Colored>,
+    /// Whether these values are the numbers of aspects.
+    aspects: bool,
     /// The position of home, if it is in the picture.
     home: Option<[f64; 2]>,
     /// Whether the tiles were chosen here, and not by --slice.
@@ -116,6 +121,8 @@ impl<'a> Slices<'a> {
         });
         // If every place is reached at every orientation, there is nothing to colour.
         let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
+        let aspects = layout.kind == WorkspaceKind::Aspects
+            && color.as_ref().is_some_and(|color| color.field == ASPECT);
         let mut slices = Self {
             layout,
             view: view.map(seen),
@@ -123,6 +130,7 @@ impl<'a> Slices<'a> {
             varied,
             tiles: vec![],
             color,
+            aspects,
             home: None,
             chosen: false,
             empty: 0,
@@ -158,6 +166,7 @@ impl<'a> Slices<'a> {
             varied: self.varied,
             tiles: vec![],
             color: None,
+            aspects: false,
             home: self.home,
             chosen: self.chosen,
             empty: 0,
@@ -233,6 +242,11 @@ impl<'a> Slices<'a> {
                             *color = cause.color;
                         }
                     }
+                    Content::Cells(Cells::with_classes(x, y), Paint::Classes(colors))
+                }
+                (None, Some(color)) if self.aspects => {
+                    // A cast saturates.
+                    let colors = (0..=color.range[1] as usize).map(class_color).collect();
                     Content::Cells(Cells::with_classes(x, y), Paint::Classes(colors))
                 }
                 (None, Some(color)) => {
@@ -438,7 +452,13 @@ impl<'a> Slices<'a> {
                 mark,
             }
         };
-        let colors = self.color.as_ref().map(|color| Bar {
+        let mut shown: Vec<usize> = match self.aspects {
+            true => tiles.iter().filter_map(|tile| classes(&tile.1)).flatten().flatten().collect(),
+            false => vec![],
+        };
+        shown.sort_unstable();
+        shown.dedup();
+        let colors = self.color.as_ref().filter(|_| !self.aspects).map(|color| Bar {
             measure: color.measure.clone(),
             range: color.range,
             map: Map::Viridis,
@@ -446,7 +466,15 @@ impl<'a> Slices<'a> {
         });
         let tiles = tiles.into_iter().zip(marks).map(tile).collect();
         let causes = self.causes.unwrap_or_default().into_iter().filter(|_| cells);
-        let legend = causes.map(|cause| (cause.text, cause.color)).collect();
+        let causes = causes.map(|cause| (cause.text, cause.color));
+        let aspects = shown.into_iter().take(MOST_NAMED).map(|number| {
+            let text = match number {
+                0 => "singular, or several aspects".to_owned(),
+                _ => format!("aspect {number}"),
+            };
+            (text, class_color(number))
+        });
+        let legend = causes.chain(aspects).collect();
         Section { title, columns, shared: true, tiles, bar: colors.filter(|_| cells), legend }
     }
 
@@ -474,9 +502,28 @@ impl<'a> Slices<'a> {
         };
         let [a, b] = &self.view;
         let (x, y) = (axis(a)?, axis(b).filter(|_| !self.is_bar())?);
+        if self.aspects {
+            return self.boundaries_of_aspects([&x, &y], &cells.classes()?);
+        }
         let inside = cells.hits().filter(|_| self.layout.bounded && self.causes.is_none())?;
         let rings = mask_boundary(&x, &y, &inside).expect("one value for each cell");
         Some(rings.into_iter().map(|ring| ring.points).collect())
+    }
+
+    /// The boundary of each aspect in a tile.
+    fn boundaries_of_aspects(
+        &self,
+        [x, y]: [&Axis; 2],
+        classes: &[Option<usize>],
+    ) -> Option<Vec<Vec<[f64; 2]>>> {
+        let mut shown: Vec<usize> = classes.iter().flatten().copied().collect();
+        shown.sort_unstable();
+        shown.dedup();
+        let lines = shown.into_iter().filter(|_| self.layout.bounded).flat_map(|number| {
+            let inside: Vec<bool> = classes.iter().map(|class| *class == Some(number)).collect();
+            mask_boundary(x, y, &inside).expect("one value for each cell")
+        });
+        Some(lines.map(|ring| ring.points).collect())
     }
 
     /// The line of the largest shape inside, in the tile of this value.
@@ -566,6 +613,14 @@ pub fn rounded(axis: &Axis, number: u64) -> f64 {
     let value = axis.value(number);
     let largest = axis.min.abs().max(axis.max.abs()).max(1.0);
     if value.abs() <= ROUNDING * largest { 0.0 } else { value }
+}
+
+/// The classes of the cells of a tile.
+fn classes(content: &Content) -> Option<Vec<Option<usize>>> {
+    match content {
+        Content::Cells(cells, _) => cells.classes(),
+        _ => None,
+    }
 }
 
 enum Numbers {

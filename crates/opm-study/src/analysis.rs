@@ -5,7 +5,8 @@ use crate::kind::WorkspaceKind;
 use crate::poses::PoseSource;
 use crate::workspace::Workspace;
 use opm_workspace::{
-    Components, ConditioningIndex, Count, GridSet, Outline, Progress, Visits, boundary,
+    Aspects, Components, ConditioningIndex, Count, GridSet, Outline, Progress, SetError, Visits,
+    boundary,
 };
 
 /// The results for a workspace. All of them follow from the poses in reach.
@@ -22,7 +23,9 @@ pub struct Analysis {
     pub visits: Option<Visits>,
     /// The conditioning of the poses, if it was requested.
     pub conditioning: Option<ConditioningIndex>,
-    /// Components and boundary, if they were requested.
+    /// The aspects, for the kind of that name.
+    pub aspects: Option<Aspects>,
+    /// Components and boundary, if they were requested. Of aspects these are the aspects themselves.
     pub shape: Option<Shape>,
 }
 
@@ -53,7 +56,15 @@ impl Workspace {
 impl Analysis {
     /// An analysis with a count and nothing else.
     pub fn of_count(kind: WorkspaceKind, count: Count) -> Self {
-        Self { kind, count, set: None, visits: None, conditioning: None, shape: None }
+        Self {
+            kind,
+            count,
+            set: None,
+            visits: None,
+            conditioning: None,
+            aspects: None,
+            shape: None,
+        }
     }
 
     /// The results that follow from the points of a workspace whose poses are counted. The poses are visited
@@ -81,6 +92,17 @@ impl Analysis {
                 GridSet::of(visits.axes().to_vec(), |place| counts[place as usize] >= required)?
             }
         };
+        if let (WorkspaceKind::Aspects, Some(mode)) = (kind, workspace.modes().one()) {
+            let aspects = Aspects::new(workspace.manipulator(), mode, &set, progress)?;
+            analysis.shape = Some(Shape {
+                components: aspects.list().iter().map(|aspect| aspect.poses).collect(),
+                boundary: boundary_of_all(&aspects)?,
+            });
+            analysis.aspects = Some(aspects);
+            (analysis.count.poses, analysis.count.reachable) = (set.points(), set.count());
+            analysis.set = Some(set);
+            return Ok(analysis);
+        }
         analysis.shape = workspace.wants_shape().then(|| Shape {
             components: Components::new(&set).sizes().to_vec(),
             boundary: if kind.has_boundary() { boundary(&set) } else { None },
@@ -100,4 +122,19 @@ impl Analysis {
         let Count { poses, reachable, .. } = self.count;
         (poses > 0).then(|| reachable as f64 / poses as f64)
     }
+}
+
+/// The boundaries of all aspects together, slice by slice; in each slice in the order of the aspects.
+fn boundary_of_all(aspects: &Aspects) -> Result<Option<Vec<Outline>>, SetError> {
+    let mut all: Option<Vec<Outline>> = None;
+    for set in aspects.sets() {
+        let Some(outlines) = boundary(&set?) else { return Ok(None) };
+        match &mut all {
+            None => all = Some(outlines),
+            Some(all) => {
+                all.iter_mut().zip(outlines).for_each(|(all, more)| all.rings.extend(more.rings));
+            }
+        }
+    }
+    Ok(all)
 }

@@ -130,6 +130,15 @@ impl Cells {
         (!self.is_coarse()).then(|| self.counts.iter().map(|&count| count > 0).collect())
     }
 
+    /// The class of each point of the grid, row by row, `None` where none was hit. There are no classes if several points
+    /// share a cell.
+    pub fn classes(&self) -> Option<Vec<Option<usize>>> {
+        let CellValues::Classes(classes) = &self.values else { return None };
+        let hits = self.counts.iter().zip(classes);
+        let class = |(&count, &class): (&u32, &usize)| (count > 0).then_some(class);
+        (!self.is_coarse()).then(|| hits.map(class).collect())
+    }
+
     /// Sets closed lines to be drawn over the cells: the boundary of what was hit, in the units of the axes.
     pub fn surround(&mut self, lines: Vec<Vec<[f64; 2]>>) {
         self.lines = lines;
