@@ -5,6 +5,7 @@ use super::grid::{is_home, nearest};
 use super::inscribed::Shape;
 use super::label::value_label;
 use super::layout::{Coordinate, Layout, Place};
+use super::singular::Singular;
 use super::source::{Rate, Source, Stop};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
@@ -425,8 +426,11 @@ impl<'a> Slices<'a> {
             self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
         let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
         let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
+        let curves: Vec<Vec<Vec<[f64; 2]>>> =
+            self.tiles.iter().map(|(value, _)| self.singularities(source, *value)).collect();
+        let mut curves = curves.into_iter();
         let tiles = std::mem::take(&mut self.tiles);
-        let tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
+        let mut tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
             let share = COLORS * value as f64 / (total - 1).max(1) as f64;
             let content = match content {
                 Content::Cells(mut cells, paint) => {
@@ -436,6 +440,7 @@ impl<'a> Slices<'a> {
                     if let Some(line) = self.inside(value) {
                         cells.inscribe(line);
                     }
+                    cells.trace(curves.next().unwrap_or_default());
                     let paint = match paint {
                         Paint::Plain(_) => Paint::Plain(Map::Viridis.color(share)),
                         values => values,
@@ -508,6 +513,28 @@ impl<'a> Slices<'a> {
         let inside = cells.hits().filter(|_| self.layout.bounded && self.causes.is_none())?;
         let rings = mask_boundary(&x, &y, &inside).expect("one value for each cell");
         Some(rings.into_iter().map(|ring| ring.points).collect())
+    }
+
+    /// The singularity curves in the tile of this value, in a picture of aspects.
+    fn singularities(&self, source: &Source<'_>, value: u64) -> Vec<Vec<[f64; 2]>> {
+        let Some(singular) = Singular::of(source).filter(|_| self.aspects && !self.is_bar()) else {
+            return vec![];
+        };
+        let coordinates = &self.layout.coordinates;
+        let view = self.view.each_ref().map(|seen| coordinates[seen.number].axis.as_ref());
+        let [Some(x), Some(y)] = view else { return vec![] };
+        // Coordinates with one value are held at that.
+        let single = self.layout.grid.iter().map(|(_, axis)| axis).filter(|axis| axis.count == 1);
+        let single = single.map(|axis| (&*axis.name, axis.min));
+        let varied = self.varied.map(|number| (number, value));
+        let held = self.held.iter().copied().chain(varied).filter_map(|(number, value)| {
+            Some((&*coordinates[number].name, coordinates[number].axis.as_ref()?.value(value)))
+        });
+        let held: Vec<(&str, f64)> = single.chain(held).collect();
+        let lines = singular.curves([x, y], &held).unwrap_or_default();
+        let [a, b] = &self.view;
+        let scaled = |[x, y]: [f64; 2]| [x / a.factor, y / b.factor];
+        lines.into_iter().map(|line| line.into_iter().map(scaled).collect()).collect()
     }
 
     /// The boundary of each aspect in a tile.
@@ -585,6 +612,11 @@ impl<'a> Slices<'a> {
             let line =
                 "The line is the boundary, half-way between values of the grid, and on its edge.";
             notes.push(line.to_owned());
+        }
+        if self.aspects {
+            notes.push(
+                "The red lines are parallel singularities, found by bisection on the lines of the grid.".to_owned(),
+            );
         }
         if let Some(shape) = &self.shape
             && self.tiles.iter().any(|(value, _)| self.inside(*value).is_some())

@@ -3,7 +3,7 @@
 use crate::text::{self, Table, count, short};
 use opm_core::mechanism::file::FileUnits;
 use opm_study::Workspace;
-use opm_workspace::{Aspect, Aspects, Count};
+use opm_workspace::{Aspect, Aspects, Axis, Count, SingularCurves};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -29,6 +29,21 @@ pub fn json(workspace: &Workspace, aspects: &Aspects) -> Value {
     };
     let list: Vec<Value> = aspects.list().iter().enumerate().map(one).collect();
     json!({ "number": list.len(), "singular": aspects.singular(), "list": list })
+}
+
+/// The singularity curves, slice by slice.
+pub fn curves_json(workspace: &Workspace, curves: Option<&[SingularCurves]>) -> Value {
+    let Some(curves) = curves else { return Value::Null };
+    let axes: Vec<&Axis> = workspace.grid().axes().iter().filter(|axis| axis.count > 1).collect();
+    let slices: Vec<Value> = (curves.iter())
+        .map(|curves| {
+            let at: Map<String, Value> = (curves.slice.into_iter())
+                .map(|number| (axes[2].name.clone(), axes[2].value(number).into()))
+                .collect();
+            json!({ "at": at, "lines": curves.lines })
+        })
+        .collect();
+    json!({ "axes": [axes[0].name, axes[1].name], "slices": slices })
 }
 
 /// A table of the aspects, the largest first.

@@ -71,6 +71,8 @@ impl Outcome<'_> {
         analysis_json(analysis, &mut json);
         if let Some(aspects) = &analysis.aspects {
             json["aspects"] = aspects::json(workspace, aspects);
+            json["singularities"] =
+                aspects::curves_json(workspace, analysis.singularities.as_deref());
         }
         if let Some(shard) = self.shard {
             json["shard"] = shard.to_string().into();

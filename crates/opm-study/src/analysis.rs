@@ -5,8 +5,8 @@ use crate::kind::WorkspaceKind;
 use crate::poses::PoseSource;
 use crate::workspace::Workspace;
 use opm_workspace::{
-    Aspects, Components, ConditioningIndex, Count, GridSet, Outline, Progress, SetError, Visits,
-    boundary,
+    Aspects, Components, ConditioningIndex, Count, GridSet, Outline, Progress, SingularCurves,
+    Visits, boundary, singular_curves,
 };
 
 /// The results for a workspace. All of them follow from the poses in reach.
@@ -25,6 +25,9 @@ pub struct Analysis {
     pub conditioning: Option<ConditioningIndex>,
     /// The aspects, for the kind of that name.
     pub aspects: Option<Aspects>,
+    /// The curves of parallel singularities among the poses, slice by slice, for the same kind. `None` if the poses vary in
+    /// neither two nor three coordinates.
+    pub singularities: Option<Vec<SingularCurves>>,
     /// Components and boundary, if they were requested. Of aspects these are the aspects themselves.
     pub shape: Option<Shape>,
 }
@@ -63,6 +66,7 @@ impl Analysis {
             visits: None,
             conditioning: None,
             aspects: None,
+            singularities: None,
             shape: None,
         }
     }
@@ -96,9 +100,11 @@ impl Analysis {
             let aspects = Aspects::new(workspace.manipulator(), mode, &set, progress)?;
             analysis.shape = Some(Shape {
                 components: aspects.list().iter().map(|aspect| aspect.poses).collect(),
-                boundary: boundary_of_all(&aspects)?,
+                boundary: aspects.boundary()?,
             });
             analysis.aspects = Some(aspects);
+            analysis.singularities =
+                singular_curves(workspace.manipulator(), mode, &set, progress)?;
             (analysis.count.poses, analysis.count.reachable) = (set.points(), set.count());
             analysis.set = Some(set);
             return Ok(analysis);
@@ -122,19 +128,4 @@ impl Analysis {
         let Count { poses, reachable, .. } = self.count;
         (poses > 0).then(|| reachable as f64 / poses as f64)
     }
-}
-
-/// The boundaries of all aspects together, slice by slice; in each slice in the order of the aspects.
-fn boundary_of_all(aspects: &Aspects) -> Result<Option<Vec<Outline>>, SetError> {
-    let mut all: Option<Vec<Outline>> = None;
-    for set in aspects.sets() {
-        let Some(outlines) = boundary(&set?) else { return Ok(None) };
-        match &mut all {
-            None => all = Some(outlines),
-            Some(all) => {
-                all.iter_mut().zip(outlines).for_each(|(all, more)| all.rings.extend(more.rings));
-            }
-        }
-    }
-    Ok(all)
 }

@@ -20,6 +20,7 @@
 //! poses around is not seen. Parts that are joined only by a passage narrower than a step of the grid come out as
 //! several aspects: a finer grid finds more connections. [`find_path`] watches every step of the way that it gives.
 
+mod curves;
 mod join;
 mod levels;
 mod path;
@@ -27,8 +28,10 @@ mod screen;
 mod search;
 mod step;
 
-pub use path::{AspectPath, NoPath, find_path};
+pub use curves::{SingularCurves, singular_curves};
+pub use path::{AspectPath, NoPath, aspect_at, find_path};
 
+use crate::boundary::{Outline, boundary};
 use crate::forest::Forest;
 use crate::ordered::in_order;
 use crate::progress::Progress;
@@ -263,6 +266,26 @@ impl Aspects {
             runs.into_iter().try_for_each(|run| set.push(run))?;
             Ok(set.finish())
         })
+    }
+
+    /// The boundaries of all aspects, as [`boundary`](crate::boundary()) has those of a set: in each slice the rings of the
+    /// first aspect come first. `None` if fewer than two axes or more than three have several values.
+    ///
+    /// # Errors
+    /// An aspect does not fit in memory as a set.
+    pub fn boundary(&self) -> Result<Option<Vec<Outline>>, SetError> {
+        let mut all: Option<Vec<Outline>> = None;
+        for set in self.sets() {
+            let Some(outlines) = boundary(&set?) else { return Ok(None) };
+            match &mut all {
+                None => all = Some(outlines),
+                Some(all) => {
+                    let slices = all.iter_mut().zip(outlines);
+                    slices.for_each(|(all, more)| all.rings.extend(more.rings));
+                }
+            }
+        }
+        Ok(all)
     }
 }
 

@@ -39,7 +39,7 @@
 //! | parts of a sweep, stored and put together | [`Shard`], [`Count::merge`], [`Poses`], [`replay`] |
 //! | which poses are far from singular | [`ConditionLimit`], [`Conditioned`], [`ConditioningIndex`] |
 //! | the set of reachable poses | [`GridSet`], [`Components`], [`boundary`], [`mask_boundary`] |
-//! | the parts that are free of singularities, and ways in them | [`Aspects`], [`find_path`] |
+//! | the parts that are free of singularities, and ways in them | [`Aspects`], [`aspect_at`], [`find_path`], [`singular_curves`] |
 //! | places that some or all orientations reach | [`Visits`] |
 //! | what rejects the other poses | [`Rejections`] |
 //! | the largest disc, ball or box in a set | [`inscribed()`] |
@@ -68,7 +68,9 @@ mod visits;
 
 pub use opm_core;
 
-pub use aspects::{Aspect, AspectPath, Aspects, NoPath, find_path};
+pub use aspects::{
+    Aspect, AspectPath, Aspects, NoPath, SingularCurves, aspect_at, find_path, singular_curves,
+};
 pub use boundary::{MaskError, Outline, Ring, boundary, mask_boundary};
 pub use components::Components;
 pub use condition::{ConditionError, ConditionLimit, Conditioned};

@@ -2,10 +2,11 @@
 
 use fastrand::Rng;
 use opm_core::motion::{Ends, Instant, Spline};
-use opm_core::nalgebra::{Complex, Matrix3, RowVector3};
+use opm_core::nalgebra::{Complex, Matrix3, Matrix6, RowVector3, SVector};
 use opm_core::{Manipulator, Mode};
 use opm_workspace::{
     Aspects, Axis, Components, Grid, GridSet, Modes, NoPath, Progress, Sweep, find_path,
+    singular_curves,
 };
 use std::f64::consts::PI;
 
@@ -390,4 +391,59 @@ fn a_path_from_nowhere_is_refused() {
     stopped.cancel();
     let found = find_path(&manipulator, mode, &aspects, [&home, &home], 1.0, &stopped);
     assert!(matches!(found, Err(NoPath::Cancelled(_))), "{found:?}");
+}
+
+/// At a constant orientation the singularities of a planar 3-RPR are a conic (J. Sefrioui, C. Gosselin, *On the quadratic
+/// nature of the singularity curves of planar three-degree-of-freedom parallel manipulators*, 1995).
+#[test]
+fn singularity_curves_are_where_the_determinant_vanishes() {
+    let manipulator = shipped("planar-3rpr");
+    let mode = manipulator.home_mode();
+    let axes = vec![
+        Axis::new("x", -0.036, 0.036, 41),
+        Axis::new("y", -0.036, 0.036, 37),
+        Axis::new("theta", -1.0, 1.5, 6),
+    ];
+    let (set, _) = aspects_of(&manipulator, mode, axes);
+    let curves = singular_curves(&manipulator, mode, &set, &Progress::default()).unwrap().unwrap();
+    assert_eq!(curves.len(), 6);
+    for curves in &curves {
+        let slice = curves.slice.unwrap();
+        let angle = set.axes()[2].axis.value(slice);
+        assert!(!curves.lines.is_empty());
+        let mut points: Vec<[f64; 2]> = curves.lines.iter().flatten().copied().collect();
+        for &[x, y] in &points {
+            assert!(rpr::at(&[x, y, angle]).1.abs() < 1e-10, "{x} {y} {angle}");
+        }
+        // One point on every step of the grid on which the sign changes, beside a cell that is all in reach.
+        let sign = |i: u64, j: u64| {
+            let point = set.point(slice * 41 * 37 + j * 41 + i);
+            (i < 41 && j < 37).then(|| rpr::sign(&point)).flatten()
+        };
+        let cell = |i: u64, j: u64| {
+            [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)]
+                .iter()
+                .all(|&(i, j)| sign(i, j).is_some())
+        };
+        let mut expected = 0;
+        for (i, j) in (0..37).flat_map(|j| (0..41).map(move |i| (i, j))) {
+            let right = cell(i, j) || j > 0 && cell(i, j - 1);
+            let up = cell(i, j) || i > 0 && cell(i - 1, j);
+            expected += usize::from(right && sign(i, j) != sign(i + 1, j));
+            expected += usize::from(up && sign(i, j) != sign(i, j + 1));
+        }
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        points.dedup();
+        assert_eq!(points.len(), expected, "{angle}");
+        // The conic through all points: the smallest singular value of their monomials.
+        let scaled = points.iter().map(|[x, y]| [x / 0.03, y / 0.03]);
+        let rows: Vec<[f64; 6]> = scaled.map(|[x, y]| [x * x, x * y, y * y, x, y, 1.0]).collect();
+        let mut square = Matrix6::zeros();
+        for row in &rows {
+            let row = SVector::<f64, 6>::from_row_slice(row);
+            square += row * row.transpose();
+        }
+        let values = square.symmetric_eigenvalues();
+        assert!(values.min().abs() < 1e-18_f64.max(1e-13 * values.max()), "{values}");
+    }
 }

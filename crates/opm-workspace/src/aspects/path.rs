@@ -97,6 +97,23 @@ pub fn find_path(
     finder.find(ends)
 }
 
+/// The number of the aspect that any pose is in, on the grid or not, from 1 on: that of the nearest pose of the grid to
+/// which it can go straight without a singularity. `None` if there is none around it, or if the pose is in no aspect. The
+/// aspects have to be those of this manipulator in this mode.
+pub fn aspect_at(
+    manipulator: &Manipulator,
+    mode: Mode,
+    aspects: &Aspects,
+    pose: &[f64],
+) -> Option<u32> {
+    let progress = Progress::default();
+    let search = Search { manipulator, mode, aspects, progress: &progress };
+    let levels = Levels::new(manipulator, mode);
+    let mut finder = Finder { levels, values: vec![], search, duration: 1.0 };
+    finder.check("the pose", pose).ok()?;
+    finder.anchors(pose).first().map(|anchor| anchor.label)
+}
+
 struct Finder<'a> {
     search: Search<'a>,
     levels: Levels<'a>,

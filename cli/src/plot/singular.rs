@@ -1,0 +1,38 @@
+//! Singularity curves in the slices of a recording of aspects. They are computed anew: the recording has the mechanism.
+
+use super::source::Source;
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_workspace::{Axis, Grid, GridSet, Modes, Progress, Sweep, singular_curves};
+
+/// What the curves follow from.
+pub struct Singular<'a> {
+    manipulator: &'a Manipulator,
+    mode: Mode,
+    progress: &'a Progress,
+}
+
+impl<'a> Singular<'a> {
+    /// The mechanism and the working mode of a recording, if it has them.
+    pub fn of(source: &'a Source<'_>) -> Option<Self> {
+        let manipulator = source.manipulator()?;
+        let mode = manipulator.parse_mode(source.metadata("run").get("mode")?).ok()?;
+        Some(Self { manipulator, mode, progress: source.progress() })
+    }
+
+    /// The curves in the plane of two coordinates, with others held at these values. Without an answer, the coordinates are
+    /// not those of a pose, or the work was cancelled.
+    pub fn curves(&self, view: [&Axis; 2], held: &[(&str, f64)]) -> Option<Vec<Vec<[f64; 2]>>> {
+        let fixed = held.iter().map(|&(name, value)| Axis::fixed(name, value));
+        let axes = view.into_iter().cloned().chain(fixed).collect();
+        let grid = Grid::new(self.manipulator, axes).ok()?;
+        let sweep = Sweep::new(self.manipulator, &grid, Modes::One(self.mode));
+        let set = GridSet::reached(&sweep, self.progress).ok()?;
+        let curves = singular_curves(self.manipulator, self.mode, &set, self.progress).ok()??;
+        // The grid's axes are in the order of the pose, and the picture's may be the other way round.
+        let number = |name: &str| grid.axes().iter().position(|axis| axis.name == name);
+        let turned = number(&view[0].name)? > number(&view[1].name)?;
+        let point = |&[x, y]: &[f64; 2]| if turned { [y, x] } else { [x, y] };
+        let lines = curves.iter().flat_map(|curves| &curves.lines);
+        Some(lines.map(|line| line.iter().map(point).collect()).collect())
+    }
+}
