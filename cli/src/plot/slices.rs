@@ -28,6 +28,9 @@ const COLORS: f64 = 0.95;
 /// A value below this share of a grid's largest value, or of one metre or radian, counts as zero.
 const ROUNDING: f64 = 1e-12;
 
+/// Lines in the units of a picture.
+type Lines = Vec<Vec<[f64; 2]>>;
+
 /// Slices that are being built.
 pub struct Slices<'a> {
     layout: &'a Layout,
@@ -42,6 +45,8 @@ pub struct Slices<'a> {
     color: Option<Colored>,
     /// Whether these values are the numbers of aspects.
     aspects: bool,
+    /// The singularity curves of each tile, if they are shown.
+    curves: Vec<Lines>,
     /// The position of home, if it is in the picture.
     home: Option<[f64; 2]>,
     /// Whether the tiles were chosen here, and not by --slice.
@@ -132,6 +137,7 @@ impl<'a> Slices<'a> {
             tiles: vec![],
             color,
             aspects,
+            curves: vec![],
             home: None,
             chosen: false,
             empty: 0,
@@ -168,6 +174,7 @@ impl<'a> Slices<'a> {
             tiles: vec![],
             color: None,
             aspects: false,
+            curves: vec![],
             home: self.home,
             chosen: self.chosen,
             empty: 0,
@@ -426,11 +433,9 @@ impl<'a> Slices<'a> {
             self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
         let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
         let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
-        let curves: Vec<Vec<Vec<[f64; 2]>>> =
-            self.tiles.iter().map(|(value, _)| self.singularities(source, *value)).collect();
-        let mut curves = curves.into_iter();
+        let mut curves = std::mem::take(&mut self.curves).into_iter();
         let tiles = std::mem::take(&mut self.tiles);
-        let mut tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
+        let tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
             let share = COLORS * value as f64 / (total - 1).max(1) as f64;
             let content = match content {
                 Content::Cells(mut cells, paint) => {
@@ -515,14 +520,20 @@ impl<'a> Slices<'a> {
         Some(rings.into_iter().map(|ring| ring.points).collect())
     }
 
-    /// The singularity curves in the tile of this value, in a picture of aspects.
-    fn singularities(&self, source: &Source<'_>, value: u64) -> Vec<Vec<[f64; 2]>> {
-        let Some(singular) = Singular::of(source).filter(|_| self.aspects && !self.is_bar()) else {
-            return vec![];
-        };
+    /// Finds the singularity curves of every tile, for a picture of aspects.
+    pub fn find_singularities(&mut self, source: &Source<'_>) -> Result<(), Failure> {
+        if let Some(singular) = Singular::of(source).filter(|_| self.aspects && !self.is_bar()) {
+            let of = |tile: &(u64, Content)| self.singularities(&singular, tile.0);
+            self.curves = self.tiles.iter().map(of).collect::<Result<_, _>>()?;
+        }
+        Ok(())
+    }
+
+    /// The singularity curves in the tile of this value.
+    fn singularities(&self, singular: &Singular<'_>, value: u64) -> Result<Lines, Failure> {
         let coordinates = &self.layout.coordinates;
         let view = self.view.each_ref().map(|seen| coordinates[seen.number].axis.as_ref());
-        let [Some(x), Some(y)] = view else { return vec![] };
+        let [Some(x), Some(y)] = view else { return Ok(vec![]) };
         // Coordinates with one value are held at that.
         let single = self.layout.grid.iter().map(|(_, axis)| axis).filter(|axis| axis.count == 1);
         let single = single.map(|axis| (&*axis.name, axis.min));
@@ -531,10 +542,10 @@ impl<'a> Slices<'a> {
             Some((&*coordinates[number].name, coordinates[number].axis.as_ref()?.value(value)))
         });
         let held: Vec<(&str, f64)> = single.chain(held).collect();
-        let lines = singular.curves([x, y], &held).unwrap_or_default();
         let [a, b] = &self.view;
         let scaled = |[x, y]: [f64; 2]| [x / a.factor, y / b.factor];
-        lines.into_iter().map(|line| line.into_iter().map(scaled).collect()).collect()
+        let lines = singular.curves([x, y], &held)?.into_iter();
+        Ok(lines.map(|line| line.into_iter().map(scaled).collect()).collect())
     }
 
     /// The boundary of each aspect in a tile.
@@ -613,7 +624,7 @@ impl<'a> Slices<'a> {
                 "The line is the boundary, half-way between values of the grid, and on its edge.";
             notes.push(line.to_owned());
         }
-        if self.aspects {
+        if !self.curves.is_empty() {
             notes.push(
                 "The red lines are parallel singularities, found by bisection on the lines of the grid.".to_owned(),
             );
