@@ -624,7 +624,7 @@ impl<'a> Slices<'a> {
                 "The line is the boundary, half-way between values of the grid, and on its edge.";
             notes.push(line.to_owned());
         }
-        if !self.curves.is_empty() {
+        if self.curves.iter().any(|lines| !lines.is_empty()) {
             notes.push(
                 "The red lines are parallel singularities, found by bisection on the lines of the grid.".to_owned(),
             );

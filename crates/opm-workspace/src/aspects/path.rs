@@ -314,10 +314,14 @@ impl Finder<'_> {
             let lengths: Vec<f64> =
                 poses.windows(2).map(|step| self.length(&step[0], &step[1]).max(1e-3)).collect();
             let whole: f64 = lengths.iter().sum();
-            let mut times = vec![0.0];
+            let mut along = 0.0;
+            let mut times: Vec<f64> = vec![0.0];
             for length in &lengths {
-                times.push(times[times.len() - 1] + self.duration * length / whole);
+                along += length;
+                times.push(self.duration * (along / whole));
             }
+            // Rounding of the sum must not change the duration.
+            times[lengths.len()] = self.duration;
             let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min) / whole;
             let columns = (0..poses[0].len()).map(|i| poses.iter().map(|pose| pose[i]).collect());
             let Ok(spline) = Spline::new(times.clone(), columns.collect(), Ends::Rest) else {
