@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// The path is a table of poses (-o OUT.csv: t, then the task coordinates, in seconds, metres and radians), which
 /// `opm trajectory --motion` takes. The motion through it has been watched between the poses too: it is in reach, within all
 /// limits of joints and without a singularity, unless one comes and goes more than once between two samples, of which there
-/// are four from pose to pose. Angles are continuous, so that the goal may be reached after full turns. Limits of rates and
+/// are four from pose to pose, and 500 in all, or more. Angles are continuous, so that the goal may be reached after full turns. Limits of rates and
 /// accelerations do not count; `opm trajectory --time-optimal` finds a timing within them.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\

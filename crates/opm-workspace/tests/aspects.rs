@@ -373,6 +373,26 @@ fn a_planar_3rpr_changes_between_three_of_its_assemblies_without_a_singularity()
     }
 }
 
+/// Angles beyond the grid are the same poses, and the path begins where it was asked to.
+#[test]
+fn a_path_begins_at_its_start_after_full_turns() {
+    let manipulator = shipped("planar-3rpr");
+    let mode = manipulator.home_mode();
+    let (_, aspects) = aspects_of(&manipulator, mode, planar(0.036, 21, PI, 21));
+    let (home, to) = (manipulator.home_pose(), [-0.0134, -0.0066, -0.415]);
+    for turns in [-2.0, 1.0] {
+        let from = [home[0], home[1], home[2] + 2.0 * PI * turns];
+        let ends = [&from[..], &to];
+        let path =
+            find_path(&manipulator, mode, &aspects, ends, 2.0, &Progress::default()).unwrap();
+        assert_eq!((&path.poses[0][..], path.times[path.times.len() - 1]), (&from[..], 2.0));
+        let off = (path.poses.last().unwrap()[2] - to[2]) / (2.0 * PI);
+        assert!((off - off.round()).abs() < 1e-12 && off.abs() < 3.0, "{off}");
+        let steps = path.poses.windows(2).map(|two| (two[0][2] - two[1][2]).abs());
+        assert!(steps.fold(0.0, f64::max) < 0.4);
+    }
+}
+
 #[test]
 fn a_path_from_nowhere_is_refused() {
     let manipulator = shipped("planar-3rpr");

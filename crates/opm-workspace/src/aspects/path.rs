@@ -13,6 +13,9 @@ use std::f64::consts::TAU;
 /// Samples of a path between two of its poses, when it is watched.
 const SAMPLES: f64 = 4.0;
 
+/// Samples of a whole path at least, when it is watched: on a coarse grid its poses are far apart.
+const LEAST_SAMPLES: f64 = 500.0;
+
 /// How often the poses of a path are doubled until the spline through them is clear.
 const DOUBLINGS: u32 = 6;
 
@@ -21,7 +24,7 @@ const CLEARANCE: f64 = 0.5;
 
 /// A path of the platform that passes no singularity. The cubic splines through its poses, at rest at both ends, are in
 /// reach, within all limits of joints and without a singularity: they were watched as a motion with four samples
-/// between two poses ([`opm_core::trajectory`]).
+/// between two poses or more, and 500 in all or more ([`opm_core::trajectory`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AspectPath {
     /// The times of the poses, seconds, from 0 on.
@@ -142,17 +145,15 @@ impl Finder<'_> {
         else {
             return Err(apart);
         };
-        let way = self.search.way(start.number, goal.number)?.ok_or(NoPath::Narrow)?;
-        let (mut first, mut last) = (from.to_vec(), to.to_vec());
-        for (anchor, grid, end) in [(start, way.first(), &mut first), (goal, way.last(), &mut last)]
-        {
-            // The way counts turns on from the start's place in the grid.
-            let Some(grid) = grid else { continue };
-            for ((value, anchor), grid) in end.iter_mut().zip(&anchor.pose).zip(grid) {
-                *value += grid - anchor;
-            }
-        }
-        let poses = [vec![first], way, vec![last]].concat();
+        let mut way = self.search.way(start.number, goal.number)?.ok_or(NoPath::Narrow)?;
+        // The way has angles of the grid. The path begins at the start and ends full turns from the goal.
+        let turned = |pose: &[f64], from: &[f64], to: &[f64]| -> Vec<f64> {
+            pose.iter().zip(from).zip(to).map(|((value, from), to)| value + (to - from)).collect()
+        };
+        let first = way[0].clone();
+        way.iter_mut().for_each(|pose| *pose = turned(pose, &first, &start.pose));
+        let last = turned(to, &goal.pose, &way[way.len() - 1]);
+        let poses = [vec![from.to_vec()], way, vec![last]].concat();
         let poses = self.shortened(poses)?;
         self.smooth(poses)?.ok_or(NoPath::Rough)
     }
@@ -327,7 +328,7 @@ impl Finder<'_> {
             let Ok(spline) = Spline::new(times.clone(), columns.collect(), Ends::Rest) else {
                 return Ok(None);
             };
-            let rate = SAMPLES / (shortest * self.duration);
+            let rate = (SAMPLES / shortest).max(LEAST_SAMPLES) / self.duration;
             let Search { manipulator, mode, .. } = self.search;
             if matches!(violation(manipulator, mode, spline, rate), Ok(None)) {
                 let clearance = self.clearance(poses.iter().map(|pose| &**pose));
