@@ -19,7 +19,8 @@ def determinant(poses):
     )
     along = poses[..., None, :2] + arms - BASES
     lengths = np.linalg.norm(along, axis=-1)
-    unit = along / lengths[..., None]
+    # A telescope without length has no direction; it is beyond its limits.
+    unit = along / np.where(lengths > 0, lengths, 1)[..., None]
     moment = arms[..., 0] * unit[..., 1] - arms[..., 1] * unit[..., 0]
     lines = np.concatenate([unit, moment[..., None] / 0.017], axis=-1)
     return np.linalg.det(lines), lengths

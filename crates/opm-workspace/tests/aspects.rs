@@ -174,8 +174,8 @@ fn a_planar_3rpr_has_the_aspects_that_a_flood_fill_of_its_determinant_finds() {
         assert_eq!(part.count(), aspect.poses);
         for pose in part.numbers() {
             assert_eq!(aspects.label(pose), Some(number as u32 + 1));
-            let within = part.point(pose).into_iter().zip(&aspect.extent);
-            assert!({ within }.all(|(value, [low, high])| (*low..=*high).contains(&value)));
+            let mut within = part.point(pose).into_iter().zip(&aspect.extent);
+            assert!(within.all(|(value, [low, high])| (*low..=*high).contains(&value)));
         }
     }
 }

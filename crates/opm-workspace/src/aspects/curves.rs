@@ -149,9 +149,9 @@ impl Plane<'_, '_> {
         [a, b, c, d]: [bool; 4],
     ) -> Vec<[Edge; 2]> {
         let [bottom, right, top, left] = [(i, j, 0), (i + 1, j, 1), (i, j + 1, 0), (i, j, 1)];
-        let crossed = [(a != b, bottom), (b != c, right), (d != c, top), (a != d, left)];
-        let crossed: Vec<Edge> =
-            { crossed }.into_iter().filter(|one| one.0).map(|one| one.1).collect();
+        let sides = [(a != b, bottom), (b != c, right), (d != c, top), (a != d, left)];
+        let crossed = sides.into_iter().filter(|side| side.0).map(|side| side.1);
+        let crossed: Vec<Edge> = crossed.collect();
         match crossed[..] {
             [from, to] => vec![[from, to]],
             [..] if crossed.is_empty() => vec![],

@@ -130,7 +130,7 @@ impl Finder<'_> {
         self.check("the goal", to)?;
         let straight = vec![from.to_vec(), self.within_half_a_turn(from, to)];
         if self.is_clear(&straight[0], &straight[1])
-            && let Some(path) = self.smooth(straight)?
+            && let Some(path) = self.smooth(&straight)?
         {
             return Ok(path);
         }
@@ -154,8 +154,8 @@ impl Finder<'_> {
         way.iter_mut().for_each(|pose| *pose = turned(pose, &first, &start.pose));
         let last = turned(to, &goal.pose, &way[way.len() - 1]);
         let poses = [vec![from.to_vec()], way, vec![last]].concat();
-        let poses = self.shortened(poses)?;
-        self.smooth(poses)?.ok_or(NoPath::Rough)
+        let poses = self.shortened(&poses)?;
+        self.smooth(&poses)?.ok_or(NoPath::Rough)
     }
 
     /// Refuses a pose that is in no aspect.
@@ -245,7 +245,7 @@ impl Finder<'_> {
     }
 
     /// The same way with straight lines instead of detours, where these keep away from singularities.
-    fn shortened(&mut self, poses: Vec<Vec<f64>>) -> Result<Vec<Vec<f64>>, NoPath> {
+    fn shortened(&mut self, poses: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, NoPath> {
         let mut kept = vec![poses[0].clone()];
         let mut here = 0;
         while here + 1 < poses.len() {
@@ -304,10 +304,10 @@ impl Finder<'_> {
 
     /// The path of splines through poses on these lines, as close together as is needed for it to be clear; `None` if it
     /// never is.
-    fn smooth(&mut self, lines: Vec<Vec<f64>>) -> Result<Option<AspectPath>, NoPath> {
+    fn smooth(&mut self, lines: &[Vec<f64>]) -> Result<Option<AspectPath>, NoPath> {
         for doubling in 0..=DOUBLINGS {
             self.search.progress.advance(0)?;
-            let mut poses = self.divided(&lines, 0.5_f64.powi(doubling as i32));
+            let mut poses = self.divided(lines, 0.5_f64.powi(doubling as i32));
             poses.dedup();
             if poses.len() < 2 {
                 poses = vec![lines[0].clone(), lines[lines.len() - 1].clone()];
