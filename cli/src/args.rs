@@ -6,6 +6,7 @@ mod export;
 mod generate;
 mod measure;
 mod motion;
+mod path;
 mod pose;
 mod recording;
 mod workspace;
@@ -16,6 +17,7 @@ pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
 pub use generate::{CArgs, GenerateArgs, Language};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
+pub use path::PathArgs;
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, LayoutArgs, PlotArgs};
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
@@ -63,6 +65,7 @@ Examples:
   opm merge part-*.mcap -o cloud.mcap                  the parts of a sweep, joined to one recording
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
+  opm path planar-3rpr --from x=0 --to x=9mm           a path without a singularity
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds
@@ -102,6 +105,7 @@ pub enum Command {
     Fk(FkArgs),
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),
+    Path(PathArgs),
     Workspace(WorkspaceArgs),
     Measure(MeasureArgs),
     Merge(MergeArgs),

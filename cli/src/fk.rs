@@ -1,5 +1,6 @@
 //! `opm fk`: forward kinematics.
 
+mod aspects;
 mod not_found;
 mod poses;
 
@@ -95,8 +96,19 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             ));
         }
     }
-    let answer =
-        Answer { loaded: &loaded, manipulator: &manipulator, actuated, found, only, method };
+    let aspects = match args.aspects {
+        true => Some(aspects::of(args, &found.list, &loaded, output)?),
+        false => None,
+    };
+    let answer = Answer {
+        loaded: &loaded,
+        manipulator: &manipulator,
+        actuated,
+        found,
+        only,
+        method,
+        aspects,
+    };
     output.print(&answer.json(), answer.text())
 }
 
@@ -156,6 +168,8 @@ struct Answer<'a> {
     found: Assemblies,
     only: Option<Mode>,
     method: Method,
+    /// The aspect of each assembly, if it was asked for.
+    aspects: Option<Vec<Option<u32>>>,
 }
 
 #[derive(Serialize)]
@@ -175,6 +189,9 @@ struct JsonAssembly {
     joints: Map<String, Value>,
     imaginary: Map<String, Value>,
     residual: f64,
+    /// The number of the aspect, null if the grid does not tell; only with --aspects.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    aspect: Option<Value>,
 }
 
 impl Answer<'_> {
@@ -184,18 +201,19 @@ impl Answer<'_> {
             named(names.into_iter().zip(values.iter().copied()).collect::<Vec<_>>())
         };
         let actuated = m.actuated().iter().map(|&i| &*m.coordinates()[i].name).collect();
-        let assembly = |a: &Assembly| JsonAssembly {
+        let assembly = |(number, a): (usize, &Assembly)| JsonAssembly {
             pose: named(crate::text::whole_pose(m, &a.pose, &a.dependent)),
             mode: m.format_mode(a.mode),
             within_limits: a.within_limits,
             joints: pair(m.coordinates().iter().map(|c| &*c.name).collect(), &a.joints),
             imaginary: pair(m.imaginary().iter().map(|j| &*j.name).collect(), &a.imaginary),
             residual: a.residual,
+            aspect: self.aspects.as_ref().map(|aspects| aspects[number].into()),
         };
         Json {
             actuated: pair(actuated, &self.actuated),
             method: self.method,
-            assemblies: self.found.list.iter().map(assembly).collect(),
+            assemblies: self.found.list.iter().enumerate().map(assembly).collect(),
             unmet: self.unmet(FileUnits::SI),
             loose: self.found.loose.iter().map(Section::to_string).collect(),
         }
@@ -238,6 +256,9 @@ impl Answer<'_> {
                 "{count} {many}{in_mode}{how}, {limits}; legs close to {worst:.1e} of the size\n"
             );
             let _ = write!(text, "{}", self.table());
+            if let Some(aspects) = &self.aspects {
+                text += &aspects::text(m, list, aspects);
+            }
         }
         for section in &self.found.loose {
             let _ = writeln!(
@@ -261,6 +282,9 @@ impl Answer<'_> {
         let dependent = m.dependent_coordinates();
         headers.extend(dependent.iter().map(|c| text::header(c.name, c.quantity, units)));
         headers.extend(m.imaginary().iter().map(|j| text::header(&j.name, j.quantity, units)));
+        if self.aspects.is_some() {
+            headers.push(">aspect".to_owned());
+        }
         headers.push(String::new());
         let mut table = Table::new(headers);
         for (number, a) in self.found.list.iter().enumerate() {
@@ -273,6 +297,9 @@ impl Answer<'_> {
             row.extend(pose.map(|(&value, c)| text::number(value, c.quantity, units)));
             let imaginary = a.imaginary.iter().zip(m.imaginary());
             row.extend(imaginary.map(|(&value, j)| text::number(value, j.quantity, units)));
+            if let Some(aspects) = &self.aspects {
+                row.push(aspects[number].map_or_else(|| "-".to_owned(), |label| label.to_string()));
+            }
             row.push(if a.within_limits { "" } else { "*" }.to_owned());
             table.row(row);
         }

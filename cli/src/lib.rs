@@ -25,6 +25,7 @@ mod measure;
 mod merge;
 mod motion;
 mod output;
+mod path;
 mod plot;
 mod pose;
 mod progress;
@@ -73,6 +74,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),
+        Command::Path(command) => path::run(command, output),
         Command::Workspace(command) => workspace::run(command, output),
         Command::Measure(command) => measure::run(command, output),
         Command::Merge(command) => merge::run(command, output),

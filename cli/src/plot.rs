@@ -9,6 +9,7 @@ mod layout;
 mod mechanism;
 mod motion;
 pub mod options;
+mod singular;
 mod sized;
 mod slices;
 mod source;

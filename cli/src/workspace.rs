@@ -3,6 +3,7 @@
 //! The steps are: flags, request, sweep, analysis, recording, output.
 
 pub mod advice;
+mod aspects;
 mod explain;
 mod inscribed;
 mod report;

@@ -62,7 +62,7 @@ mod _native {
     #[pymodule_export]
     use crate::solutions::Solutions;
     #[pymodule_export]
-    use crate::sweep::{Conditioning, Inscribed, Outline, Rejection, Sweep, sweep};
+    use crate::sweep::{Aspect, Conditioning, Inscribed, Outline, Rejection, Sweep, sweep};
     #[pymodule_export]
     use crate::trajectory::{Trajectory, Violation, trajectory};
     #[pymodule_export]

@@ -1,5 +1,6 @@
 //! Sweeps of a grid of poses. Each kind of result of a sweep has a file.
 
+mod aspects;
 mod boundary;
 mod components;
 mod conditioning;
@@ -11,6 +12,7 @@ mod questions;
 mod recording;
 mod shards;
 
+pub use aspects::Aspect;
 pub use boundary::Outline;
 pub use conditioning::Conditioning;
 pub use query::modes;
@@ -23,7 +25,7 @@ use crate::manipulator::Manipulator;
 use crate::parts::Parts;
 use numpy::IntoPyArray;
 use opm_study::{Workspace, WorkspaceRequest};
-use opm_workspace::{Axis, Count, Shard};
+use opm_workspace::{Aspects, Axis, Count, Shard};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use query::{fitted, named};
@@ -43,6 +45,7 @@ pub struct Sweep {
     /// Number of points of the workspace. A pose counts if it is in reach and within all limits.
     count: Count,
     tally: OnceLock<Arc<Vec<u64>>>,
+    aspects: OnceLock<Arc<Aspects>>,
 }
 
 /// Find which poses of a grid are reachable and within all limits, or another kind of workspace.
@@ -57,6 +60,7 @@ pub struct Sweep {
 ///     * ``"grid"``: poses.
 ///     * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the orientation or of the place held at
 ///       one value.
+///     * ``"aspects"``: poses in one working mode, divided into connected parts without a singularity (:meth:`Sweep.aspects`).
 ///     * ``"reachable"``, ``"dexterous"``: places that are reached in any, or in every orientation of the grid.
 ///     * ``"imaginary"``: orientations in which any place of the grid is reached: those that the imaginary joints follow from.
 ///     * ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the imaginary joints that it needs.
@@ -273,7 +277,15 @@ impl Sweep {
         let count = Count::nothing(&manipulator);
         let checked = query.check(manipulator).map_err(|error| request(&error))?;
         let workspace = fitted(py, checked, threads)?;
-        Ok(Self { of, workspace, mode, threads, count, tally: OnceLock::new() })
+        Ok(Self {
+            of,
+            workspace,
+            mode,
+            threads,
+            count,
+            tally: OnceLock::new(),
+            aspects: OnceLock::new(),
+        })
     }
 
     fn clone(&self, py: Python<'_>) -> Self {
@@ -283,6 +295,7 @@ impl Sweep {
             mode: self.mode.clone(),
             count: self.count.clone(),
             tally: self.tally.clone(),
+            aspects: self.aspects.clone(),
             ..*self
         }
     }

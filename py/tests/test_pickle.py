@@ -44,6 +44,7 @@ def objects(manipulator):
         swept.inscribed("disc"),
         opm.sweep(m, x=(-0.3, 0.3, 61)).rejections()[0],
         opm.sweep(m, x=(-0.1, 0.1, 5)).conditioning(),
+        opm.sweep(m, kind="aspects", x=(-0.1, 0.1, 5)).aspects()[0],
         opm.measure(m, over={"x": (-0.1, 0.1), "y": 0.01}),
         followed,
         opm.trajectory(m, "plano-spherical-sinusoids", rate=20),

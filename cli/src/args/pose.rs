@@ -1,7 +1,7 @@
 //! Arguments of the commands for one pose or many: inverse and forward kinematics, velocities.
 
 use super::MechanismArgs;
-use crate::pose::{Number, Pose};
+use crate::pose::{GridAxis, Number, Pose};
 use crate::transform::Transform;
 use clap::ValueHint;
 use std::path::PathBuf;
@@ -131,6 +131,7 @@ Examples:
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.16,S3=0.16,phi14=-2.7,phi24=2.3 --mode home
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
   opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json
+  opm fk planar-3rpr --joints S1=14.98mm,S2=15.38mm,S3=12mm --aspects
   opm fk plano-spherical-5dof --poses joints.csv | head")]
 #[command(group = clap::ArgGroup::new("given").required(true).args(["joints", "poses"]))]
 pub struct FkArgs {
@@ -156,6 +157,12 @@ pub struct FkArgs {
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,
+    /// Also the aspect of each assembly: those with the same number are joined by paths without a singularity
+    #[arg(long, requires = "joints", conflicts_with = "poses")]
+    pub aspects: bool,
+    /// Grid of --aspects: minimum, maximum and number of values of a task coordinate; without it, one is fitted
+    #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE", requires = "aspects")]
+    pub grid: Vec<GridAxis>,
     /// Start Newton's method at this pose; other coordinates start at home
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub near: Option<Pose>,

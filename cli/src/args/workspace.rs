@@ -28,6 +28,10 @@ use std::path::PathBuf;
 /// on their left: in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
 /// `imaginary` has neither boundary nor measure, since values of joints lie on no grid.
 ///
+/// `aspects` are connected parts of the poses in one working mode that have no singularity: number, sign of the parallel
+/// measure, poses, measure and extent of each, and singularity curves in JSON and in the picture. A recording stores with each
+/// point the number of its aspect, as `aspect`, with 0 for a singular pose. `opm path` finds paths in them.
+///
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
 ///
@@ -75,6 +79,7 @@ Examples:
   opm workspace plano-spherical-5dof --coordinates tilt-torsion --kind dexterous \\
       --grid tilt=20deg --grid azimuth=-180deg:170deg:36 --grid x=-0.2:0.2:81 --grid y=-0.2:0.2:81
   opm workspace plano-spherical-5dof --kind lower --grid x=0:0.2:201 --grid theta11=-0.7:0.9:17
+  opm workspace planar-3rrr --kind aspects --grid x=-0.2:0.2:81 --grid y=-0.2:0.2:81
   opm workspace plano-spherical-5dof --shard 3/8 -o part-3.mcap
   opm workspace translational-helical-3dof --axes x,y,phi -o cloud.mcap --scalars S,S1,S2,S3")]
 pub struct WorkspaceArgs {

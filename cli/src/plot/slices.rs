@@ -5,6 +5,7 @@ use super::grid::{is_home, nearest};
 use super::inscribed::Shape;
 use super::label::value_label;
 use super::layout::{Coordinate, Layout, Place};
+use super::singular::Singular;
 use super::source::{Rate, Source, Stop};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
@@ -14,15 +15,21 @@ use opm_mcap::workspace::SLICES_TOPIC;
 use opm_mcap::{RejectedCause, SliceReader};
 use opm_plot::color::{INK, Map};
 use opm_plot::{Bar, Cells, Cloud, Content, Measure, Paint, Scale, Section, Spacing, Tile};
-use opm_study::WorkspaceKind;
+use opm_study::recording::class_color;
+use opm_study::{ASPECT, WorkspaceKind};
 use opm_workspace::{Axis, mask_boundary};
 
 /// Largest number of slices that are chosen without --slice.
 const CHOSEN: u64 = 8;
+/// Largest number of aspects that a legend names.
+const MOST_NAMED: usize = 12;
 /// Share of the colour scale that the slices take: the brightest colours are not used.
 const COLORS: f64 = 0.95;
 /// A value below this share of a grid's largest value, or of one metre or radian, counts as zero.
 const ROUNDING: f64 = 1e-12;
+
+/// Lines in the units of a picture.
+type Lines = Vec<Vec<[f64; 2]>>;
 
 /// Slices that are being built.
 pub struct Slices<'a> {
@@ -36,6 +43,10 @@ pub struct Slices<'a> {
     tiles: Vec<(u64, Content)>,
     /// The values that colour the cells: the field, its range, its divisor.
     color: Option<Colored>,
+    /// Whether these values are the numbers of aspects.
+    aspects: bool,
+    /// The singularity curves of each tile, if they are shown.
+    curves: Vec<Lines>,
     /// The position of home, if it is in the picture.
     home: Option<[f64; 2]>,
     /// Whether the tiles were chosen here, and not by --slice.
@@ -116,6 +127,8 @@ impl<'a> Slices<'a> {
         });
         // If every place is reached at every orientation, there is nothing to colour.
         let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
+        let aspects = layout.kind == WorkspaceKind::Aspects
+            && color.as_ref().is_some_and(|color| color.field == ASPECT);
         let mut slices = Self {
             layout,
             view: view.map(seen),
@@ -123,6 +136,8 @@ impl<'a> Slices<'a> {
             varied,
             tiles: vec![],
             color,
+            aspects,
+            curves: vec![],
             home: None,
             chosen: false,
             empty: 0,
@@ -158,6 +173,8 @@ impl<'a> Slices<'a> {
             varied: self.varied,
             tiles: vec![],
             color: None,
+            aspects: false,
+            curves: vec![],
             home: self.home,
             chosen: self.chosen,
             empty: 0,
@@ -233,6 +250,11 @@ impl<'a> Slices<'a> {
                             *color = cause.color;
                         }
                     }
+                    Content::Cells(Cells::with_classes(x, y), Paint::Classes(colors))
+                }
+                (None, Some(color)) if self.aspects => {
+                    // A cast saturates.
+                    let colors = (0..=color.range[1] as usize).map(class_color).collect();
                     Content::Cells(Cells::with_classes(x, y), Paint::Classes(colors))
                 }
                 (None, Some(color)) => {
@@ -411,6 +433,7 @@ impl<'a> Slices<'a> {
             self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
         let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
         let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
+        let mut curves = std::mem::take(&mut self.curves).into_iter();
         let tiles = std::mem::take(&mut self.tiles);
         let tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
             let share = COLORS * value as f64 / (total - 1).max(1) as f64;
@@ -422,6 +445,7 @@ impl<'a> Slices<'a> {
                     if let Some(line) = self.inside(value) {
                         cells.inscribe(line);
                     }
+                    cells.trace(curves.next().unwrap_or_default());
                     let paint = match paint {
                         Paint::Plain(_) => Paint::Plain(Map::Viridis.color(share)),
                         values => values,
@@ -438,7 +462,13 @@ impl<'a> Slices<'a> {
                 mark,
             }
         };
-        let colors = self.color.as_ref().map(|color| Bar {
+        let mut shown: Vec<usize> = match self.aspects {
+            true => tiles.iter().filter_map(|tile| classes(&tile.1)).flatten().flatten().collect(),
+            false => vec![],
+        };
+        shown.sort_unstable();
+        shown.dedup();
+        let colors = self.color.as_ref().filter(|_| !self.aspects).map(|color| Bar {
             measure: color.measure.clone(),
             range: color.range,
             map: Map::Viridis,
@@ -446,7 +476,15 @@ impl<'a> Slices<'a> {
         });
         let tiles = tiles.into_iter().zip(marks).map(tile).collect();
         let causes = self.causes.unwrap_or_default().into_iter().filter(|_| cells);
-        let legend = causes.map(|cause| (cause.text, cause.color)).collect();
+        let causes = causes.map(|cause| (cause.text, cause.color));
+        let aspects = shown.into_iter().take(MOST_NAMED).map(|number| {
+            let text = match number {
+                0 => "singular, or several aspects".to_owned(),
+                _ => format!("aspect {number}"),
+            };
+            (text, class_color(number))
+        });
+        let legend = causes.chain(aspects).collect();
         Section { title, columns, shared: true, tiles, bar: colors.filter(|_| cells), legend }
     }
 
@@ -474,9 +512,56 @@ impl<'a> Slices<'a> {
         };
         let [a, b] = &self.view;
         let (x, y) = (axis(a)?, axis(b).filter(|_| !self.is_bar())?);
+        if self.aspects {
+            return self.boundaries_of_aspects([&x, &y], &cells.classes()?);
+        }
         let inside = cells.hits().filter(|_| self.layout.bounded && self.causes.is_none())?;
         let rings = mask_boundary(&x, &y, &inside).expect("one value for each cell");
         Some(rings.into_iter().map(|ring| ring.points).collect())
+    }
+
+    /// Finds the singularity curves of every tile, for a picture of aspects.
+    pub fn find_singularities(&mut self, source: &Source<'_>) -> Result<(), Failure> {
+        if let Some(singular) = Singular::of(source).filter(|_| self.aspects && !self.is_bar()) {
+            let of = |tile: &(u64, Content)| self.singularities(&singular, tile.0);
+            self.curves = self.tiles.iter().map(of).collect::<Result<_, _>>()?;
+        }
+        Ok(())
+    }
+
+    /// The singularity curves in the tile of this value.
+    fn singularities(&self, singular: &Singular<'_>, value: u64) -> Result<Lines, Failure> {
+        let coordinates = &self.layout.coordinates;
+        let view = self.view.each_ref().map(|seen| coordinates[seen.number].axis.as_ref());
+        let [Some(x), Some(y)] = view else { return Ok(vec![]) };
+        // Coordinates with one value are held at that.
+        let single = self.layout.grid.iter().map(|(_, axis)| axis).filter(|axis| axis.count == 1);
+        let single = single.map(|axis| (&*axis.name, axis.min));
+        let varied = self.varied.map(|number| (number, value));
+        let held = self.held.iter().copied().chain(varied).filter_map(|(number, value)| {
+            Some((&*coordinates[number].name, coordinates[number].axis.as_ref()?.value(value)))
+        });
+        let held: Vec<(&str, f64)> = single.chain(held).collect();
+        let [a, b] = &self.view;
+        let scaled = |[x, y]: [f64; 2]| [x / a.factor, y / b.factor];
+        let lines = singular.curves([x, y], &held)?.into_iter();
+        Ok(lines.map(|line| line.into_iter().map(scaled).collect()).collect())
+    }
+
+    /// The boundary of each aspect in a tile.
+    fn boundaries_of_aspects(
+        &self,
+        [x, y]: [&Axis; 2],
+        classes: &[Option<usize>],
+    ) -> Option<Vec<Vec<[f64; 2]>>> {
+        let mut shown: Vec<usize> = classes.iter().flatten().copied().collect();
+        shown.sort_unstable();
+        shown.dedup();
+        let lines = shown.into_iter().filter(|_| self.layout.bounded).flat_map(|number| {
+            let inside: Vec<bool> = classes.iter().map(|class| *class == Some(number)).collect();
+            mask_boundary(x, y, &inside).expect("one value for each cell")
+        });
+        Some(lines.map(|ring| ring.points).collect())
     }
 
     /// The line of the largest shape inside, in the tile of this value.
@@ -539,6 +624,11 @@ impl<'a> Slices<'a> {
                 "The line is the boundary, half-way between values of the grid, and on its edge.";
             notes.push(line.to_owned());
         }
+        if self.curves.iter().any(|lines| !lines.is_empty()) {
+            notes.push(
+                "The red lines are parallel singularities, found by bisection on the lines of the grid.".to_owned(),
+            );
+        }
         if let Some(shape) = &self.shape
             && self.tiles.iter().any(|(value, _)| self.inside(*value).is_some())
         {
@@ -566,6 +656,14 @@ pub fn rounded(axis: &Axis, number: u64) -> f64 {
     let value = axis.value(number);
     let largest = axis.min.abs().max(axis.max.abs()).max(1.0);
     if value.abs() <= ROUNDING * largest { 0.0 } else { value }
+}
+
+/// The classes of the cells of a tile.
+fn classes(content: &Content) -> Option<Vec<Option<usize>>> {
+    match content {
+        Content::Cells(cells, _) => cells.classes(),
+        _ => None,
+    }
 }
 
 enum Numbers {

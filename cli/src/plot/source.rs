@@ -186,6 +186,11 @@ impl<'a> Source<'a> {
         known.map(|c| c.quantity).or_else(recorded).map(|quantity| (name.clone(), quantity))
     }
 
+    /// The progress of reading, which Ctrl-C cancels.
+    pub fn progress(&self) -> &'a Progress {
+        self.progress
+    }
+
     pub fn is_workspace(&self) -> bool {
         self.recording.topic(SLICES_TOPIC).is_some_and(|topic| topic.points.is_some())
     }

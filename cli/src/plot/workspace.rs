@@ -99,6 +99,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let mut sections = vec![];
     if let Some(mut slices) = slices {
         slices.drop_empty();
+        slices.find_singularities(source)?;
         if let Some(rejected) = &mut rejected {
             rejected.keep_those_of(&slices);
         }

@@ -1,5 +1,6 @@
 //! The printed results of a workspace: text for people, and JSON.
 
+use super::aspects;
 use crate::text::{self, Table, count, plural, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
@@ -68,6 +69,11 @@ impl Outcome<'_> {
         });
         json["kind"] = workspace.kind().name().into();
         analysis_json(analysis, &mut json);
+        if let Some(aspects) = &analysis.aspects {
+            json["aspects"] = aspects::json(workspace, aspects);
+            json["singularities"] =
+                aspects::curves_json(workspace, analysis.singularities.as_deref());
+        }
         if let Some(shard) = self.shard {
             json["shard"] = shard.to_string().into();
         }
@@ -119,6 +125,9 @@ impl Outcome<'_> {
             let _ = writeln!(text, "measure {} {}", short(measure.value), measure.unit);
         }
         text += &analysis_text(analysis, units);
+        if let Some(aspects) = &analysis.aspects {
+            text += &aspects::text(workspace, aspects, units);
+        }
 
         if found.imaginary.iter().any(Option::is_some) {
             let mut ranges = Table::new(["imaginary joint", ">min", ">max", "unit"]);
@@ -231,6 +240,7 @@ fn shape_text(shape: &Shape, kind: WorkspaceKind, set: &GridSet) -> String {
     let more = if components.len() > LISTED { ", ..." } else { "" };
     let _ = match components.len() {
         0 => Ok(()),
+        _ if kind == WorkspaceKind::Aspects => Ok(()),
         1 => writeln!(text, "connected: one component"),
         number => {
             let (sizes, points) = (sizes.join(", "), kind.point_name());

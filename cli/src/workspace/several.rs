@@ -10,7 +10,7 @@ use crate::runs::{self, Cell, Runs};
 use crate::text::{count, short};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
-use opm_study::{Shape, WorkspaceRequest};
+use opm_study::{Shape, WorkspaceKind, WorkspaceRequest};
 use opm_workspace::{Modes, Shard};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -39,6 +39,10 @@ pub fn all_modes(args: &WorkspaceArgs, loaded: &Loaded, output: &Output) -> Resu
     let mut whole = request(args, &manipulator)?;
     whole.modes = Some(Modes::Any);
     let work = Work { output, pool: &pool, progress: &progress };
+    if whole.axes.is_empty() && args.kind == WorkspaceKind::Aspects {
+        let problem = "with --kind aspects: the modes need a grid in common; give it, with --grid";
+        return Err(Failure::flag("--all-modes", problem));
+    }
     let axes = match whole.axes.is_empty() {
         false => whole.axes.clone(),
         true => {
@@ -103,7 +107,8 @@ fn cells(
     }
     if let Some(Shape { components, .. }) = &analysis.shape {
         let number = components.len() as u64;
-        cells.push(Cell::new("components", number, count(number)));
+        let name = if kind == WorkspaceKind::Aspects { "aspects" } else { "components" };
+        cells.push(Cell::new(name, number, count(number)));
     }
     if let Some(index) = &analysis.conditioning {
         let global = index.global();

@@ -5,15 +5,20 @@ use super::report::Effort;
 use crate::args::Output;
 use crate::failure::Failure;
 use crate::layout;
+use crate::pose::GridAxis;
 use crate::progress::watch;
 use crate::text::count;
+use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::file::FileUnits;
 use opm_study::recording::{
     Findings, ShardCount, ShardFindings, ShardRecording, WorkspaceRecording,
 };
-use opm_study::{Analysis, CheckedRequest, PoseSource, StudyError, Workspace};
-use opm_workspace::{Cancelled, Count, Progress, Rejections, Shard, Sweep};
+use opm_study::{
+    Analysis, CheckedRequest, PoseSource, StudyError, Workspace, WorkspaceKind, WorkspaceRequest,
+};
+use opm_workspace::{Aspects, Cancelled, Count, Modes, Progress, Rejections, Shard, Sweep};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The thread pool of the work, and the output for its progress.
@@ -100,6 +105,24 @@ impl Work<'_> {
         };
         analysis.conditioning = conditioning;
         Ok(analysis)
+    }
+
+    /// Finds the aspects of a manipulator in one working mode, on a grid that is given or fitted.
+    pub fn aspects(
+        &self,
+        manipulator: &Arc<Manipulator>,
+        mode: Mode,
+        grid: &[GridAxis],
+        units: FileUnits,
+    ) -> Result<Aspects, Failure> {
+        let mut request = WorkspaceRequest::new(WorkspaceKind::Aspects).modes(Modes::One(mode));
+        let coordinates = WorkspaceKind::Aspects.sections().coordinates(manipulator);
+        let axes = grid.iter().map(|axis| axis.resolve(&coordinates));
+        request.axes = axes.collect::<Result<_, _>>()?;
+        let workspace = self.fit(request.check(Arc::clone(manipulator))?, units)?;
+        let (found, _, poses) = self.count_and_keep(&workspace)?;
+        let analysis = self.analyse(&workspace, found, &poses)?;
+        Ok(analysis.aspects.expect("the kind is of aspects"))
     }
 
     /// Finds what rejects the poses.

@@ -5,7 +5,8 @@ use crate::kind::WorkspaceKind;
 use crate::poses::PoseSource;
 use crate::workspace::Workspace;
 use opm_workspace::{
-    Components, ConditioningIndex, Count, GridSet, Outline, Progress, Visits, boundary,
+    Aspects, Components, ConditioningIndex, Count, GridSet, Outline, Progress, SingularCurves,
+    Visits, boundary, singular_curves,
 };
 
 /// The results for a workspace. All of them follow from the poses in reach.
@@ -22,7 +23,12 @@ pub struct Analysis {
     pub visits: Option<Visits>,
     /// The conditioning of the poses, if it was requested.
     pub conditioning: Option<ConditioningIndex>,
-    /// Components and boundary, if they were requested.
+    /// The aspects, for the kind of that name.
+    pub aspects: Option<Aspects>,
+    /// The curves of parallel singularities among the poses, slice by slice, for the same kind. `None` if the poses vary in
+    /// neither two nor three coordinates.
+    pub singularities: Option<Vec<SingularCurves>>,
+    /// Components and boundary, if they were requested. Of aspects these are the aspects themselves.
     pub shape: Option<Shape>,
 }
 
@@ -53,7 +59,16 @@ impl Workspace {
 impl Analysis {
     /// An analysis with a count and nothing else.
     pub fn of_count(kind: WorkspaceKind, count: Count) -> Self {
-        Self { kind, count, set: None, visits: None, conditioning: None, shape: None }
+        Self {
+            kind,
+            count,
+            set: None,
+            visits: None,
+            conditioning: None,
+            aspects: None,
+            singularities: None,
+            shape: None,
+        }
     }
 
     /// The results that follow from the points of a workspace whose poses are counted. The poses are visited
@@ -81,6 +96,19 @@ impl Analysis {
                 GridSet::of(visits.axes().to_vec(), |place| counts[place as usize] >= required)?
             }
         };
+        if let (WorkspaceKind::Aspects, Some(mode)) = (kind, workspace.modes().one()) {
+            let aspects = Aspects::new(workspace.manipulator(), mode, &set, progress)?;
+            analysis.shape = Some(Shape {
+                components: aspects.list().iter().map(|aspect| aspect.poses).collect(),
+                boundary: aspects.boundary()?,
+            });
+            analysis.aspects = Some(aspects);
+            analysis.singularities =
+                singular_curves(workspace.manipulator(), mode, &set, progress)?;
+            (analysis.count.poses, analysis.count.reachable) = (set.points(), set.count());
+            analysis.set = Some(set);
+            return Ok(analysis);
+        }
         analysis.shape = workspace.wants_shape().then(|| Shape {
             components: Components::new(&set).sizes().to_vec(),
             boundary: if kind.has_boundary() { boundary(&set) } else { None },

@@ -3,7 +3,7 @@
 
 use crate::error::{RequestError, RequestOption};
 use crate::kind::WorkspaceKind;
-use crate::names::{INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
+use crate::names::{ASPECT, INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 use opm_core::manipulator::Manipulator;
 use opm_core::task::CoordinateKind;
 use opm_workspace::{Axis, Grid, GridSet};
@@ -28,6 +28,8 @@ pub enum Column {
     InverseCondition,
     /// The share of the orientations that reach a place.
     Share,
+    /// The number of the aspect that a pose is in, 0 for a singular one.
+    Aspect,
     /// Zero.
     Zero,
 }
@@ -187,6 +189,7 @@ fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
             WorkspaceKind::Grid
             | WorkspaceKind::ConstantOrientation
             | WorkspaceKind::Orientation
+            | WorkspaceKind::Aspects
             | WorkspaceKind::Upper
             | WorkspaceKind::Lower => true,
         })
@@ -196,13 +199,19 @@ fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
     let imaginary = manipulator.imaginary().iter().enumerate();
     let imaginary = imaginary.map(|(i, j)| NamedColumn::new(&j.name, Column::Imaginary(i)));
     match kind {
-        WorkspaceKind::Grid | WorkspaceKind::ConstantOrientation | WorkspaceKind::Orientation => {
+        WorkspaceKind::Grid
+        | WorkspaceKind::ConstantOrientation
+        | WorkspaceKind::Orientation
+        | WorkspaceKind::Aspects => {
             known.extend(imaginary);
             let actuated = manipulator.actuated().iter().enumerate();
             known.extend(actuated.map(|(i, &joint)| {
                 NamedColumn::new(&manipulator.coordinates()[joint].name, Column::Actuated(i))
             }));
             known.push(NamedColumn::new(INVERSE_CONDITION, Column::InverseCondition));
+            if kind == WorkspaceKind::Aspects {
+                known.push(NamedColumn::new(ASPECT, Column::Aspect));
+            }
         }
         WorkspaceKind::Reachable | WorkspaceKind::Dexterous => {
             known.push(NamedColumn::new(SHARE, Column::Share));
@@ -252,7 +261,10 @@ impl PointColumns {
         let (tallest, scale) = (tallest(grid), choice.scale);
         let axis = |i: usize| NamedColumn::new(&grid.axes()[i].name, Column::Coordinate(i));
         let asked = choice.color.clone();
-        let color = choice.color.unwrap_or_else(|| axis(tallest));
+        let color = choice.color.unwrap_or_else(|| match choice.kind {
+            WorkspaceKind::Aspects => NamedColumn::new(ASPECT, Column::Aspect),
+            _ => axis(tallest),
+        });
         let several = |number: &usize| grid.axes()[*number].count > 1;
         let varying: Vec<usize> = (0..grid.axes().len()).filter(several).collect();
         let axes = choice.axes.unwrap_or_else(|| {

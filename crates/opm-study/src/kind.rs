@@ -30,6 +30,8 @@ pub enum WorkspaceKind {
     ConstantOrientation,
     /// Poses in reach, with one value for each coordinate of the place.
     Orientation,
+    /// Poses in reach in one working mode, divided into aspects: connected parts without a singularity.
+    Aspects,
     /// Places that are in reach at one orientation of the grid or more.
     Reachable,
     /// Places that are in reach at every orientation of the grid.
@@ -75,10 +77,11 @@ fn kind_names() -> String {
 
 impl WorkspaceKind {
     /// Every kind, in the order in which they are listed for people.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Grid,
         Self::ConstantOrientation,
         Self::Orientation,
+        Self::Aspects,
         Self::Reachable,
         Self::Dexterous,
         Self::Imaginary,
@@ -92,6 +95,7 @@ impl WorkspaceKind {
             Self::Grid => "grid",
             Self::ConstantOrientation => "constant-orientation",
             Self::Orientation => "orientation",
+            Self::Aspects => "aspects",
             Self::Reachable => "reachable",
             Self::Dexterous => "dexterous",
             Self::Imaginary => "imaginary",
@@ -109,6 +113,9 @@ impl WorkspaceKind {
             }
             Self::Orientation => {
                 "Poses in reach with the place's coordinates held, each at one value"
+            }
+            Self::Aspects => {
+                "Poses in reach in one working mode, divided into connected parts without a singularity"
             }
             Self::Reachable => "Places in reach at some orientation of the grid",
             Self::Dexterous => "Places in reach at every orientation of the grid",
@@ -128,6 +135,7 @@ impl WorkspaceKind {
             Self::Grid
             | Self::ConstantOrientation
             | Self::Orientation
+            | Self::Aspects
             | Self::Reachable
             | Self::Dexterous
             | Self::Imaginary => Sections::Whole,
@@ -151,7 +159,9 @@ impl WorkspaceKind {
             }
             Self::Orientation => (!follows(PosePart::Place), has(PosePart::Orientation)),
             Self::Reachable => (has(PosePart::Place), true),
-            Self::Grid | Self::Imaginary | Self::Upper | Self::Lower => (true, true),
+            Self::Grid | Self::Aspects | Self::Imaginary | Self::Upper | Self::Lower => {
+                (true, true)
+            }
         };
         match (place, orientation) {
             (false, _) => Some(PosePart::Place),
@@ -162,7 +172,7 @@ impl WorkspaceKind {
 
     /// Whether its points are poses of the platform.
     pub fn is_of_poses(self) -> bool {
-        matches!(self, Self::Grid | Self::ConstantOrientation | Self::Orientation)
+        matches!(self, Self::Grid | Self::ConstantOrientation | Self::Orientation | Self::Aspects)
     }
 
     /// Whether its points are places. The share of orientations in reach is then known for each.
@@ -185,6 +195,7 @@ impl WorkspaceKind {
             Self::Grid
             | Self::ConstantOrientation
             | Self::Orientation
+            | Self::Aspects
             | Self::Upper
             | Self::Lower => None,
         }
@@ -198,6 +209,7 @@ impl WorkspaceKind {
             Self::Grid
             | Self::ConstantOrientation
             | Self::Orientation
+            | Self::Aspects
             | Self::Upper
             | Self::Lower => 0..grid.axes().len(),
         }
@@ -209,6 +221,7 @@ impl WorkspaceKind {
             Self::ConstantOrientation => grid.orientations(),
             Self::Orientation => grid.places(),
             Self::Grid
+            | Self::Aspects
             | Self::Reachable
             | Self::Dexterous
             | Self::Imaginary
@@ -223,7 +236,7 @@ impl WorkspaceKind {
             Self::Reachable | Self::Dexterous => "places",
             Self::Imaginary | Self::Upper => "orientations",
             Self::Lower => "points",
-            Self::Grid | Self::ConstantOrientation | Self::Orientation => "poses",
+            Self::Grid | Self::ConstantOrientation | Self::Orientation | Self::Aspects => "poses",
         }
     }
 
@@ -235,6 +248,7 @@ impl WorkspaceKind {
             Self::Grid
             | Self::ConstantOrientation
             | Self::Orientation
+            | Self::Aspects
             | Self::Reachable
             | Self::Imaginary => "reachable",
         }
@@ -246,6 +260,7 @@ impl WorkspaceKind {
             Self::Grid => "workspace",
             Self::ConstantOrientation => "constant-orientation workspace",
             Self::Orientation => "orientation workspace",
+            Self::Aspects => "aspects",
             Self::Reachable => "reachable workspace",
             Self::Dexterous => "dexterous workspace",
             Self::Imaginary => "workspace of the imaginary joints",
@@ -271,6 +286,7 @@ impl WorkspaceKind {
             Self::Grid
             | Self::ConstantOrientation
             | Self::Orientation
+            | Self::Aspects
             | Self::Reachable
             | Self::Imaginary => format!("no pose of the grid is in reach{well}"),
         }

@@ -95,7 +95,7 @@ pub use measure::{Measure, unit_product};
 pub use motion::{
     CoordinateRanges, DEFAULT_RATE, MOST_LISTED, MotionRequest, MotionSummary, Range,
 };
-pub use names::{INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
+pub use names::{ASPECT, INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 pub use poses::PoseSource;
 #[cfg(feature = "recording")]
 pub use poses::ShardPoses;

@@ -6,5 +6,7 @@ pub const TIP: &str = "tip";
 pub const INVERSE_CONDITION: &str = "inverse_condition";
 /// The name of the share of the orientations that reach a place.
 pub const SHARE: &str = "share";
+/// The name of the number of the aspect that a pose is in.
+pub const ASPECT: &str = "aspect";
 /// The name of an unused axis of a cloud, zero at all points: the set has fewer than three axes.
 pub const NO_AXIS: &str = "0";

@@ -20,6 +20,7 @@ mod workspace;
 pub use describe::inscribed_of;
 pub use linkage::record_linkage;
 pub use motion::{MotionRecorder, violation_fields};
+pub use rejected::class_color;
 pub use shard::{ShardCount, ShardFindings, ShardRecording, StoredShard};
 pub use shards::Shards;
 pub use slices::slices_together;

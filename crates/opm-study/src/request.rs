@@ -10,7 +10,7 @@ use opm_core::group::SubspaceKind;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
 use opm_workspace::{
-    Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sections, default_grid,
+    Aspects, Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sections, default_grid,
 };
 use std::sync::Arc;
 
@@ -288,8 +288,11 @@ fn check_kind(
     if kind.sections() != Sections::Whole && limit.is_some() {
         return Err(RequestError::SectionCondition { kind });
     }
-    if kind == WorkspaceKind::Imaginary && modes == Modes::Any {
+    if matches!(kind, WorkspaceKind::Imaginary | WorkspaceKind::Aspects) && modes == Modes::Any {
         return Err(RequestError::SeveralModes { kind });
+    }
+    if kind == WorkspaceKind::Aspects && !Aspects::exist(manipulator) {
+        return Err(RequestError::Loose { kind });
     }
     if kind == WorkspaceKind::Imaginary && manipulator.imaginary().is_empty() {
         return Err(RequestError::NoImaginaryJoints { kind });

@@ -183,6 +183,7 @@ impl Workspace {
             WorkspaceKind::Grid
             | WorkspaceKind::ConstantOrientation
             | WorkspaceKind::Orientation
+            | WorkspaceKind::Aspects
             | WorkspaceKind::Upper
             | WorkspaceKind::Lower => Ok(None),
         }

@@ -48,7 +48,9 @@ pub type Grids = BTreeMap<&'static str, Vec<Axis>>;
 
 /// All kinds.
 pub fn kinds(explorer: &Explorer) -> Reply {
-    let list = WorkspaceKind::ALL.map(|kind| {
+    // A page has no list of aspects; the command has.
+    let shown = WorkspaceKind::ALL.into_iter().filter(|kind| *kind != WorkspaceKind::Aspects);
+    let list = shown.map(|kind| {
         let checked = WorkspaceRequest::new(kind).check(explorer.manipulator().clone());
         Kind {
             name: kind.name(),
@@ -57,7 +59,7 @@ pub fn kinds(explorer: &Explorer) -> Reply {
             refused: checked.err().map(|error| chain(&error)),
         }
     });
-    Reply::new(&list)
+    Reply::new(&list.collect::<Vec<_>>())
 }
 
 /// Counts and measures a workspace of one kind. What is held is that of the pose, and with `turn` the orientations are

@@ -1,8 +1,8 @@
 //! Connected components of a set. Points that are neighbours along an axis belong together.
 //!
-//! Runs are joined, not points, by union-find (R. E. Tarjan, *Efficiency of a good but not linear set
-//! union algorithm*, J. ACM 22, 1975).
+//! Runs are joined, not points, in a [`Forest`].
 
+use crate::forest::Forest;
 use crate::set::{GridSet, SetAxis};
 use crate::sweep::Run;
 
@@ -37,7 +37,7 @@ impl<'a> Components<'a> {
     /// The components of a set.
     pub fn new(set: &'a GridSet) -> Self {
         let mut forest = joined(set);
-        let mut sizes = vec![0; forest.parents.len()];
+        let mut sizes = vec![0; forest.len()];
         for row in 0..set.rows() {
             for (number, run) in set.span(row).zip(set.runs(row)) {
                 sizes[forest.root(number)] += run.to - run.from;
@@ -77,7 +77,7 @@ impl<'a> Components<'a> {
 /// The runs of a set, of which neighbours are joined.
 fn joined(set: &GridSet) -> Forest {
     let runs = set.span(set.rows().saturating_sub(1)).end;
-    let mut forest = Forest { parents: (0..runs as u32).collect() };
+    let mut forest = Forest::new(runs);
     let row_axis = set.varying().first().copied().unwrap_or(0);
     for row in 0..set.rows() {
         let span = set.span(row);
@@ -113,28 +113,5 @@ fn join_rows(set: &GridSet, forest: &mut Forest, a: usize, b: usize) {
             forest.join(first_a + i, first_b + j);
         }
         if runs_a[i].to < runs_b[j].to { i += 1 } else { j += 1 }
-    }
-}
-
-/// Trees of runs that belong together.
-struct Forest {
-    parents: Vec<u32>,
-}
-
-impl Forest {
-    fn root(&mut self, mut run: usize) -> usize {
-        while self.parents[run] as usize != run {
-            // Every node on the path to the root gets its grandparent as its parent.
-            self.parents[run] = self.parents[self.parents[run] as usize];
-            run = self.parents[run] as usize;
-        }
-        run
-    }
-
-    /// Joins the trees of two runs. The earlier root stays a root, so that the result does not depend on
-    /// the order.
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b)] = a.min(b) as u32;
     }
 }

@@ -39,6 +39,7 @@
 //! | parts of a sweep, stored and put together | [`Shard`], [`Count::merge`], [`Poses`], [`replay`] |
 //! | which poses are far from singular | [`ConditionLimit`], [`Conditioned`], [`ConditioningIndex`] |
 //! | the set of reachable poses | [`GridSet`], [`Components`], [`boundary`], [`mask_boundary`] |
+//! | the parts that are free of singularities, and ways in them | [`Aspects`], [`aspect_at`], [`find_path`], [`singular_curves`] |
 //! | places that some or all orientations reach | [`Visits`] |
 //! | what rejects the other poses | [`Rejections`] |
 //! | the largest disc, ball or box in a set | [`inscribed()`] |
@@ -46,11 +47,13 @@
 //!
 //! Numbers are SI and radians. Work is done on the current rayon thread pool.
 
+mod aspects;
 mod boundary;
 mod components;
 mod condition;
 mod conditioning;
 mod extent;
+mod forest;
 mod grid;
 mod inscribed;
 pub mod measure;
@@ -65,6 +68,9 @@ mod visits;
 
 pub use opm_core;
 
+pub use aspects::{
+    Aspect, AspectPath, Aspects, NoPath, SingularCurves, aspect_at, find_path, singular_curves,
+};
 pub use boundary::{MaskError, Outline, Ring, boundary, mask_boundary};
 pub use components::Components;
 pub use condition::{ConditionError, ConditionLimit, Conditioned};

@@ -7,7 +7,7 @@ use crate::sweep::Run;
 use std::ops::Range;
 
 /// Most rows and most runs of a set, which take some GiB of memory.
-const MOST: u64 = 1 << 27;
+pub(crate) const MOST: u64 = 1 << 27;
 
 /// One axis of a set.
 #[derive(Clone, Debug, PartialEq)]
@@ -191,14 +191,19 @@ impl GridSet {
     }
 
     /// The coordinates of the point of this number, radians and metres, one for each axis.
-    pub fn point(&self, mut number: u64) -> Vec<f64> {
-        let value = |SetAxis { axis, .. }: &SetAxis| {
-            let value = axis.value(number % axis.count);
-            number /= axis.count;
-            value
-        };
-        self.axes.iter().map(value).collect()
+    pub fn point(&self, number: u64) -> Vec<f64> {
+        point(&self.axes, number)
     }
+}
+
+/// The coordinates of the point of this number on these axes.
+pub(crate) fn point(axes: &[SetAxis], mut number: u64) -> Vec<f64> {
+    let value = |SetAxis { axis, .. }: &SetAxis| {
+        let value = axis.value(number % axis.count);
+        number /= axis.count;
+        value
+    };
+    axes.iter().map(value).collect()
 }
 
 /// Some axes of a grid, as axes of a set.

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "Aspect",
     "Assembly",
     "Conditioning",
     "Decomposition",
@@ -1265,6 +1266,23 @@ class Outline:
         """Area of the pieces without the holes, in the product of both coordinates' units."""
 
 @final
+class Aspect:
+    """A connected part of the poses in reach in one working mode that has no singularity."""
+
+    @property
+    def number(self) -> int:
+        """Number of the aspect, from 1 for the largest: its label in :meth:`Sweep.labels`."""
+    @property
+    def sign(self) -> int:
+        """1 or -1, the sign of the parallel measure of the whole mechanism. Only whether two signs differ has a meaning."""
+    @property
+    def count(self) -> int:
+        """Number of its poses."""
+    @property
+    def extent(self) -> dict[str, tuple[float, float]]:
+        """Lowest and highest value of each coordinate, radians and metres."""
+
+@final
 class Conditioning:
     """How well the poses of a workspace are conditioned. The local index of a pose is the inverse of its condition number."""
 
@@ -1412,7 +1430,8 @@ class Sweep:
             As for :func:`sweep`.
         """
     def boundary(self, *, executor: _Executor | None = None, shards: int | None = None) -> list[Outline]:
-        """The boundary as closed polylines in the first two coordinates that have several values.
+        """The boundary as closed polylines in the first two coordinates that have several values; of kind ``"aspects"``, that of
+        each aspect.
 
         Returns
         -------
@@ -1436,7 +1455,8 @@ class Sweep:
         """How many points each connected component has, the largest first.
 
         Points are neighbours if they differ by one step along one coordinate; for an angle over a full revolution, the last
-        value is next to the first. :meth:`labels` gives the component of each point.
+        value is next to the first. :meth:`labels` gives the component of each point. Of kind ``"aspects"``, the components are
+        the aspects.
 
         Parameters
         ----------
@@ -1449,7 +1469,8 @@ class Sweep:
         """Which connected component each point belongs to, in the shape of the mask: 0 where the mask is False, 1 in the largest.
 
         This is like ``scipy.ndimage.label``, except for angles over a full revolution. Component ``i`` has
-        ``components()[i - 1]`` points; of components of equal size, the one with the first point comes first.
+        ``components()[i - 1]`` points; of components of equal size, the one with the first point comes first. Singular poses
+        of kind ``"aspects"`` are 0, too.
 
         Parameters
         ----------
@@ -1457,6 +1478,50 @@ class Sweep:
             As for :func:`sweep`.
         shards : int, optional
             As for :func:`sweep`.
+        """
+    def aspects(self, *, executor: _Executor | None = None, shards: int | None = None) -> list[Aspect]:
+        """The aspects, the largest first: connected parts of the poses that have no singularity.
+
+        :meth:`labels` gives the number of the aspect of each pose, 0 for one that is out of reach or singular.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor or callable, optional
+            As for :func:`sweep`: for the sweep; the aspects are found here.
+        shards : int, optional
+            As for :func:`sweep`.
+
+        Raises
+        ------
+        OpmError
+            The kind of the workspace is not ``"aspects"``.
+        """
+    def path(self, start: ArrayLike, goal: ArrayLike, *, duration: float = 10.0) -> NDArray[np.float64]:
+        """A path of the platform between two poses that passes no singularity, in the working mode of the sweep.
+
+        It is straight if that is possible, else it leads through the aspect that both poses are in, far from singularities.
+        :func:`trajectory` follows it: ``opm.trajectory(m, path[:, 1:], times=path[:, 0])``.
+
+        Parameters
+        ----------
+        start : sequence of float
+            The first pose, a value for each task coordinate.
+        goal : sequence of float
+            The last pose; angles may end full turns from it.
+        duration : float
+            Time that the path takes, seconds.
+
+        Returns
+        -------
+        numpy.ndarray
+            (n, 1 + number of task coordinates): the time of each pose, seconds, and its coordinates. The motion through the
+            poses, at rest at both ends, has been watched between them for singularities, limits of joints and reach.
+
+        Raises
+        ------
+        OpmError
+            There is no such path on this grid; the kind of the workspace is not ``"aspects"``; or a pose is out of reach,
+            beyond limits or singular.
         """
     def rejections(self) -> list[Rejection]:
         """What rejects the other poses of the grid: each leg that does not reach them, and each limit.
@@ -1667,6 +1732,7 @@ def sweep(
         * ``"grid"``: poses.
         * ``"constant-orientation"``, ``"orientation"``: poses, with each coordinate of the orientation or of the place held at
           one value.
+        * ``"aspects"``: poses in one working mode, divided into connected parts without a singularity (:meth:`Sweep.aspects`).
         * ``"reachable"``, ``"dexterous"``: places that are reached in any, or in every orientation of the grid.
         * ``"imaginary"``: orientations in which any place of the grid is reached: those that the imaginary joints follow from.
         * ``"upper"``: the upper section alone, by its task coordinates, with the ranges of the imaginary joints that it needs.

@@ -2,11 +2,12 @@
 
 use super::Sweep;
 use crate::arguments;
-use crate::error::wrong;
+use crate::error::{failed, wrong};
 use crate::html::digits;
 use crate::parts::Parts;
 use crate::pickle::{equal, frozen};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use opm_study::WorkspaceKind;
 use opm_workspace::boundary;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -103,7 +104,8 @@ impl Outline {
 
 #[pymethods]
 impl Sweep {
-    /// The boundary as closed polylines in the first two coordinates that have several values.
+    /// The boundary as closed polylines in the first two coordinates that have several values; of kind ``"aspects"``, that of
+    /// each aspect.
     ///
     /// Returns
     /// -------
@@ -136,7 +138,14 @@ impl Sweep {
         let set = Self::set(slf, Parts::new(executor, shards)?.as_ref())?;
         let axes = set.varying();
         let name = |number: usize| set.axes()[axes[number]].axis.name.clone();
-        let Some(outlines) = py.detach(|| boundary(&set)) else {
+        let outlines = match slf.get().workspace.kind() {
+            WorkspaceKind::Aspects => {
+                let aspects = Self::found(slf, None)?;
+                py.detach(|| aspects.boundary()).map_err(|error| failed(&error))?
+            }
+            _ => py.detach(|| boundary(&set)),
+        };
+        let Some(outlines) = outlines else {
             let several = axes.len();
             return Err(wrong(format!(
                 "{several} coordinates have several values, expected two, or a third one to slice by"

@@ -56,6 +56,8 @@ pub struct Cells {
     lines: Vec<Vec<[f64; 2]>>,
     /// Closed lines over the cells that stand out.
     inside: Vec<Vec<[f64; 2]>>,
+    /// Open lines over the cells that stand out.
+    curves: Vec<Vec<[f64; 2]>>,
 }
 
 /// The values that colour cells.
@@ -86,7 +88,16 @@ impl Cells {
         let cells = [x.count.div_ceil(together[0]), y.count.div_ceil(together[1])];
         let counts = vec![0; cells[0] * cells[1]];
         let values = CellValues::None;
-        Self { spacing: [x, y], together, cells, counts, values, lines: vec![], inside: vec![] }
+        Self {
+            spacing: [x, y],
+            together,
+            cells,
+            counts,
+            values,
+            lines: vec![],
+            inside: vec![],
+            curves: vec![],
+        }
     }
 
     /// Cells of which none was hit, and which will be coloured by the values of the hits.
@@ -130,6 +141,15 @@ impl Cells {
         (!self.is_coarse()).then(|| self.counts.iter().map(|&count| count > 0).collect())
     }
 
+    /// The class of each point of the grid, row by row, `None` where none was hit. There are no classes if several points
+    /// share a cell.
+    pub fn classes(&self) -> Option<Vec<Option<usize>>> {
+        let CellValues::Classes(classes) = &self.values else { return None };
+        let hits = self.counts.iter().zip(classes);
+        let class = |(&count, &class): (&u32, &usize)| (count > 0).then_some(class);
+        (!self.is_coarse()).then(|| hits.map(class).collect())
+    }
+
     /// Sets closed lines to be drawn over the cells: the boundary of what was hit, in the units of the axes.
     pub fn surround(&mut self, lines: Vec<Vec<[f64; 2]>>) {
         self.lines = lines;
@@ -138,6 +158,11 @@ impl Cells {
     /// Adds a closed line that stands out over the cells, in the units of the axes: a shape inside of what was hit.
     pub fn inscribe(&mut self, line: Vec<[f64; 2]>) {
         self.inside.push(line);
+    }
+
+    /// Adds lines that stand out over the cells, in the units of the axes. They are not closed.
+    pub fn trace(&mut self, lines: Vec<Vec<[f64; 2]>>) {
+        self.curves.extend(lines);
     }
 
     /// The edges of the cells that were hit: left and right, lower and upper; `None` if no cell was hit.
@@ -175,14 +200,21 @@ impl Cells {
             Paint::Values(..) | Paint::Classes(_) => vec![self.image(frame, hit, paint)],
         };
         // Two lines each, which are seen on every background.
-        for (lines, color, width) in [(&self.lines, INK, 1.1), (&self.inside, ALARM, 2.2)] {
+        let all = [
+            (&self.lines, INK, 1.1, true),
+            (&self.inside, ALARM, 2.2, true),
+            (&self.curves, ALARM, 1.6, false),
+        ];
+        for (lines, color, width, closed) in all {
             if lines.is_empty() {
                 continue;
             }
             let mut path = Path::default();
             for line in lines {
                 path.0.extend(Path::through(line.iter().map(|&[x, y]| frame.at(x, y))).0);
-                path.0.push(Step::Close);
+                if closed {
+                    path.0.push(Step::Close);
+                }
             }
             shapes.push(Shape::Line(path.clone(), Pen::new(WHITE, width + 1.5)));
             shapes.push(Shape::Line(path, Pen::new(color, width)));

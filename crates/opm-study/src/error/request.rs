@@ -132,6 +132,11 @@ pub enum RequestError {
         /// The kind.
         kind: WorkspaceKind,
     },
+    /// Aspects are requested, but the mechanism has fewer actuated joints than degrees of freedom.
+    Loose {
+        /// The kind.
+        kind: WorkspaceKind,
+    },
     /// A workspace of imaginary joints is requested, but the mechanism has no imaginary joints.
     NoImaginaryJoints {
         /// The kind.
@@ -264,6 +269,7 @@ impl RequestError {
                 RequestOption::Inscribed
             }
             Self::NoImaginaryJoints { .. }
+            | Self::Loose { .. }
             | Self::OneSubspace { .. }
             | Self::NoPart { .. }
             | Self::Dependent { .. }
@@ -324,8 +330,16 @@ impl RequestError {
                 format!("with {}: a section alone has no condition number", with(kind))
             }
             Self::SeveralModes { kind } => format!(
-                "with {}: the imaginary joints have other values in each mode; give one",
-                with(kind)
+                "with {}: {} in each mode; give one",
+                with(kind),
+                match kind {
+                    WorkspaceKind::Aspects => "there are other aspects",
+                    _ => "the imaginary joints have other values",
+                }
+            ),
+            Self::Loose { kind } => format!(
+                "{kind}: this mechanism has fewer actuated joints than degrees of freedom, so it is loose at \
+                 every pose; use grid"
             ),
             Self::NoImaginaryJoints { kind } => {
                 format!("with {}: this mechanism has no imaginary joints", with(kind))

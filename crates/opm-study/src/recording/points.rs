@@ -9,7 +9,7 @@ use opm_core::Quantity;
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Solution};
 use opm_core::nalgebra::Point3;
 use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
-use opm_workspace::{ConditionLimit, Conditioned, Count, Hits, Modes, Poses, Progress};
+use opm_workspace::{Aspects, ConditionLimit, Conditioned, Count, Hits, Modes, Poses, Progress};
 use std::sync::{Mutex, PoisonError};
 
 /// The values of the points in a recording of poses.
@@ -17,12 +17,24 @@ use std::sync::{Mutex, PoisonError};
 pub struct Cloud<'a> {
     workspace: &'a Workspace,
     shown: PointColumns,
+    aspects: Option<&'a Aspects>,
 }
 
 impl<'a> Cloud<'a> {
     /// The cloud of a workspace whose points are poses.
     pub fn new(workspace: &'a Workspace, shown: PointColumns) -> Self {
-        Self { workspace, shown }
+        Self { workspace, shown, aspects: None }
+    }
+
+    /// The same with the aspects of the poses, which only one kind of workspace has.
+    pub fn with_aspects(self, aspects: Option<&'a Aspects>) -> Self {
+        Self { aspects, ..self }
+    }
+
+    /// The number of the aspect that a pose is in; 0 if it is in none.
+    fn aspect(&self, pose: &[f64]) -> f64 {
+        let label = |aspects: &Aspects| aspects.label(aspects.nearest(pose));
+        f64::from(self.aspects.and_then(label).unwrap_or(0))
     }
 
     fn manipulator(&self) -> &'a Manipulator {
@@ -61,6 +73,7 @@ impl<'a> Cloud<'a> {
             | Column::Actuated(_)
             | Column::Tip(_)
             | Column::Share
+            | Column::Aspect
             | Column::Zero => 2,
         }
     }
@@ -100,6 +113,7 @@ impl<'a> Cloud<'a> {
             Column::Imaginary(_)
             | Column::Actuated(_)
             | Column::InverseCondition
+            | Column::Aspect
             | Column::Share => unreachable!("axes are task coordinates, or the platform's point"),
         });
         let scale = scale(&self.shown, self.measures());
@@ -135,6 +149,10 @@ impl<'a> Cloud<'a> {
             Column::Coordinate(number) => Some([axis(number).min, axis(number).max]),
             Column::Imaginary(number) => Some(count.imaginary[number].unwrap_or_default()),
             Column::Actuated(number) => self.limits(number),
+            Column::Aspect => {
+                let last = self.aspects.map_or(0, |aspects| aspects.list().len());
+                Some([1.0_f64.min(last as f64), last as f64])
+            }
             Column::InverseCondition | Column::Tip(_) | Column::Share | Column::Zero => None,
         };
         if let Some(range) = known {
@@ -391,6 +409,7 @@ impl<'a> Points<'a> {
                     unreachable!("Points::new has buffers for what columns ask for")
                 }
                 (Column::Zero, _) => 0.0,
+                (Column::Aspect, _) => self.cloud.aspect(pose),
                 (Column::Share, _) => unreachable!("poses have no share of orientations"),
             });
         }

@@ -23,8 +23,9 @@ const COLORS: [[u8; 3]; 7] = [
     [0xf0, 0xe4, 0x42],
 ];
 
-/// The colour of a cause. The next seven are darker; then they repeat.
-fn color(number: usize) -> [u8; 3] {
+/// The colour of a numbered class of points: a cause that rejects them, or the aspect that they are in. Number 0 are
+/// points of several or of none. After seven numbers the next seven are darker; then they repeat.
+pub fn class_color(number: usize) -> [u8; 3] {
     match number.checked_sub(1) {
         None => SEVERAL,
         Some(i) => {
@@ -88,7 +89,7 @@ impl Rejected<'_> {
         let layout =
             CloudLayout { scalars: scalar_names, color: CAUSE.to_owned(), ..layout.clone() };
         let known = rejections.rejections.len().min(MAX_CAUSES);
-        let colors: Vec<[u8; 3]> = (0..=known).map(color).collect();
+        let colors: Vec<[u8; 3]> = (0..=known).map(class_color).collect();
         let capacity = usize::try_from(rejected.div_ceil(every)).unwrap_or(usize::MAX);
         let mut points = RejectedPoints::new(&layout, capacity, &colors).map_err(&failed)?;
 
@@ -115,7 +116,8 @@ impl Rejected<'_> {
                 Column::Zero
                 | Column::Imaginary(_)
                 | Column::Actuated(_)
-                | Column::InverseCondition => 0.0,
+                | Column::InverseCondition
+                | Column::Aspect => 0.0,
             }));
             if !row.iter().all(|value| value.is_finite()) {
                 // Without its dependent coordinates, a pose does not say where the platform is.
@@ -134,7 +136,7 @@ impl Rejected<'_> {
         let causes = (0..=known).filter(|&number| seen[number]).map(|number| RejectedCause {
             number,
             text: text(number),
-            color: color(number),
+            color: class_color(number),
         });
         recorder.rejected(points, &causes.collect::<Vec<_>>(), every).map_err(failed)
     }

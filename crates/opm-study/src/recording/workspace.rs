@@ -153,7 +153,7 @@ impl WorkspaceRecording {
             return Ok(path);
         }
         let shown = PointColumns::of_poses(points, &workspace.grid);
-        let cloud = Cloud::new(workspace, shown);
+        let cloud = Cloud::new(workspace, shown).with_aspects(analysis.aspects.as_ref());
         let cloud = match format {
             Format::Mcap => cloud,
             Format::Table(format) => cloud.with_every_coordinate(format),

@@ -20,6 +20,8 @@ fn resolution(kind: WorkspaceKind, [place, orientation]: [usize; 2]) -> Option<R
         WorkspaceKind::Orientation | WorkspaceKind::Upper => {
             Some([1.0, share(2.5e5, orientation).min(501.0)])
         }
+        // Poses are measured one by one, which takes longer than to clip rows.
+        WorkspaceKind::Aspects => Some([share(1e5, place + orientation).min(501.0); 2]),
         WorkspaceKind::Imaginary => {
             Some([share(200.0, place), share(7e4, orientation).min(1001.0)])
         }

@@ -1,0 +1,175 @@
+//! `opm path`: a path between two poses without a singularity.
+
+use crate::args::{Format, Output, PathArgs};
+use crate::failure::Failure;
+use crate::load::{self, Loaded};
+use crate::output::{is_stdout, print_with};
+use crate::pose::GridAxis;
+use crate::progress::{interruptible, watch};
+use crate::target::Target;
+use crate::text::{self, Table, count, short};
+use crate::unitless;
+use crate::workspace::{Work, threads};
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::FileUnits;
+use opm_workspace::{AspectPath, Aspects, NoPath, aspect_at, find_path};
+use serde_json::{Map, Value, json};
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Number of poses of a path that are shown in text.
+const SHOWN: usize = 12;
+
+pub fn run(args: &PathArgs, output: &Output) -> Result<(), Failure> {
+    let printed = args.output.as_deref().is_some_and(is_stdout);
+    if printed && output.format == Format::Json {
+        let problem = "the CSV takes standard output; give it a file with --output";
+        return Err(Failure::flag("--format json", problem));
+    }
+    let file = args.output.as_deref().filter(|path| !is_stdout(path));
+    if let Some(path) = file {
+        ends_in_csv(path)?;
+    }
+    let loaded = load::open(&args.mechanism, output)?;
+    let manipulator = Arc::new(loaded.compile()?);
+    let mode = load::mode(&manipulator, &args.mode)?;
+    let ends = [("--from", &args.from), ("--to", &args.to)].map(|(flag, pose)| {
+        unitless::note_pose(output, flag, pose, &loaded, &manipulator);
+        pose.resolve_for(flag, &manipulator)
+    });
+    let [from, to] = ends;
+    let ends = [from?, to?];
+    let values = args.grid.iter().flat_map(GridAxis::ends);
+    unitless::note_ranges(output, "--grid", (&loaded, &manipulator), values);
+    if let Some(path) = file {
+        loaded.refuse_as_output(path, &[])?;
+    }
+    let target = file.map(Target::create).transpose()?;
+    let (progress, pool) = (interruptible()?, threads(args.threads)?);
+    let work = Work { output, pool: &pool, progress: &progress };
+    let aspects = work.aspects(&manipulator, mode, &args.grid, loaded.file.units)?;
+    let find = || {
+        let ends = ends.each_ref().map(|pose| &**pose);
+        find_path(&manipulator, mode, &aspects, ends, args.duration, &progress)
+    };
+    let found = match watch(output, "searching", None, || progress.done(), find) {
+        Err(NoPath::Cancelled(_)) => {
+            return Err(Failure::interrupted("interrupted while searching"));
+        }
+        Err(NoPath::End { end, problem }) => {
+            let flag = if end == "the start" { "--from" } else { "--to" };
+            return Err(Failure::flag(flag, format!("the pose is {problem}")));
+        }
+        found => found,
+    };
+    let labels = ends.each_ref().map(|pose| aspect_at(&manipulator, mode, &aspects, pose));
+    let answer =
+        Answer { loaded: &loaded, manipulator: &manipulator, aspects: &aspects, labels, found };
+    let path = match (&answer.found, &args.output) {
+        (Err(none), Some(_)) => {
+            return Err(Failure::work(format!("{}: no path: {none}", loaded.label)));
+        }
+        (Err(_), None) | (Ok(_), None) => return output.print(&answer.json(), answer.text()),
+        (Ok(path), Some(_)) => path,
+    };
+    let table = answer.table(path)?;
+    if printed {
+        return print_with(|out| out.write_all(&table));
+    }
+    if let (Some(target), Some(file)) = (target, file) {
+        target.commit(&table)?;
+        let poses = count(path.poses.len() as u64);
+        output
+            .note(format_args!("{}: {poses} poses, for `opm trajectory --motion`", file.display()));
+    }
+    output.print(&answer.json(), answer.text())
+}
+
+/// `opm trajectory` takes the kind of a motion from its ending.
+fn ends_in_csv(path: &Path) -> Result<(), Failure> {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
+        return Ok(());
+    }
+    let problem = format!("{}: expected a name that ends in .csv, or -", path.display());
+    Err(Failure::flag("--output", problem))
+}
+
+struct Answer<'a> {
+    loaded: &'a Loaded,
+    manipulator: &'a Manipulator,
+    aspects: &'a Aspects,
+    /// The aspects of both ends, where the grid tells.
+    labels: [Option<u32>; 2],
+    found: Result<AspectPath, NoPath>,
+}
+
+impl Answer<'_> {
+    /// The table of poses, as CSV.
+    fn table(&self, path: &AspectPath) -> Result<Vec<u8>, Failure> {
+        let names = self.manipulator.task_coordinates().iter().map(|c| c.name);
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let failed = |error: csv::Error| Failure::work(error.to_string());
+        writer.write_record(std::iter::once("t").chain(names)).map_err(failed)?;
+        for (time, pose) in path.times.iter().zip(&path.poses) {
+            writer.serialize((time, pose)).map_err(failed)?;
+        }
+        writer.into_inner().map_err(|error| Failure::stdout(io::Error::other(error.to_string())))
+    }
+
+    fn json(&self) -> Value {
+        let ends = json!({ "from": self.labels[0], "to": self.labels[1] });
+        let mut json = json!({
+            "joined": self.found.is_ok(),
+            "aspects": { "number": self.aspects.list().len(), "from": ends["from"], "to": ends["to"] },
+        });
+        match &self.found {
+            Err(none) => json["reason"] = none.to_string().into(),
+            Ok(AspectPath { times, poses, clearance }) => {
+                let column = |i: usize| poses.iter().map(|pose| pose[i]).collect::<Vec<f64>>();
+                let coordinates = self.manipulator.task_coordinates().iter().enumerate();
+                let poses: Map<String, Value> =
+                    coordinates.map(|(i, c)| (c.name.to_owned(), json!(column(i)))).collect();
+                json["clearance"] = (*clearance).into();
+                json["t"] = json!(times);
+                json["poses"] = poses.into();
+            }
+        }
+        json
+    }
+
+    fn text(&self) -> String {
+        let name = &self.manipulator.mechanism().name;
+        let AspectPath { times, poses, clearance } = match &self.found {
+            Err(none) => return format!("{name}: no path: {none}\n"),
+            Ok(path) => path,
+        };
+        let aspect = match self.labels {
+            [Some(a), Some(b)] if a == b => format!(" in aspect {a}"),
+            _ => String::new(),
+        };
+        let number = count(poses.len() as u64);
+        let mut shown = Table::new(self.headers(self.loaded.file.units));
+        let last = poses.len() - 1;
+        let parts = SHOWN.min(last.max(1));
+        let mut numbers: Vec<usize> = (0..=parts).map(|part| part * last / parts).collect();
+        numbers.dedup();
+        for i in numbers {
+            let coordinates = self.manipulator.task_coordinates().iter().zip(&poses[i]);
+            let units = self.loaded.file.units;
+            let pose = coordinates.map(|(c, &value)| text::number(value, c.quantity, units));
+            shown.row(std::iter::once(short(times[i])).chain(pose));
+        }
+        format!(
+            "{name}: a path without a singularity{aspect}, {number} poses\n\n{shown}\nsmallest measure of \
+             singularity {}\n",
+            short(*clearance)
+        )
+    }
+
+    fn headers(&self, units: FileUnits) -> Vec<String> {
+        let coordinates = self.manipulator.task_coordinates().iter();
+        let names = coordinates.map(|c| text::header(c.name, c.quantity, units));
+        std::iter::once(">t [s]".to_owned()).chain(names).collect()
+    }
+}
