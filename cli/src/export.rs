@@ -7,7 +7,7 @@ use crate::motion::{self, LoadedMotion};
 use crate::output::{is_stdout, print_with};
 use crate::target::Target;
 use crate::text::plural;
-use opm_export::{Density, Keyframes, MjcfOptions, MjcfReference, NotPositive, Source, mjcf, urdf};
+use opm_export::{Density, Keyframes, MjcfOptions, MjcfReference, OutOfRange, Source, mjcf, urdf};
 use opm_study::MotionRequest;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub fn run(args: &ExportArgs, output: &Output) -> Result<(), Failure> {
 fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
     let options = Density::new(args.density)
         .and_then(|density| MjcfOptions::new(density, args.time_step))
-        .map_err(not_positive)?;
+        .map_err(out_of_range)?;
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
     // MuJoCo takes the format of a file from its ending.
     path.map_or(Ok(()), |path| ends_in(path, "xml"))?;
@@ -55,7 +55,7 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
 }
 
 fn run_urdf(args: &UrdfArgs, output: &Output) -> Result<(), Failure> {
-    let density = Density::new(args.density).map_err(not_positive)?;
+    let density = Density::new(args.density).map_err(out_of_range)?;
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
     path.map_or(Ok(()), |path| ends_in(path, "urdf"))?;
     let loaded = load::open(&args.mechanism, output)?;
@@ -119,7 +119,7 @@ fn motion_path(motion: &LoadedMotion) -> impl Iterator<Item = &Path> {
     motion.path.as_deref().into_iter()
 }
 
-fn not_positive(wrong: NotPositive) -> Failure {
+fn out_of_range(wrong: OutOfRange) -> Failure {
     Failure::flag(&format!("--{}", wrong.option.replace('_', "-")), wrong)
 }
 

@@ -5,13 +5,14 @@ use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Number;
-use crate::text::{self, Table, short};
+use crate::text::{self, Table, reason, short};
 use crate::transform;
 use crate::unitless;
 use nalgebra::{DVector, Matrix6xX};
 use opm_core::Quantity;
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
+use opm_core::mechanism::file::FileUnits;
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, JointMotion, Measures, Singularities, VelocityError,
 };
@@ -78,17 +79,22 @@ impl Query<'_> {
         ] {
             json.insert(key.into(), Value::Null);
         }
-        let names = at.unreachable().iter().map(|u| &*legs[u.leg].name);
-        json.insert("unreachable".into(), names.collect::<Vec<_>>().into());
+        if !self.manipulator.dependent_coordinates().is_empty() {
+            json.insert("dependent_rates".into(), Value::Null);
+        }
+        let unreachable = at.unreachable().iter().map(|missed| {
+            json!({ "leg": legs[missed.leg].name, "reason": reason(missed, FileUnits::SI) })
+        });
+        json.insert("unreachable".into(), unreachable.collect::<Vec<_>>().into());
         json.into()
     }
 
     fn out_of_reach_text(&self, at: &Solution) -> String {
         let mut text = self.title();
         let _ = writeln!(text, "out of reach in this mode");
-        for unreachable in at.unreachable() {
-            let leg = &self.manipulator.mechanism().legs[unreachable.leg].name;
-            let _ = writeln!(text, "  {leg}: {} section out of reach", unreachable.section);
+        for missed in at.unreachable() {
+            let leg = &self.manipulator.mechanism().legs[missed.leg].name;
+            let _ = writeln!(text, "  {leg}: {}", reason(missed, self.loaded.file.units));
         }
         text
     }

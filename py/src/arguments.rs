@@ -4,7 +4,7 @@
 use crate::error::wrong;
 use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
 use opm_core::mechanism::examples;
-use opm_export::{Density, MjcfOptions, NotPositive};
+use opm_export::{Density, MjcfOptions, OutOfRange};
 use opm_workspace::MOST_THREADS;
 use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -52,15 +52,15 @@ pub fn threads(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
 /// The arguments `density` and `time_step`.
 pub fn mjcf_options(density: Option<f64>, time_step: f64) -> PyResult<MjcfOptions> {
     let density = self::density(density)?;
-    MjcfOptions::new(density, time_step).map_err(not_positive)
+    MjcfOptions::new(density, time_step).map_err(out_of_range)
 }
 
 /// The argument `density`.
 pub fn density(given: Option<f64>) -> PyResult<Density> {
-    Density::new(given).map_err(not_positive)
+    Density::new(given).map_err(out_of_range)
 }
 
-fn not_positive(error: NotPositive) -> PyErr {
+fn out_of_range(error: OutOfRange) -> PyErr {
     wrong(format!("{} is {error}", error.option))
 }
 

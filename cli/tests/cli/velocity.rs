@@ -213,9 +213,15 @@ fn out_of_reach_is_an_answer() {
     for key in ["joint_rates", "imaginary_rates", "jacobian", "singularity"] {
         assert!(found[key].is_null(), "{key}");
     }
-    assert_eq!(found["unreachable"], serde_json::json!(["leg1", "leg2", "leg4"]));
+    let solved = opm(&["ik", PLANO, "--pose", "x=1", "--format", "json"]).json();
+    assert_eq!(found["unreachable"], solved["unreachable"]);
+    assert_eq!(found["unreachable"][2]["leg"], "leg4");
     let text = opm(&["velocity", PLANO, "--pose", "x=1"]);
-    assert!(text.text().contains("leg4: lower section out of reach"), "{}", text.stdout);
+    assert!(
+        text.text().contains("leg4: lower section out of reach by 802.809 mm"),
+        "{}",
+        text.stdout
+    );
 }
 
 #[test]

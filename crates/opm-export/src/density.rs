@@ -6,14 +6,21 @@ use opm_core::mechanism::Mechanism;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Density(Option<f64>);
 
-/// An option is not a positive number.
+/// The densities that a body may have, kilograms per cubic metre: from less than air to more than any metal.
+const DENSITIES: [f64; 2] = [1e-3, 1e6];
+
+/// An option is outside the range of what makes sense.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{value}, expected a positive number")]
-pub struct NotPositive {
+#[error("{value}, expected a number from {least} to {most}")]
+pub struct OutOfRange {
     /// The option: `density` or `time_step`.
     pub option: &'static str,
     /// Its value.
     pub value: f64,
+    /// The least value that it may have.
+    pub least: f64,
+    /// The greatest value that it may have.
+    pub most: f64,
 }
 
 impl Density {
@@ -23,9 +30,9 @@ impl Density {
     /// A density in kilograms per cubic metre, instead of that of the mechanism if it is given.
     ///
     /// # Errors
-    /// It is not a positive number.
-    pub fn new(given: Option<f64>) -> Result<Self, NotPositive> {
-        given.map_or(Ok(()), |value| positive("density", value)).map(|()| Self(given))
+    /// It is not a number from 0.001 to 1,000,000.
+    pub fn new(given: Option<f64>) -> Result<Self, OutOfRange> {
+        given.map_or(Ok(()), |value| check("density", value, DENSITIES)).map(|()| Self(given))
     }
 
     /// Kilograms per cubic metre.
@@ -34,10 +41,14 @@ impl Density {
     }
 }
 
-/// Checks that an option is a positive number.
-pub(crate) fn positive(option: &'static str, value: f64) -> Result<(), NotPositive> {
-    match value > 0.0 && value.is_finite() {
+/// Checks that an option is in its range.
+pub(crate) fn check(
+    option: &'static str,
+    value: f64,
+    [least, most]: [f64; 2],
+) -> Result<(), OutOfRange> {
+    match (least..=most).contains(&value) {
         true => Ok(()),
-        false => Err(NotPositive { option, value }),
+        false => Err(OutOfRange { option, value, least, most }),
     }
 }

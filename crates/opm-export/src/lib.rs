@@ -32,7 +32,7 @@ mod page;
 mod urdf;
 mod xml;
 
-pub use density::{Density, NotPositive};
+pub use density::{Density, OutOfRange};
 pub use keyframe::{Keyframe, Keyframes, Source};
 pub use mjcf::{MjcfOptions, MjcfReference, ReferenceError, mjcf};
 pub use page::explorer;

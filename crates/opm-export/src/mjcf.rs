@@ -15,7 +15,7 @@ mod servo;
 
 pub use reference::{MjcfReference, ReferenceError};
 
-use crate::density::{Density, NotPositive, positive};
+use crate::density::{Density, OutOfRange, check};
 use crate::keyframe::{Keyframes, Source};
 use crate::mass::{self, Mass};
 use crate::xml::{Element, number};
@@ -28,6 +28,8 @@ use std::ops::Range;
 
 /// How stiff a constraint is: the share of the force of a rigid one. MuJoCo refuses 1.
 const SOLIMP: [f64; 3] = [0.9999, 0.9999, 0.001];
+/// The time steps of a simulation, seconds: shorter or longer ones are no use.
+const TIME_STEPS: [f64; 2] = [1e-9, 1.0];
 /// The time in which a gap closes, in time steps: MuJoCo takes 2 as the least that is stable.
 const SOLREF_STEPS: f64 = 2.0;
 
@@ -45,9 +47,9 @@ impl MjcfOptions {
     /// The density of bodies, and the time step of a simulation, seconds, on which the stiffness of the constraints depends.
     ///
     /// # Errors
-    /// The time step is not a positive number.
-    pub fn new(density: Density, time_step: f64) -> Result<Self, NotPositive> {
-        positive("time_step", time_step).map(|()| Self { density, time_step })
+    /// The time step is not a number from a nanosecond to a second.
+    pub fn new(density: Density, time_step: f64) -> Result<Self, OutOfRange> {
+        check("time_step", time_step, TIME_STEPS).map(|()| Self { density, time_step })
     }
 
     /// The time step of a simulation, seconds.

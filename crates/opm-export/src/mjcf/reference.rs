@@ -9,7 +9,9 @@ use super::servo::LEAD;
 use crate::keyframe::{Keyframe, Keyframes};
 use crate::xml::number;
 use opm_core::Manipulator;
-use opm_core::trajectory::{Trajectory, TrajectoryError};
+use opm_core::trajectory::{
+    Change, Gauge, Trajectory, TrajectoryError, Violation, ViolationReport,
+};
 use std::fmt::Write;
 
 /// The largest number of rows: more than a quarter of an hour at a time step of a millisecond.
@@ -40,6 +42,12 @@ pub enum ReferenceError {
         /// What is the matter with it.
         what: &'static str,
     },
+    /// A joint passes a limit, where MuJoCo would hold it.
+    #[error("{violation}, expected a motion within all limits")]
+    PastLimit {
+        /// The joint, the limit, by how much it is passed, and when.
+        violation: String,
+    },
     /// The motion has too many time steps.
     #[error(
         "{rows} time steps, expected at most {MOST_ROWS}: a shorter motion, or a longer time step"
@@ -63,7 +71,7 @@ impl MjcfReference {
             return Err(ReferenceError::Long { rows: trajectory.samples() });
         }
         let mechanism = manipulator.mechanism();
-        let (mut rows, mut start) = (Vec::new(), None);
+        let (mut rows, mut start, mut ended) = (Vec::new(), None, Vec::new());
         while trajectory.advance()? {
             let sample = trajectory.sample();
             let stuck = |leg: usize, what| ReferenceError::Unfollowed {
@@ -85,6 +93,15 @@ impl MjcfReference {
             rows.extend(joint_values(mechanism, joints).positions);
             rows.extend(joint_values(mechanism, &led).controls);
             start.get_or_insert_with(|| joints.to_vec());
+            ended.extend(trajectory.changes().iter().filter_map(|change| match change {
+                Change::Ends(violation) => Some(*violation),
+                Change::Begins(_) => None,
+            }));
+        }
+        let past = |violation: &&Violation| matches!(violation.gauge, Gauge::Limit { .. });
+        if let Some(violation) = ended.iter().chain(trajectory.open()).find(past) {
+            let violation = ViolationReport::new(violation, manipulator).si();
+            return Err(ReferenceError::PastLimit { violation });
         }
         let columns = columns(mechanism).map(|column| match column {
             Column::Position(name) => format!("qpos.{name}"),
