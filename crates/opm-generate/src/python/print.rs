@@ -301,7 +301,13 @@ impl Printer<'_> {
         }
     }
 
-    fn branch(&mut self, place: &mut Place, test: &Expr, then: &[Statement], otherwise: &[Statement]) {
+    fn branch(
+        &mut self,
+        place: &mut Place,
+        test: &Expr,
+        then: &[Statement],
+        otherwise: &[Statement],
+    ) {
         let continues = matches!(then.last(), Some(Statement::Continue));
         let test_text = self.expr(test);
         // One statement that returns is told in one line.

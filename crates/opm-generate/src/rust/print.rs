@@ -2,8 +2,8 @@
 
 use crate::text::{camel, commented, literal};
 use crate::tree::{
-    BUILT_IN, Code, Expr, Function, Node, Op, Parameter, Pass, Statement, Struct, Type, Value, flow,
-    visit,
+    BUILT_IN, Code, Expr, Function, Node, Op, Parameter, Pass, Statement, Struct, Type, Value,
+    flow, visit,
 };
 use std::fmt::Write;
 
@@ -107,7 +107,11 @@ fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
     let space = "    ".repeat(depth + 1);
     match (of, value_of) {
         (_, Value::Number(number)) if number.is_infinite() => {
-            if *number > 0.0 { "Real::INFINITY".into() } else { "Real::NEG_INFINITY".into() }
+            if *number > 0.0 {
+                "Real::INFINITY".into()
+            } else {
+                "Real::NEG_INFINITY".into()
+            }
         }
         (_, Value::Number(number)) => format!("{:?}", number + 0.0),
         (Type::Array(of, _), Value::List(parts)) => {
@@ -130,7 +134,11 @@ fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
                 .map(|(m, part)| format!("{}: {}", m.name, value(code, &m.kind, part, depth + 1)))
                 .collect();
             match depth {
-                0 => format!("{} {{\n{space}{},\n}}", camel(name), parts.join(&format!(",\n{space}"))),
+                0 => format!(
+                    "{} {{\n{space}{},\n}}",
+                    camel(name),
+                    parts.join(&format!(",\n{space}"))
+                ),
                 _ => format!("{} {{ {} }}", camel(name), parts.join(", ")),
             }
         }
@@ -158,7 +166,8 @@ impl<'a> Printer<'a> {
 
     fn function(&self) -> String {
         let function = &self.function;
-        let parameters: Vec<String> = function.parameters.iter().map(|p| self.parameter(p)).collect();
+        let parameters: Vec<String> =
+            function.parameters.iter().map(|p| self.parameter(p)).collect();
         let result = match function.result {
             Type::Void => String::new(),
             ref result => format!(" -> {}", kind(result)),
@@ -168,7 +177,8 @@ impl<'a> Printer<'a> {
         if parameters.len() > 7 {
             text += "#[allow(clippy::too_many_arguments)]\n";
         }
-        let _ = writeln!(text, "{public}fn {}({}){result} {{", function.name, parameters.join(", "));
+        let _ =
+            writeln!(text, "{public}fn {}({}){result} {{", function.name, parameters.join(", "));
         let last = function.body.len().saturating_sub(1);
         for (number, statement) in function.body.iter().enumerate() {
             match statement {
@@ -229,14 +239,21 @@ impl<'a> Printer<'a> {
             Statement::For { name, from, to, test, body, .. } => {
                 let used = body.iter().any(|s| visit::mentions(s, name));
                 let counter = if used { name } else { "_" };
-                let _ =
-                    writeln!(text, "{space}for {counter} in {}..{} {{", self.expr(from), self.expr(to));
+                let _ = writeln!(
+                    text,
+                    "{space}for {counter} in {}..{} {{",
+                    self.expr(from),
+                    self.expr(to)
+                );
                 if let Some(test) = test {
                     let test = match &test.node {
                         Node::Not(of) => self.expr(of),
                         _ => format!("!({})", self.expr(test)),
                     };
-                    let _ = writeln!(text, "{space}    if {test} {{\n{space}        break;\n{space}    }}");
+                    let _ = writeln!(
+                        text,
+                        "{space}    if {test} {{\n{space}        break;\n{space}    }}"
+                    );
                 }
                 self.block(body, depth + 1, text);
                 writeln!(text, "{space}}}")
@@ -253,7 +270,13 @@ impl<'a> Printer<'a> {
     }
 
     /// A declaration without `let`.
-    fn declaration(&self, name: &str, of: &Type, init: Option<&Expr>, rest: &[Statement]) -> String {
+    fn declaration(
+        &self,
+        name: &str,
+        of: &Type,
+        init: Option<&Expr>,
+        rest: &[Statement],
+    ) -> String {
         let changed = |declared: &str| match flow::is_assigned(rest, name) {
             true => format!("mut {declared}"),
             false => declared.to_owned(),
@@ -311,9 +334,7 @@ impl<'a> Printer<'a> {
                 _ => (format!("*{name}"), PREFIX),
             },
             Node::Member(of, name) => (format!("{}.{name}", self.base(of)), WHOLE),
-            Node::Index(of, index) => {
-                (format!("{}[{}]", self.base(of), self.index(index)), WHOLE)
-            }
+            Node::Index(of, index) => (format!("{}[{}]", self.base(of), self.index(index)), WHOLE),
             Node::Negative(of) => (format!("-{}", self.inside(of, PREFIX)), PREFIX),
             Node::Not(of) => (format!("!{}", self.inside(of, PREFIX)), PREFIX),
             Node::Binary(op, a, b) => {
