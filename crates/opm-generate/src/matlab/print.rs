@@ -23,12 +23,12 @@ fn strength(op: Op) -> u8 {
 const PREFIX: u8 = 6;
 const WHOLE: u8 = 7;
 
-/// Whether an argument is given back alone: numbers that a function of the interface writes.
+/// Whether an argument is given back alone: it has no value before, or a function of the interface writes it.
 fn is_output(function: &Function, p: &Parameter) -> bool {
     p.pass == Pass::Write
         && match p.kind.is_array() {
             true => function.public && p.name != "pose",
-            false => !is_kept(function, p),
+            false => function.public || !is_kept(function, p),
         }
 }
 
