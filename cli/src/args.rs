@@ -14,7 +14,7 @@ mod workspace;
 pub use convert::ConvertArgs;
 pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
-pub use generate::{CArgs, GenerateArgs, Language};
+pub use generate::{CodeArgs, GenerateArgs, Language};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use path::PathArgs;

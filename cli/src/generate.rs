@@ -27,8 +27,7 @@ fn write(
     let manipulator = loaded.compile()?;
     let code = generate(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
     let folder = &args.output;
-    let files: Vec<_> =
-        code.files.iter().map(|(name, text)| (folder.join(name), text)).collect();
+    let files: Vec<_> = code.files.iter().map(|(name, text)| (folder.join(name), text)).collect();
     fs::create_dir_all(folder).map_err(|error| Failure::at(folder.display(), error))?;
     for (path, _) in &files {
         if let Some(inner) = path.parent() {

@@ -15,6 +15,7 @@ mod error;
 mod explorer;
 mod export;
 mod forward;
+mod generate;
 mod html;
 mod interrupt;
 mod joints;

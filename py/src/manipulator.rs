@@ -19,7 +19,6 @@ use opm_core::task;
 use opm_export::{Keyframes, mjcf};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
-use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -441,27 +440,6 @@ impl Manipulator {
     fn to_mjcf(&self, py: Python<'_>, density: Option<f64>, time_step: f64) -> PyResult<String> {
         let options = mjcf_options(density, time_step)?;
         Ok(py.detach(|| mjcf(&Keyframes::of_manipulator(&self.inner), &options)))
-    }
-
-    /// The closed-form kinematics as C99 for a controller: the texts of the files, by name.
-    ///
-    /// ``NAME.h`` and ``NAME.c`` are the code, which depends on ``math.h`` alone; NAME is the mechanism's name with ``_`` for
-    /// what a name of C cannot have. ``NAME_test.c`` compares the code with the poses in ``NAME_golden.h``, and
-    /// ``CMakeLists.txt`` builds both. ``NAME_linuxcnc.c`` is a kinematics module for LinuxCNC. They are the files that
-    /// ``opm generate c`` writes.
-    ///
-    /// Returns
-    /// -------
-    /// dict
-    ///     The text of each file.
-    ///
-    /// Raises
-    /// ------
-    /// OpmError
-    ///     The mechanism has more than 32 two-valued choices.
-    fn to_c(&self, py: Python<'_>) -> PyResult<BTreeMap<String, String>> {
-        let code = py.detach(|| opm_generate::c(&self.inner)).map_err(|error| failed(&error))?;
-        Ok(code.files().into_iter().map(|(name, text)| (name, text.to_owned())).collect())
     }
 
     /// A page that shows the mechanism and its workspace in a browser, or as the value of a cell in a notebook.

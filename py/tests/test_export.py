@@ -1,5 +1,6 @@
 """Models and code for other programs: what MuJoCo makes of models is tested in tests/python, and code with its crate."""
 
+import importlib
 import pickle
 import subprocess
 import sys
@@ -85,12 +86,28 @@ def test_numbers_that_are_not_positive_are_refused(option, value):
             mechanism.to_mjcf(**{option: value})
 
 
-def test_code_is_that_of_the_command(tmp_path):
+@pytest.mark.parametrize("language", ["c", "rust", "python", "matlab"])
+def test_code_is_that_of_the_command(language, tmp_path):
     mechanism = opm.examples.plano_spherical()
-    command = [sys.executable, "-m", "opm_kinematics", "generate", "c", mechanism.name, "-q", "-o", tmp_path]
+    command = [sys.executable, "-m", "opm_kinematics", "generate", language, mechanism.name, "-q", "-o", tmp_path]
     subprocess.run(command, check=True)
-    assert mechanism.to_c() == {path.name: path.read_text() for path in tmp_path.iterdir()}
-    assert "int plano_spherical_5dof_inverse(" in mechanism.to_c()["plano_spherical_5dof.h"]
+    files = [path for path in tmp_path.rglob("*") if path.is_file()]
+    code = getattr(mechanism, f"to_{language}")()
+    assert code == {path.relative_to(tmp_path).as_posix(): path.read_text() for path in files}
+
+
+def test_generated_python_is_opm(tmp_path, monkeypatch):
+    mechanism = opm.examples.plano_spherical()
+    for name, text in mechanism.to_python().items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    code = importlib.import_module("plano_spherical_5dof")
+    poses = np.random.default_rng(0).uniform(-0.1, 0.1, (500, code.COORDINATES))
+    expected, found = mechanism.inverse(poses), code.inverse(poses)
+    assert expected.reachable.any()
+    np.testing.assert_array_equal(found.status == 0, expected.reachable)
+    joints = expected.joints[expected.reachable]
+    np.testing.assert_allclose(found.joints[expected.reachable], joints, rtol=0, atol=1e-11)
 
 
 def test_a_page_is_that_of_the_command(tmp_path):

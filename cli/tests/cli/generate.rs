@@ -1,4 +1,4 @@
-//! `opm generate c`: the files that are written, and what is told of wrong input. What the code computes is tested with its
+//! `opm generate`: the files that are written, and what is told of wrong input. What the code computes is tested with its
 //! crate.
 
 use crate::run::{Folder, opm, opm_reading};
@@ -35,6 +35,32 @@ fn six_files_are_written_and_named() {
     let mechanism = opm(&["examples", "five-bar"]).stdout;
     opm_reading(&mechanism, &["generate", "c", "-", "-q", "-o", &into]).text();
     assert_eq!(folder.read("deep/controller/five_bar.c"), source);
+}
+
+/// Every language has its files, in folders of their own.
+#[test]
+fn packages_are_written_and_named() {
+    let folder = Folder::new();
+    let expected = [
+        (
+            "rust",
+            vec!["Cargo.toml", "src/kinematics.rs", "src/lib.rs", "src/math.rs", "tests/golden.rs"],
+        ),
+        ("python", vec!["five_bar.py", "pyproject.toml", "test_five_bar.py"]),
+        ("matlab", vec!["+five_bar/inverse.m", "+five_bar/default.m", "five_bar_test.m"]),
+    ];
+    for (language, files) in expected {
+        let into = folder.arg(language);
+        let run = opm(&["generate", language, "five-bar", "-o", &into]);
+        assert_eq!(run.text(), "");
+        for file in files {
+            assert!(run.stderr.contains(file), "{}", run.stderr);
+            assert!(!folder.read(&format!("{language}/{file}")).is_empty());
+        }
+        opm(&["generate", language, "five-bar"]).fails(2, &["--output"]);
+        let refused = ["generate", language, "bennett-plano-spherical-6r", "-o", &into];
+        opm(&refused).fails_with_one_line(1, &["leg1"]);
+    }
 }
 
 /// A parameter changes the geometry and the poses, and no function.

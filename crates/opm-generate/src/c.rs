@@ -424,4 +424,3 @@ impl<'a> Writer<'a> {
         Given::Value
     }
 }
-pub(crate) fn dump(m: &Manipulator) -> String { Writer::new(m).unwrap().files("NAME").concat() }

@@ -2,7 +2,7 @@
 //!
 //! opm compiles a mechanism to closed forms at run time. A controller has one mechanism, and no room for a compiler: for
 //! it, [`c()`] writes the closed forms of that mechanism as C99, a few hundred lines with the field's names, without heap
-//! and global variables.
+//! and global variables. [`rust()`], [`python()`] and [`matlab()`] write the same in other languages, from one description.
 //!
 //! ```
 //! let manipulator = opm_core::Manipulator::example("plano-spherical-5dof")?;
@@ -68,5 +68,3 @@ pub enum GenerateError {
     #[error("the closed forms cannot be written in this language, which is a defect of opm: {0}")]
     Unread(String),
 }
-#[doc(hidden)]
-pub fn text(m: &opm_core::Manipulator) -> String { c::dump(m) }

@@ -99,7 +99,8 @@ fn with_needed(code: &Code, function: &Function, head: &str) -> String {
     }
     for one in code.constants.iter().filter(|one| constants.contains(&one.name)) {
         let comment = commented(&one.comment, "% ", "    ");
-        let _ = write!(text, "\nfunction x = {}()\n{comment}    x = {};\nend\n", one.name, one.double);
+        let _ =
+            write!(text, "\nfunction x = {}()\n{comment}    x = {};\nend\n", one.name, one.double);
     }
     let entries = code.enums.iter().flat_map(|names| &names.entries);
     for entry in entries.filter(|entry| constants.contains(&entry.name)) {

@@ -107,12 +107,17 @@ fn structure(one: &Struct) -> String {
 fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
     match (of, value_of) {
         (_, Value::Number(number)) if number.is_infinite() => {
-            if *number > 0.0 { "np.inf".into() } else { "-np.inf".into() }
+            if *number > 0.0 {
+                "np.inf".into()
+            } else {
+                "-np.inf".into()
+            }
         }
         (_, Value::Number(number)) => format!("{:?}", number + 0.0),
         (Type::Array(of, _), Value::List(parts)) => {
             let long = matches!(**of, Type::Struct(_));
-            let space = if long { format!("\n{}", "    ".repeat(depth + 1)) } else { String::new() };
+            let space =
+                if long { format!("\n{}", "    ".repeat(depth + 1)) } else { String::new() };
             let parts: Vec<String> = parts
                 .iter()
                 .map(|part| format!("{space}{},", value(code, of, part, depth + 1)))

@@ -40,7 +40,8 @@ pub fn rust(manipulator: &Manipulator) -> Result<Package, GenerateError> {
 
 fn kinematics(code: &Code) -> String {
     let text = print::module(code);
-    let functions = ["abs", "acos", "asin", "atan2", "ceil", "cos", "max", "min", "round", "sin", "sqrt"];
+    let functions =
+        ["abs", "acos", "asin", "atan2", "ceil", "cos", "max", "min", "round", "sin", "sqrt"];
     let mut used: Vec<&str> = functions
         .into_iter()
         .filter(|name| {

@@ -127,13 +127,31 @@ pub enum Pass {
 #[derive(Clone, Debug)]
 pub enum Statement {
     Comment(String),
-    Declare { name: String, kind: Type, init: Option<Expr> },
+    Declare {
+        name: String,
+        kind: Type,
+        init: Option<Expr>,
+    },
     /// `place = value`, or `place op= value`.
-    Assign { place: Expr, op: Option<Op>, value: Expr },
+    Assign {
+        place: Expr,
+        op: Option<Op>,
+        value: Expr,
+    },
     Call(Expr),
-    If { test: Expr, then: Vec<Statement>, otherwise: Vec<Statement> },
+    If {
+        test: Expr,
+        then: Vec<Statement>,
+        otherwise: Vec<Statement>,
+    },
     /// `for (i = from; i < to && test; ++i)`
-    For { name: String, from: Expr, to: Expr, test: Option<Expr>, body: Vec<Statement> },
+    For {
+        name: String,
+        from: Expr,
+        to: Expr,
+        test: Option<Expr>,
+        body: Vec<Statement>,
+    },
     Block(Vec<Statement>),
     Return(Option<Expr>),
     Continue,

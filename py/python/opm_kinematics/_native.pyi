@@ -781,6 +781,56 @@ class Manipulator:
         OpmError
             The mechanism has more than 32 two-valued choices.
         """
+    def to_rust(self) -> dict[str, str]:
+        """The closed-form kinematics as a package of Rust: the texts of the files, by name.
+
+        The package has no allocation and needs no standard library. ``tests/golden.rs`` compares it with poses that opm
+        solved. They are the files that ``opm generate rust`` writes.
+
+        Returns
+        -------
+        dict
+            The text of each file; names have ``/`` between folders.
+
+        Raises
+        ------
+        OpmError
+            The mechanism has more than 32 two-valued choices.
+        """
+    def to_python(self) -> dict[str, str]:
+        """The closed-form kinematics as a module of Python: the texts of the files, by name.
+
+        ``NAME.py`` needs NumPy alone and solves arrays of poses at once; NAME is the mechanism's name with ``_`` for what a
+        name cannot have. ``test_NAME.py`` compares it with poses that opm solved. They are the files that
+        ``opm generate python`` writes.
+
+        Returns
+        -------
+        dict
+            The text of each file.
+
+        Raises
+        ------
+        OpmError
+            The mechanism has more than 32 two-valued choices.
+        """
+    def to_matlab(self) -> dict[str, str]:
+        """The closed-form kinematics as a package of MATLAB: the texts of the files, by name.
+
+        The package ``+NAME`` has a file for each function, which needs no other file; NAME is the mechanism's name with ``_``
+        for what a name cannot have. ``NAME_test.m`` compares it with poses that opm solved. They are the files that
+        ``opm generate matlab`` writes.
+
+        Returns
+        -------
+        dict
+            The text of each file; names have ``/`` between folders.
+
+        Raises
+        ------
+        OpmError
+            The mechanism has more than 32 two-valued choices.
+        """
     def explore(self) -> Explorer:
         """A page that shows the mechanism and its workspace in a browser, or as the value of a cell in a notebook.
 

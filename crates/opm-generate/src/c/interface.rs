@@ -312,8 +312,11 @@ impl Writer<'_> {
         body += &self.prelude(&format!("{calls}{rise}"), &complete);
         let _ = writeln!(body, "    body = {};", self.body_of(Section::Lower, "v"));
         if upper {
-            let _ =
-                writeln!(body, "    body = NAME_body_product(body, {});", self.body_of(Section::Upper, "b"));
+            let _ = writeln!(
+                body,
+                "    body = NAME_body_product(body, {});",
+                self.body_of(Section::Upper, "b")
+            );
         }
         match self.forms.height.map(|height| height.section) {
             None => {}

@@ -68,9 +68,8 @@ impl Writer<'_> {
         if let Some(up) = height.map(up) {
             let _ = writeln!(body, "        velocity = NAME_add(velocity, t[i].rise, {up});");
         }
-        for (place, part) in ["w.x", "w.y", "w.z", "velocity.x", "velocity.y", "velocity.z"]
-            .into_iter()
-            .enumerate()
+        for (place, part) in
+            ["w.x", "w.y", "w.z", "velocity.x", "velocity.y", "velocity.z"].into_iter().enumerate()
         {
             let _ = writeln!(body, "        {output}[{} + i] = {part};", place * count);
         }
@@ -97,7 +96,8 @@ impl Writer<'_> {
         } else {
             text += "    before = g->platform;\n";
         }
-        text += "    point = NAME_add(lower.translation, 1, NAME_rotated(lower.rotation, before));\n";
+        text +=
+            "    point = NAME_add(lower.translation, 1, NAME_rotated(lower.rotation, before));\n";
         if let Some(up) = height.map(up) {
             let _ = writeln!(text, "    point = NAME_add(point, rise, {up});");
         }

@@ -23,12 +23,12 @@ fn strength(op: Op) -> u8 {
 const PREFIX: u8 = 6;
 const WHOLE: u8 = 7;
 
-/// Whether an argument is given back alone: numbers that a function of the interface writes.
+/// Whether an argument is given back alone: it has no value before, or a function of the interface writes it.
 fn is_output(function: &Function, p: &Parameter) -> bool {
     p.pass == Pass::Write
         && match p.kind.is_array() {
             true => function.public && p.name != "pose",
-            false => !is_kept(function, p),
+            false => function.public || !is_kept(function, p),
         }
 }
 
@@ -54,7 +54,11 @@ pub fn zero(code: &Code, kind: &Type) -> String {
 pub fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
     match (of, value_of) {
         (_, Value::Number(number)) if number.is_infinite() => {
-            if *number > 0.0 { "Inf".into() } else { "-Inf".into() }
+            if *number > 0.0 {
+                "Inf".into()
+            } else {
+                "-Inf".into()
+            }
         }
         (_, Value::Number(number)) => format!("{:?}", number + 0.0),
         (Type::Array(of, _), Value::List(parts)) => {
@@ -184,9 +188,9 @@ impl Printer<'_> {
             }
             Statement::For { name, from, to, test, body } => {
                 let last = match &to.node {
-                    Node::Number(number) => {
-                        number.parse::<i64>().map_or_else(|_| number.clone(), |n| (n - 1).to_string())
-                    }
+                    Node::Number(number) => number
+                        .parse::<i64>()
+                        .map_or_else(|_| number.clone(), |n| (n - 1).to_string()),
                     _ => format!("({} - 1)", self.inside(to, strength(Op::Subtract))),
                 };
                 let _ = writeln!(text, "{space}for {name} = {}:{last}", self.expr(from));
@@ -216,10 +220,17 @@ impl Printer<'_> {
         };
     }
 
-    fn assign(&self, place: &Expr, value: &Expr, space: &str, text: &mut String) -> std::fmt::Result {
+    fn assign(
+        &self,
+        place: &Expr,
+        value: &Expr,
+        space: &str,
+        text: &mut String,
+    ) -> std::fmt::Result {
         match &value.node {
             Node::Call(name, arguments)
-                if !BUILT_IN.contains(&&**name) && arguments.iter().any(|a| a.pass == Pass::Write) =>
+                if !BUILT_IN.contains(&&**name)
+                    && arguments.iter().any(|a| a.pass == Pass::Write) =>
             {
                 writeln!(text, "{space}{};", self.call(Some(place), value))
             }
@@ -276,9 +287,9 @@ impl Printer<'_> {
             Node::Member(of, name) => (format!("{}.{name}", self.inside(of, WHOLE)), WHOLE),
             Node::Index(of, index) => {
                 let index = match &index.node {
-                    Node::Number(number) => {
-                        number.parse::<u64>().map_or_else(|_| number.clone(), |n| (n + 1).to_string())
-                    }
+                    Node::Number(number) => number
+                        .parse::<u64>()
+                        .map_or_else(|_| number.clone(), |n| (n + 1).to_string()),
                     _ => format!("{} + 1", self.inside(index, strength(Op::Add))),
                 };
                 (format!("{}({index})", self.inside(of, WHOLE)), WHOLE)
@@ -298,7 +309,8 @@ impl Printer<'_> {
                 };
                 let known = self.code.structs.iter().find(|known| known.name == *name);
                 let members = known.map_or(&[][..], |known| &known.members);
-                let each = members.iter().zip(parts).map(|(m, part)| format!("'{}', {part}", m.name));
+                let each =
+                    members.iter().zip(parts).map(|(m, part)| format!("'{}', {part}", m.name));
                 (format!("struct({})", each.collect::<Vec<_>>().join(", ")), WHOLE)
             }
             Node::Cast(of) => match (&of.kind, &expr.kind) {
@@ -314,7 +326,9 @@ impl Printer<'_> {
             Op::BitAnd => whole("bitand", self.expr(a), self.expr(b)),
             Op::BitOr => whole("bitor", self.expr(a), self.expr(b)),
             Op::ShiftLeft => whole("bitshift", self.expr(a), self.expr(b)),
-            Op::ShiftRight => whole("bitshift", self.expr(a), format!("-{}", self.inside(b, PREFIX))),
+            Op::ShiftRight => {
+                whole("bitshift", self.expr(a), format!("-{}", self.inside(b, PREFIX)))
+            }
             op => {
                 let own = strength(op);
                 let sign = match op {

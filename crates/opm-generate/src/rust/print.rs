@@ -1,35 +1,17 @@
 //! The closed forms, as Rust.
 
+mod expressions;
+
 use crate::text::{camel, commented, literal};
 use crate::tree::{
-    BUILT_IN, Code, Expr, Function, Node, Op, Parameter, Pass, Statement, Struct, Type, Value, flow,
-    visit,
+    BUILT_IN, Code, Expr, Function, Node, Op, Parameter, Pass, Statement, Struct, Type, Value,
+    flow, visit,
 };
 use std::fmt::Write;
 
 /// Words that are no names.
 const KEYWORDS: [&str; 12] =
     ["as", "in", "let", "loop", "match", "move", "mut", "ref", "type", "use", "where", "box"];
-
-/// How closely an operator binds in Rust; more than [`Op`]s are a prefix, a conversion and a call.
-fn strength(op: Op) -> u8 {
-    match op {
-        Op::Or => 1,
-        Op::And => 2,
-        op if op.is_comparison() => 3,
-        Op::BitOr => 4,
-        Op::BitAnd => 5,
-        Op::ShiftLeft | Op::ShiftRight => 6,
-        Op::Add | Op::Subtract => 7,
-        _ => 8,
-    }
-}
-const CAST: u8 = 9;
-const PREFIX: u8 = 10;
-const WHOLE: u8 = 11;
-
-/// A text and how closely it binds.
-type Bound = (String, u8);
 
 /// The source file of the closed forms.
 pub fn module(code: &Code) -> String {
@@ -107,7 +89,11 @@ fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
     let space = "    ".repeat(depth + 1);
     match (of, value_of) {
         (_, Value::Number(number)) if number.is_infinite() => {
-            if *number > 0.0 { "Real::INFINITY".into() } else { "Real::NEG_INFINITY".into() }
+            if *number > 0.0 {
+                "Real::INFINITY".into()
+            } else {
+                "Real::NEG_INFINITY".into()
+            }
         }
         (_, Value::Number(number)) => format!("{:?}", number + 0.0),
         (Type::Array(of, _), Value::List(parts)) => {
@@ -130,7 +116,11 @@ fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
                 .map(|(m, part)| format!("{}: {}", m.name, value(code, &m.kind, part, depth + 1)))
                 .collect();
             match depth {
-                0 => format!("{} {{\n{space}{},\n}}", camel(name), parts.join(&format!(",\n{space}"))),
+                0 => format!(
+                    "{} {{\n{space}{},\n}}",
+                    camel(name),
+                    parts.join(&format!(",\n{space}"))
+                ),
                 _ => format!("{} {{ {} }}", camel(name), parts.join(", ")),
             }
         }
@@ -158,7 +148,8 @@ impl<'a> Printer<'a> {
 
     fn function(&self) -> String {
         let function = &self.function;
-        let parameters: Vec<String> = function.parameters.iter().map(|p| self.parameter(p)).collect();
+        let parameters: Vec<String> =
+            function.parameters.iter().map(|p| self.parameter(p)).collect();
         let result = match function.result {
             Type::Void => String::new(),
             ref result => format!(" -> {}", kind(result)),
@@ -168,7 +159,8 @@ impl<'a> Printer<'a> {
         if parameters.len() > 7 {
             text += "#[allow(clippy::too_many_arguments)]\n";
         }
-        let _ = writeln!(text, "{public}fn {}({}){result} {{", function.name, parameters.join(", "));
+        let _ =
+            writeln!(text, "{public}fn {}({}){result} {{", function.name, parameters.join(", "));
         let last = function.body.len().saturating_sub(1);
         for (number, statement) in function.body.iter().enumerate() {
             match statement {
@@ -229,14 +221,21 @@ impl<'a> Printer<'a> {
             Statement::For { name, from, to, test, body, .. } => {
                 let used = body.iter().any(|s| visit::mentions(s, name));
                 let counter = if used { name } else { "_" };
-                let _ =
-                    writeln!(text, "{space}for {counter} in {}..{} {{", self.expr(from), self.expr(to));
+                let _ = writeln!(
+                    text,
+                    "{space}for {counter} in {}..{} {{",
+                    self.expr(from),
+                    self.expr(to)
+                );
                 if let Some(test) = test {
                     let test = match &test.node {
                         Node::Not(of) => self.expr(of),
                         _ => format!("!({})", self.expr(test)),
                     };
-                    let _ = writeln!(text, "{space}    if {test} {{\n{space}        break;\n{space}    }}");
+                    let _ = writeln!(
+                        text,
+                        "{space}    if {test} {{\n{space}        break;\n{space}    }}"
+                    );
                 }
                 self.block(body, depth + 1, text);
                 writeln!(text, "{space}}}")
@@ -253,7 +252,13 @@ impl<'a> Printer<'a> {
     }
 
     /// A declaration without `let`.
-    fn declaration(&self, name: &str, of: &Type, init: Option<&Expr>, rest: &[Statement]) -> String {
+    fn declaration(
+        &self,
+        name: &str,
+        of: &Type,
+        init: Option<&Expr>,
+        rest: &[Statement],
+    ) -> String {
         let changed = |declared: &str| match flow::is_assigned(rest, name) {
             true => format!("mut {declared}"),
             false => declared.to_owned(),
@@ -281,114 +286,6 @@ impl<'a> Printer<'a> {
                 let again = if flow::is_assigned_again(rest, name) { "mut " } else { "" };
                 format!("{again}{name}: {}", kind(of))
             }
-        }
-    }
-
-    fn expr(&self, expr: &Expr) -> String {
-        self.bound(expr).0
-    }
-
-    /// An expression inside one that binds with a strength.
-    fn inside(&self, expr: &Expr, strength: u8) -> String {
-        let (text, own) = self.bound(expr);
-        if own < strength { format!("({text})") } else { text }
-    }
-
-    fn bound(&self, expr: &Expr) -> Bound {
-        match &expr.node {
-            Node::Number(number) => match expr.kind {
-                Type::Real => (literal(number), WHOLE),
-                _ => (number.clone(), WHOLE),
-            },
-            Node::Constant(name) => match expr.kind {
-                Type::Int => (format!("{name} as i32"), CAST),
-                _ => (constant(name), WHOLE),
-            },
-            Node::Infinity => ("Real::INFINITY".into(), WHOLE),
-            Node::Variable(name) => match self.pass(name) {
-                Pass::Value => (name.clone(), WHOLE),
-                _ if expr.kind.is_array() => (name.clone(), WHOLE),
-                _ => (format!("*{name}"), PREFIX),
-            },
-            Node::Member(of, name) => (format!("{}.{name}", self.base(of)), WHOLE),
-            Node::Index(of, index) => {
-                (format!("{}[{}]", self.base(of), self.index(index)), WHOLE)
-            }
-            Node::Negative(of) => (format!("-{}", self.inside(of, PREFIX)), PREFIX),
-            Node::Not(of) => (format!("!{}", self.inside(of, PREFIX)), PREFIX),
-            Node::Binary(op, a, b) => {
-                let own = strength(*op);
-                // A comparison cannot be an operand of another one; a conversion before < is no generic.
-                let left = if op.is_comparison() { own + 1 } else { own };
-                let mut left = self.inside(a, left);
-                if left.contains(" as ") && !left.ends_with(')') {
-                    left = format!("({left})");
-                }
-                (format!("{left} {} {}", op.in_c(), self.inside(b, own + 1)), own)
-            }
-            Node::Choice(test, a, b) => {
-                let [test, a, b] = [test, a, b].map(|part| self.expr(part));
-                (format!("if {test} {{ {a} }} else {{ {b} }}"), 0)
-            }
-            Node::Call(name, arguments) => {
-                let given: Vec<String> =
-                    arguments.iter().map(|a| self.argument(&a.value, a.pass)).collect();
-                (format!("{name}({})", given.join(", ")), WHOLE)
-            }
-            Node::Made(parts) => (self.made(&expr.kind, parts), WHOLE),
-            Node::Cast(of) => match (&of.kind, &expr.kind) {
-                (Type::Bool, Type::Int) => (format!("i32::from({})", self.expr(of)), WHOLE),
-                (_, to) => (format!("{} as {}", self.inside(of, CAST), kind(to)), CAST),
-            },
-        }
-    }
-
-    fn made(&self, of: &Type, parts: &[Expr]) -> String {
-        let parts = parts.iter().map(|part| self.expr(part));
-        let Type::Struct(name) = of else {
-            return format!("[{}]", parts.collect::<Vec<_>>().join(", "));
-        };
-        let known = self.code.structs.iter().find(|known| known.name == *name);
-        let members = known.map_or(&[][..], |known| &known.members);
-        let given: Vec<String> = members
-            .iter()
-            .zip(parts)
-            .map(|(m, part)| if m.name == part { part } else { format!("{}: {part}", m.name) })
-            .collect();
-        format!("{} {{ {} }}", camel(name), given.join(", "))
-    }
-
-    fn pass(&self, name: &str) -> Pass {
-        let found = self.function.parameters.iter().find(|p| p.name == name);
-        found.map_or(Pass::Value, |p| p.pass)
-    }
-
-    /// What a member or an element is taken of.
-    fn base(&self, of: &Expr) -> String {
-        match &of.node {
-            Node::Variable(name) => name.clone(),
-            _ => self.inside(of, WHOLE),
-        }
-    }
-
-    fn index(&self, index: &Expr) -> String {
-        match &index.node {
-            Node::Number(number) => number.clone(),
-            Node::Constant(name) => name.clone(),
-            _ => format!("{} as usize", self.inside(index, CAST)),
-        }
-    }
-
-    fn argument(&self, value: &Expr, pass: Pass) -> String {
-        let passed_on = match &value.node {
-            Node::Variable(name) => self.pass(name) != Pass::Value,
-            _ => false,
-        };
-        match pass {
-            Pass::Value => self.expr(value),
-            _ if passed_on => self.base(value),
-            Pass::Read => format!("&{}", self.inside(value, WHOLE)),
-            Pass::Write => format!("&mut {}", self.inside(value, WHOLE)),
         }
     }
 }

@@ -88,7 +88,8 @@ fn walk(body: &[Statement], name: &str, mut assigned: bool, again: &mut bool) ->
 /// Whether a parameter that is written has a value before that is kept: a part of it is written, or it is read, or nothing
 /// is written to it where the function succeeds.
 pub fn is_kept(function: &Function, parameter: &Parameter) -> bool {
-    if matches!(parameter.kind, Type::Struct(_) | Type::Array(..)) && is_partial(function, parameter)
+    if matches!(parameter.kind, Type::Struct(_) | Type::Array(..))
+        && is_partial(function, parameter)
     {
         return true;
     }
@@ -105,8 +106,8 @@ fn is_partial(function: &Function, parameter: &Parameter) -> bool {
     let mut partial = false;
     visit::statements(&function.body, &mut |statement| {
         if let Statement::Assign { place, .. } = statement {
-            partial |= place.root() == Some(&parameter.name)
-                && !matches!(place.node, Node::Variable(_));
+            partial |=
+                place.root() == Some(&parameter.name) && !matches!(place.node, Node::Variable(_));
         }
         for place in visit::own(statement).into_iter().flat_map(visit::written) {
             partial |= place.root() == Some(&parameter.name);
@@ -116,7 +117,12 @@ fn is_partial(function: &Function, parameter: &Parameter) -> bool {
 }
 
 /// Walks through statements: whether all is written behind them, `None` where nothing is behind them.
-fn written_behind(body: &[Statement], name: &str, mut written: bool, kept: &mut bool) -> Option<bool> {
+fn written_behind(
+    body: &[Statement],
+    name: &str,
+    mut written: bool,
+    kept: &mut bool,
+) -> Option<bool> {
     for statement in body {
         let reads = |expr: &Expr| visit::reads(expr, name);
         match statement {
@@ -143,7 +149,11 @@ fn written_behind(body: &[Statement], name: &str, mut written: bool, kept: &mut 
             other => {
                 let mut all = visit::own(other).into_iter();
                 // A call writes it.
-                if visit::own(other).into_iter().flat_map(visit::written).any(|p| p.root() == Some(name)) {
+                if visit::own(other)
+                    .into_iter()
+                    .flat_map(visit::written)
+                    .any(|p| p.root() == Some(name))
+                {
                     written = true;
                 } else {
                     *kept |= !written && all.any(reads);

@@ -236,7 +236,8 @@ fn made_at_once(body: &mut Vec<Statement>, parser: &Parser) {
                 );
                 if let Some(declared) = declared {
                     let made = Expr::new(Node::Made(parts), kind.clone());
-                    let whole = Statement::Declare { name: variable.clone(), kind, init: Some(made) };
+                    let whole =
+                        Statement::Declare { name: variable.clone(), kind, init: Some(made) };
                     block.splice(at..at + count, [whole]);
                     block.remove(declared);
                     at -= 1;
@@ -273,6 +274,5 @@ fn members_assigned(block: &[Statement], parser: &Parser) -> Option<(String, Typ
         }
         parts.push(value.clone());
     }
-    (parts.len() == members.len())
-        .then(|| (variable.clone(), Type::Struct(name.clone()), parts))
+    (parts.len() == members.len()).then(|| (variable.clone(), Type::Struct(name.clone()), parts))
 }

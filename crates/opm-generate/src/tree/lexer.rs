@@ -66,10 +66,8 @@ pub fn tokens(text: &str) -> Result<Vec<Token>, String> {
 fn number_length(text: &str) -> usize {
     let mut before = ' ';
     let end = text.find(|c: char| {
-        let part = c.is_ascii_digit()
-            || c == '.'
-            || c == 'e'
-            || (before == 'e' && matches!(c, '+' | '-'));
+        let part =
+            c.is_ascii_digit() || c == '.' || c == 'e' || (before == 'e' && matches!(c, '+' | '-'));
         before = c;
         !part
     });

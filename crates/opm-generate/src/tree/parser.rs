@@ -2,7 +2,8 @@
 
 use super::lexer::{Token, tokens};
 use super::{
-    BUILT_IN, Code, Constant, Entry, Enum, Function, Member, Parameter, Pass, Struct, Type, Value,
+    BUILT_IN, Code, Constant, Entry, Enum, Function, Member, Node, Parameter, Pass, Struct, Type,
+    Value,
 };
 use std::collections::HashMap;
 
@@ -20,7 +21,25 @@ pub fn parse(text: &str) -> Result<Code, String> {
         let from = parser.at.saturating_sub(12);
         format!("{wrong}, behind {:?}", &parser.words[from..parser.at])
     })?;
-    Ok(parser.code)
+    Ok(without_unused_constants(parser.code))
+}
+
+/// What is written anew in each language may have needed a constant that nothing else needs.
+fn without_unused_constants(mut code: Code) -> Code {
+    let mut used = Vec::new();
+    for function in &code.functions {
+        super::visit::statements(&function.body, &mut |statement| {
+            for expr in super::visit::own(statement) {
+                super::visit::expressions(expr, &mut |part| {
+                    if let Node::Constant(name) = &part.node {
+                        used.push(name.clone());
+                    }
+                });
+            }
+        });
+    }
+    code.constants.retain(|constant| used.contains(&constant.name));
+    code
 }
 
 /// What is known of a local name.

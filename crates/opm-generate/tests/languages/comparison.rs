@@ -404,7 +404,11 @@ fn open(m: &Manipulator, joints: &[f64], g: &Isometry3<f64>) -> f64 {
 }
 
 /// On lines from a pose in reach to one out of it, the code and opm turn at the same place.
-pub fn reach_ends_where_it_does_for_opm(program: &impl Program, manipulators: &[Manipulator], poses: usize) {
+pub fn reach_ends_where_it_does_for_opm(
+    program: &impl Program,
+    manipulators: &[Manipulator],
+    poses: usize,
+) {
     /// Rounding of the boundary's place, as a share of the line: a pose nearer to it may be on either side.
     const BOUNDARY: f64 = 1e-9;
     let mut rng = Rng::with_seed(7);

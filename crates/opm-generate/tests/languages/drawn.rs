@@ -5,6 +5,7 @@ use fastrand::Rng;
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::{Manipulator, Quantity};
 use opm_tests::random::{self, Options};
+use std::collections::HashSet;
 use std::f64::consts::PI;
 
 /// The shipped mechanisms with closed forms.
@@ -40,6 +41,24 @@ pub fn random_mechanisms(seed: u64) -> Vec<Manipulator> {
         }
     }
     assert!(all.len() > 150, "{}", all.len());
+    all
+}
+
+/// Those of the random mechanisms whose code has a function that no code before has, and one in so many of the others.
+pub fn covering(seed: u64, every: usize) -> Vec<Manipulator> {
+    let mut known = HashSet::new();
+    let mut all = random_mechanisms(seed);
+    let mut number = 0;
+    all.retain(|m| {
+        number += 1;
+        let code = opm_generate::c(m).expect("few choices");
+        let prefix = format!("{}_", code.name);
+        let before = known.len();
+        let functions = code.source.split(&*prefix).filter_map(|rest| rest.split_once('('));
+        let whole = |name: &str| !name.contains(|c: char| !c.is_ascii_alphabetic() && c != '_');
+        known.extend(functions.map(|(name, _)| name.to_owned()).filter(|name| whole(name)));
+        known.len() > before || number % every == 0
+    });
     all
 }
 

@@ -1,7 +1,9 @@
 % Answers the questions of the input, one after the other.
 function driver(name, counts)
   n = counts(1); n_joints = counts(2); n_imaginary = counts(3); n_actuated = counts(4);
-  bytes = fread(stdin, Inf, 'uint8=>uint8')';
+  input_file = fopen(fullfile(getenv('CODE'), 'input'), 'r');
+  bytes = fread(input_file, Inf, 'uint8=>uint8')';
+  fclose(input_file);
   has_forward = exist(fullfile(getenv('CODE'), ['+' name], 'forward.m'), 'file') > 0;
   f = @(what) str2func([name '.' what]);
   inverse = f('inverse'); actuated = f('actuated'); deficits = f('deficits'); limits = f('limits');

@@ -90,34 +90,34 @@ impl Shape {
 /// Asks a program: its input is a record for each question, of a mode in four bytes and the numbers of two poses in eight
 /// each; its output is the numbers of the answers.
 pub fn ask(command: &mut Command, shape: Shape, questions: &[Question]) -> Vec<Answer> {
-        let mut input = Vec::new();
-        for Question { mode, pose, next } in questions {
-            assert_eq!((pose.len(), next.len()), (shape.coordinates, shape.coordinates));
-            input.extend(u32::try_from(mode.bits()).expect("few choices").to_ne_bytes());
-            input.extend(pose.iter().chain(next).flat_map(|value| value.to_ne_bytes()));
-        }
-        let mut child = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program that was compiled");
-        let mut stdin = child.stdin.take().expect("a pipe");
-        let writer = std::thread::spawn(move || stdin.write_all(&input));
-        let output = child.wait_with_output().expect("it ends");
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success() && told.is_empty(), "{}: {told}", output.status);
-        writer.join().expect("it writes").expect("all is read");
-        let numbers: Vec<f64> = output
-            .stdout
-            .chunks_exact(8)
-            .map(|bytes| f64::from_ne_bytes(bytes.try_into().expect("eight bytes")))
-            .collect();
-        let mut numbers = numbers.into_iter();
-        let answers = questions.iter().map(|_| Answer::read(&mut numbers, shape)).collect();
-        assert_eq!(numbers.next(), None);
-        answers
+    let mut input = Vec::new();
+    for Question { mode, pose, next } in questions {
+        assert_eq!((pose.len(), next.len()), (shape.coordinates, shape.coordinates));
+        input.extend(u32::try_from(mode.bits()).expect("few choices").to_ne_bytes());
+        input.extend(pose.iter().chain(next).flat_map(|value| value.to_ne_bytes()));
     }
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program that was compiled");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    let writer = std::thread::spawn(move || stdin.write_all(&input));
+    let output = child.wait_with_output().expect("it ends");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && told.is_empty(), "{}: {told}", output.status);
+    writer.join().expect("it writes").expect("all is read");
+    let numbers: Vec<f64> = output
+        .stdout
+        .chunks_exact(8)
+        .map(|bytes| f64::from_ne_bytes(bytes.try_into().expect("eight bytes")))
+        .collect();
+    let mut numbers = numbers.into_iter();
+    let answers = questions.iter().map(|_| Answer::read(&mut numbers, shape)).collect();
+    assert_eq!(numbers.next(), None);
+    answers
+}
 
 impl Answer {
     fn read(numbers: &mut impl Iterator<Item = f64>, shape: Shape) -> Self {

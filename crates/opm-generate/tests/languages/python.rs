@@ -1,7 +1,7 @@
 //! Generated Python, run by the interpreter at hand and compared with `opm-core`.
 
 use crate::comparison::{compare_all, reach_ends_where_it_does_for_opm};
-use crate::drawn::{random_mechanisms, shipped};
+use crate::drawn::{covering, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
 use opm_generate::Package;
@@ -69,7 +69,7 @@ fn python_solves_shipped_mechanisms_as_opm() {
 
 #[test]
 fn python_solves_random_mechanisms_as_opm() {
-    let all: Vec<Manipulator> = random_mechanisms(2).into_iter().step_by(5).collect();
+    let all = covering(2, 500);
     let Some(program) = Modules::new(&all) else { return };
     compare_all(&program, &all, 200, 33);
 }

@@ -1,7 +1,7 @@
 //! Generated Rust, compiled by the compiler at hand and compared with `opm-core`.
 
 use crate::comparison::{compare_all, float_closes_every_leg, reach_ends_where_it_does_for_opm};
-use crate::drawn::{random_mechanisms, shipped};
+use crate::drawn::{covering, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
 use opm_generate::Package;
@@ -61,14 +61,17 @@ impl Compiled {
                     .replace("#![no_std]\n", "")
                     .replace("#![forbid(unsafe_code)]\n", "")
             });
-            let _ = writeln!(main, "#[path = \"m{number}/src/lib.rs\"]\n#[allow(dead_code, unused_imports)]\nmod m{number};");
+            let _ = writeln!(
+                main,
+                "#[path = \"m{number}/src/lib.rs\"]\n#[allow(dead_code, unused_imports)]\nmod m{number};"
+            );
             let forward = lib.contains("pub fn forward(");
             let _ = writeln!(calls, "        {number} => run!(m{number}, {forward}),");
         }
         main = main.replace("        CALLS\n", &calls);
         std::fs::write(folder.path().join("driver.rs"), main).expect("a file in it");
         let done = Command::new(compiler)
-            .args(["--edition", "2024", "--crate-type", "bin", "-C", "opt-level=1"])
+            .args(["--edition", "2024", "--crate-type", "bin", "-C", "opt-level=0"])
             .args(["-C", "overflow-checks=on", "--cfg", "feature=\"std\""])
             .args(["--check-cfg", "cfg(feature, values(\"std\"))", "driver.rs", "-o", "driver"])
             .current_dir(folder.path())
@@ -76,7 +79,8 @@ impl Compiled {
             .expect("a compiler that runs");
         let told = String::from_utf8_lossy(&done.stderr).into_owned();
         assert!(done.status.success(), "{}", told.chars().take(4000).collect::<String>());
-        let own: Vec<&str> = told.split("\n\n").filter(|part| part.contains("kinematics.rs")).collect();
+        let own: Vec<&str> =
+            told.split("\n\n").filter(|part| part.contains("kinematics.rs")).collect();
         assert!(own.is_empty(), "the compiler has something to say: {}", own[0]);
         Some(Self { folder, shapes: manipulators.iter().map(Shape::of).collect() })
     }
@@ -92,7 +96,7 @@ fn rust_solves_shipped_mechanisms_as_opm() {
 
 #[test]
 fn rust_solves_random_mechanisms_as_opm() {
-    let all: Vec<Manipulator> = random_mechanisms(4).into_iter().step_by(7).collect();
+    let all = covering(2, 500);
     let Some(program) = Compiled::new(&all, "f64") else { return };
     compare_all(&program, &all, 300, 23);
 }
@@ -103,4 +107,38 @@ fn rust_in_f32_closes_every_leg() {
     let all = names.map(|name| Manipulator::example(name).unwrap());
     let Some(program) = Compiled::new(&all, "f32") else { return };
     float_closes_every_leg(&program, &all, 2_000);
+}
+
+/// Without the standard library, its functions of numbers are those of `libm`; the test beside it accepts it with either.
+#[test]
+fn rust_needs_no_standard_library() {
+    let m = Manipulator::example("plano-spherical-5dof").unwrap();
+    let package = opm_generate::rust(&m).expect("few choices");
+    let folder = tempfile::tempdir().expect("a directory for temporary files");
+    write(folder.path(), &package, str::to_owned);
+    // The lock file of opm names a version of libm that is there.
+    let lock = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock");
+    std::fs::copy(lock, folder.path().join("Cargo.lock")).expect("the lock file");
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(&cargo);
+        command.args(["test", "--offline", "--quiet"]).args(arguments).current_dir(folder.path());
+        let done =
+            command.env_remove("RUSTFLAGS").env("CARGO_TARGET_DIR", folder.path().join("target"));
+        let done = done.output().expect("cargo runs");
+        (done.status.success(), String::from_utf8_lossy(&done.stderr).into_owned())
+    };
+    let (right, told) = run(&["--no-default-features", "--features", "libm"]);
+    if told.contains("--offline") {
+        println!("skipped: libm is not there, and cargo is offline");
+    } else {
+        assert!(right && told.is_empty(), "{told}");
+    }
+    // A changed joint is found.
+    let path = folder.path().join("src/kinematics.rs");
+    let text = std::fs::read_to_string(&path).expect("the closed forms");
+    let wrong = text.replacen(".home + at.q_", ".home + 0.01 + at.q_", 1);
+    assert_ne!(text, wrong);
+    std::fs::write(&path, wrong).expect("a file in it");
+    assert!(!run(&["--test", "golden"]).0);
 }

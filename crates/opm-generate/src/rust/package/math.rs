@@ -1,5 +1,8 @@
 //! The functions of numbers, of the standard library or of the crate `libm`: `core` has none of them.
 
+// A mechanism may not need all of them.
+#![allow(dead_code)]
+
 use super::Real;
 
 /// A constant of `f64` and of `f32`.
