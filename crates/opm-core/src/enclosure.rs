@@ -23,6 +23,7 @@ mod area;
 mod boundary;
 mod chain;
 mod planar;
+mod places;
 mod raised;
 mod share;
 mod slice;
@@ -40,6 +41,7 @@ use slice::{Bounded, Rectangle, Slice};
 use std::f64::consts::{PI, TAU};
 use target::{Coordinate, Enclosed, Target};
 
+pub use places::{Ball, BodyPoint, MovingBody};
 pub use share::MOST;
 
 /// One coordinate of a box.
