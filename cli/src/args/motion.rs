@@ -2,6 +2,7 @@
 
 use super::MechanismArgs;
 use crate::linkage::input::InputValue;
+use crate::pose::Number;
 use clap::{ValueEnum, ValueHint};
 use opm_core::motion::Ends;
 use std::path::PathBuf;
@@ -125,6 +126,10 @@ pub struct TrajectoryArgs {
     /// The fastest timing along the same path, from rest to rest, within the joints' max_rate and max_acceleration
     #[arg(long)]
     pub time_optimal: bool,
+    /// Least distance of two bodies, for example 5mm: where it is less, they interfere; with --strict that is a failure,
+    /// too
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub clearance: Option<Number>,
     /// Exit with status 1 if the mechanism cannot follow all of it
     #[arg(long)]
     pub strict: bool,

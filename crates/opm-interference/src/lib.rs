@@ -8,6 +8,7 @@
 //!
 //! * [`Interference`]: the shapes of a mechanism, and the pairs that are tested.
 //! * [`Distances`]: the distance of each pair at one configuration, the nearest pair.
+//! * [`Watch`]: contacts along a motion, between samples too.
 //! * [`BoxTest`]: whether all distances are large enough at every pose of a box, decided by certain bounds.
 //!
 //! Distances are signed: negative where two shapes overlap. An overlap is measured as far as the axes of the capsules stay
@@ -34,10 +35,12 @@ mod boxes;
 mod distance;
 mod distances;
 pub mod member;
+mod motion;
 pub mod neighbours;
 
 pub use boxes::{BoxTest, Clearance, Open};
 pub use distances::{Distances, Nearest};
+pub use motion::{Contact, Watch, Watched};
 
 use member::{Member, Shape};
 use neighbours::Meetings;

@@ -3,8 +3,8 @@
 //! Two members are neighbours if they meet in one point at every pose. These are
 //!
 //! * the two bodies of a joint;
-//! * all bodies of joints whose centres are one point of a common body: links on either side of a universal or a spherical
-//!   joint that is made of revolutes, two legs that share a ball on the platform, coaxial joints of two legs at one point;
+//! * all bodies of joints whose centres are one point of a common body: two legs with balls at one point of the platform,
+//!   coaxial joints at one point, a slider and the joint that it carries;
 //! * a guide, and what is carried at the centre of its slider.
 //!
 //! The centre of a joint is fixed in both of its bodies; that of a slider only in the body on the platform side.

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from . import examples
 from ._native import (
     Assembly,
+    Clearance,
     Conditioning,
     Decomposition,
     Explorer,
@@ -47,6 +48,7 @@ from ._native import (
 
 __all__ = [
     "Assembly",
+    "Clearance",
     "Conditioning",
     "Decomposition",
     "Explorer",
