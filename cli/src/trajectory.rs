@@ -188,7 +188,8 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         output.print(&report.json(), report.text())?;
     }
     if args.strict && clearance.is_some() && violations == 0 && contacts > 0 {
-        let problem = format!("{}: bodies interfere (--strict): {}", motion.label, report.first_contact());
+        let problem =
+            format!("{}: bodies interfere (--strict): {}", motion.label, report.first_contact());
         return Err(Failure::work(problem));
     }
     match args.strict && violations > 0 {

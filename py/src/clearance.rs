@@ -4,7 +4,7 @@ use crate::arguments;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::PyArray1;
 use opm_interference::{Distances, Interference};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;

@@ -5,8 +5,8 @@ use crate::text::{self, Table, count, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Violation, ViolationReport};
-use opm_study::recording::violation_fields;
 use opm_interference::Contact;
+use opm_study::recording::violation_fields;
 use opm_study::{Contacts, CoordinateRanges, MotionRequest, MotionSummary};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -169,7 +169,9 @@ impl Report<'_> {
         let Contact { pair, start, end, worst, distance } = *contact;
         let [one, other] = of.interference.names_of(pair);
         let nearest = length_text(distance, self.units);
-        format!("t = {start:.6} .. {end:.6} s: {one} and {other} interfere, {nearest} at {worst:.6} s")
+        format!(
+            "t = {start:.6} .. {end:.6} s: {one} and {other} interfere, {nearest} at {worst:.6} s"
+        )
     }
 
     /// The first contact in words.

@@ -18,6 +18,7 @@
 //! joint on the base side; the platform's origin is its reference point.
 
 mod centre;
+mod obstacle;
 mod solid;
 
 pub use solid::{Material, Part, PartKind, Solid};
@@ -26,8 +27,8 @@ use crate::decomposition::{Decomposition, Freedom};
 use crate::group::screw::Screw;
 use crate::group::subspace::SubspaceClass;
 use crate::manipulator::ImaginaryJoint;
-use crate::mechanism::{BodyMasses, Mechanism, Shapes};
 use crate::mechanism::joint::{Joint, JointKind, ValueCountError};
+use crate::mechanism::{BodyMasses, Mechanism, Shapes};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use solid::Sizes;
 
@@ -365,12 +366,7 @@ impl Builder<'_> {
         }
     }
 
-    fn rod(
-        &mut self,
-        body: usize,
-        ends: [Point3<f64>; 2],
-        (material, kind): (Material, PartKind),
-    ) {
+    fn rod(&mut self, body: usize, ends: [Point3<f64>; 2], (material, kind): (Material, PartKind)) {
         if (ends[1] - ends[0]).norm() > self.sizes.touch {
             self.draw(body, Solid::rod(ends, self.bodies[body].radius), material, kind);
         }

@@ -178,7 +178,9 @@ impl<'a> BoxTest<'a> {
         let Some((capsule, r)) = self.capsule(one) else { return [f64::INFINITY; 2] };
         let (distance, s) = match &shapes[other] {
             Shape::Capsule { .. } => match self.capsule(other) {
-                Some((other, s)) if r.is_finite() && s.is_finite() => (capsule.to_capsule(&other), s),
+                Some((other, s)) if r.is_finite() && s.is_finite() => {
+                    (capsule.to_capsule(&other), s)
+                }
                 Some(_) | None => return [f64::NEG_INFINITY, f64::INFINITY],
             },
             _ if !r.is_finite() => return [f64::NEG_INFINITY, f64::INFINITY],

@@ -80,7 +80,10 @@ mod tests {
         let capsule = |ends| Capsule { ends, radius: 0.125 };
         let (one_c, other_c) = (capsule(one), capsule(other));
         let (found, expected) = (one_c.to_capsule(&other_c), apart(one, other) - 0.25);
-        assert!((found - expected).abs() < INACCURACY, "{one:?} {other:?}: {found}, not {expected}");
+        assert!(
+            (found - expected).abs() < INACCURACY,
+            "{one:?} {other:?}: {found}, not {expected}"
+        );
         assert!((other_c.to_capsule(&one_c) - found).abs() < 1e-12);
         assert!(one_c.at_least_to(&other_c) <= found + 1e-12);
     }

@@ -72,9 +72,8 @@ impl<'a> Distances<'a> {
         let Self { interference, bodies, ends } = self;
         for (shape, to) in interference.shapes.iter().zip(ends) {
             if let Shape::Capsule { ends, .. } = shape {
-                *to = ends.map(|end| {
-                    scaled(&(bodies[end.body] * end.point).coords, interference.unit)
-                });
+                *to = ends
+                    .map(|end| scaled(&(bodies[end.body] * end.point).coords, interference.unit));
             }
         }
     }

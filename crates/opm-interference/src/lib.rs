@@ -95,7 +95,8 @@ impl Interference {
                 if (one.is_at_rest() && other.is_at_rest()) || meetings.meet(one, other) {
                     continue;
                 }
-                let all = one.shapes.clone().flat_map(|i| other.shapes.clone().map(move |j| [i, j]));
+                let all =
+                    one.shapes.clone().flat_map(|i| other.shapes.clone().map(move |j| [i, j]));
                 // What is not a capsule is at rest.
                 let sorted = all.map(|[i, j]| if shapes[i].is_capsule() { [i, j] } else { [j, i] });
                 let shapes: Vec<_> = sorted.collect();

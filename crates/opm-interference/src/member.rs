@@ -151,7 +151,8 @@ impl Collected {
 
     /// The guides on the base, in the order of the legs whose first joint is a slider with limits.
     fn guides(&mut self, mechanism: &Mechanism, base: &Body) {
-        let mut guides = base.parts.iter().filter(|part| matches!(part.kind, PartKind::Guide { .. }));
+        let mut guides =
+            base.parts.iter().filter(|part| matches!(part.kind, PartKind::Guide { .. }));
         for (leg, seat) in base.seats.iter().enumerate() {
             if seat.motion != SeatMotion::Slide {
                 continue;

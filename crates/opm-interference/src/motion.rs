@@ -112,7 +112,8 @@ impl<'a> Watch<'a> {
         let levels = self.levels();
         let by = SLOPE_STEP * step;
         let none = || vec![f64::NAN; levels.len()];
-        let after = if time + by < self.of.motion.end() { slope(self, by, &levels)? } else { none() };
+        let after =
+            if time + by < self.of.motion.end() { slope(self, by, &levels)? } else { none() };
         let before = if self.last.is_some() { slope(self, -by, &levels)? } else { none() };
         let slopes = [after, before];
         let sampled = Sampled { time, solution: solution.clone(), levels, slopes };

@@ -62,7 +62,8 @@ impl Meetings {
         for (leg, (joints, start)) in mechanism.legs.iter().zip(&starts).enumerate() {
             let count = joints.joints.len();
             for joint in 0..count {
-                let inner = if joint == 0 { MemberOfPoint::Guide(leg) } else { MemberOfPoint::Body(body) };
+                let inner =
+                    if joint == 0 { MemberOfPoint::Guide(leg) } else { MemberOfPoint::Body(body) };
                 let outer = if joint + 1 == count {
                     platform
                 } else {

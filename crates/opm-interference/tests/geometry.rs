@@ -142,10 +142,8 @@ fn distances_are_those_of_the_links() {
         reached += 1;
         distances.place(&manipulator, solution);
         // Every link by its joint angles, the platform by the pose.
-        let platform = Isometry3::new(
-            Vector3::new(pose[0], pose[1], 0.0),
-            Vector3::new(0.0, 0.0, pose[2]),
-        );
+        let platform =
+            Isometry3::new(Vector3::new(pose[0], pose[1], 0.0), Vector3::new(0.0, 0.0, pose[2]));
         let mut rods: Vec<(String, Vec<Segment>, f64)> = Vec::new();
         let mut of_platform = Vec::new();
         for (leg, angles) in mechanism.legs.iter().zip(solution.joints().chunks(3)) {

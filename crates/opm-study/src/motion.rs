@@ -91,13 +91,13 @@ impl<'a> MotionRequest<'a> {
         go_on: impl Fn(u64) -> bool,
     ) -> Result<MotionSummary, StudyError> {
         let mut summary = MotionSummary::new(self.manipulator);
-        let interference =
-            self.clearance.map(|_| Interference::new(self.manipulator.mechanism()));
-        let mut watch = self.clearance.zip(interference.as_ref()).map(|(clearance, interference)| {
-            let Self { manipulator, motion, mode, .. } = *self;
-            let of = Watched { manipulator, motion, mode, clearance };
-            Watch::new(of, Distances::new(interference))
-        });
+        let interference = self.clearance.map(|_| Interference::new(self.manipulator.mechanism()));
+        let mut watch =
+            self.clearance.zip(interference.as_ref()).map(|(clearance, interference)| {
+                let Self { manipulator, motion, mode, .. } = *self;
+                let of = Watched { manipulator, motion, mode, clearance };
+                Watch::new(of, Distances::new(interference))
+            });
         let mut number = 0;
         let open = self.each_batch(trajectory, |batch| {
             for (sample, changes) in batch {

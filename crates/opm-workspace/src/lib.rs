@@ -47,6 +47,7 @@
 //! Numbers are SI and radians. Work is done on the current rayon thread pool.
 
 mod boundary;
+mod clearance;
 mod components;
 mod condition;
 mod conditioning;
@@ -66,6 +67,7 @@ mod visits;
 pub use opm_core;
 
 pub use boundary::{MaskError, Outline, Ring, boundary, mask_boundary};
+pub use clearance::{ClearanceError, ClearanceLimit};
 pub use components::Components;
 pub use condition::{ConditionError, ConditionLimit, Conditioned};
 pub use conditioning::ConditioningIndex;

@@ -187,7 +187,11 @@ impl<'a, const N: usize> Places<'a, N> {
         let inner = || of.outward(start..at, point);
         let outer = || {
             let point = of.inward(at..end, point)?;
-            Some(if at <= of.split { self.behind_lower(of, point) } else { self.on_platform(point) })
+            Some(if at <= of.split {
+                self.behind_lower(of, point)
+            } else {
+                self.on_platform(point)
+            })
         };
         let from_start = || {
             let point = inner()?;
@@ -336,11 +340,7 @@ fn displaced<const N: usize>(
 }
 
 /// The point that a displacement of a subspace moves a point to, base coordinates.
-fn apply<const N: usize>(
-    subspace: &Subspace,
-    target: &Target<N>,
-    point: &Place<N>,
-) -> Place<N> {
+fn apply<const N: usize>(subspace: &Subspace, target: &Target<N>, point: &Place<N>) -> Place<N> {
     let (origin, axes) = (subspace.origin.coords, &subspace.axes);
     let arm: Place<N> = [0, 1, 2].map(|i| point[i] - origin[i]);
     let local: Place<N> = [0, 1, 2].map(|i| dot(&axes.column(i).into_owned(), &arm));

@@ -12,7 +12,8 @@ use crate::mechanism::{
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
 
-pub(super) const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "bodies", "obstacle", "leg"];
+pub(super) const KEYS: &[&str] =
+    &["format", "name", "units", "platform", "task", "bodies", "obstacle", "leg"];
 pub(super) const LEG_KEYS: &[&str] = &["name", "joints"];
 pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates", "home"];
 /// The keys of `[task]` in the file of a family, of which the frames are given.

@@ -88,7 +88,8 @@ fn shape(table: &Table<'_>, kind: Type) -> Option<ObstacleShape> {
 /// Reads the directions of the first two edges of a box; `None` if one cannot be read.
 fn edges(table: &Table<'_>) -> Option<[Unit<Vector3<f64>>; 2]> {
     let level = ObstacleShape::level();
-    let edge = |key, level| table.get(key).map_or(Some(level), |value: Value<'_>| value.direction());
+    let edge =
+        |key, level| table.get(key).map_or(Some(level), |value: Value<'_>| value.direction());
     let (x, y) = (edge("x", level[0]), edge("y", level[1]));
     let (x, y) = (x?, y?);
     if x.cross(&y).norm() < PARALLEL {

@@ -112,7 +112,8 @@ impl Writer {
             let _ = writeln!(text, "density = {density:?}");
         }
         let table = |key: &str, given: &[(String, f64)], number: &dyn Fn(f64) -> String| {
-            let entries = given.iter().map(|(name, of)| format!("{} = {}", quoted(name), number(*of)));
+            let entries =
+                given.iter().map(|(name, of)| format!("{} = {}", quoted(name), number(*of)));
             let entries: Vec<_> = entries.collect();
             match entries.is_empty() {
                 true => String::new(),

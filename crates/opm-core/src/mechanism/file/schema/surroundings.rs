@@ -1,6 +1,8 @@
 //! The part of the schema that describes bodies, and what stands around a mechanism.
 
-use super::values::{array, cases, closed, described, direction, form, in_units, name, numbers, object, point};
+use super::values::{
+    array, cases, closed, described, direction, form, in_units, name, numbers, object, point,
+};
 use crate::mechanism::file::LARGEST;
 use crate::mechanism::file::obstacles::TYPES;
 use crate::numeric::Quantity;
@@ -16,14 +18,14 @@ fn length(what: &str) -> Value {
 
 /// What the bodies weigh, and how thick they are.
 pub fn bodies() -> Value {
-    let by_name =
-        |what: &str, of: Value| json!({ "description": what, "type": "object", "additionalProperties": of });
+    let by_name = |what: &str, of: Value| json!({ "description": what, "type": "object", "additionalProperties": of });
     let density =
         "The density of all bodies whose masses are not given, kilograms per cubic metre.";
     let masses =
         "Masses in kilograms, by the names of bodies: platform, or the joint that carries a link.";
     let radius = "the radius of the rods of all bodies whose radius is not given";
-    let radii = "Radii of rods, by the names of bodies: base, platform, or the joint that carries a link.";
+    let radii =
+        "Radii of rods, by the names of bodies: base, platform, or the joint that carries a link.";
     let properties = [
         ("density", above_zero(density)),
         ("masses", by_name(masses, above_zero("The mass of this body, kilograms."))),

@@ -103,7 +103,8 @@ fn obstacle() -> impl Strategy<Value = ObstacleShape> {
         }),
         ([point(), point()], length())
             .prop_map(|(ends, radius)| ObstacleShape::Capsule { ends, radius }),
-        (point(), direction()).prop_map(|(point, normal)| ObstacleShape::HalfSpace { point, normal }),
+        (point(), direction())
+            .prop_map(|(point, normal)| ObstacleShape::HalfSpace { point, normal }),
     ]
 }
 
@@ -165,7 +166,8 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
         let (radius, radii, shapes) = around;
         let bodies = mechanism.body_names().chain([Shapes::BASE]).map(str::to_owned);
         let radii = bodies.zip(radii).collect();
-        let obstacle = |(number, shape)| Obstacle { name: format!("{} {number}", mechanism.name), shape };
+        let obstacle =
+            |(number, shape)| Obstacle { name: format!("{} {number}", mechanism.name), shape };
         let obstacles = shapes.into_iter().enumerate().map(obstacle).collect();
         mechanism.shapes = Shapes { radius, radii, obstacles };
         mechanism
