@@ -179,7 +179,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         ));
     }
     let contacts = summary.contacts.iter().map(|found| found.contacts.len()).sum::<usize>();
-    if contacts > 0 {
+    if contacts > 0 && clearance.is_some() {
         let stretches = crate::text::plural(contacts as u64, "contact");
         output.warn(format_args!("bodies interfere: {stretches}"));
     }

@@ -67,15 +67,14 @@ fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigur
             let interference = Interference::new(manipulator.mechanism());
             let mut distances = Distances::new(&interference);
             distances.place(&manipulator, &solution);
-            let nearest =
-                interference::nearest_text(&interference, distances.nearest(), loaded.file.units);
-            lines.push(nearest);
+            let nearest = distances.nearest();
+            if nearest.is_some_and(|nearest| nearest.distance < 0.0) {
+                let units = loaded.file.units;
+                lines.push(interference::nearest_text(&interference, nearest, units));
+            }
             let pairs =
                 distances.nearer_than(0.0).flat_map(|near| interference.members_of(near.pair));
             let red: BTreeSet<_> = pairs.map(|member| member.name.clone()).collect();
-            if !red.is_empty() {
-                output.warn(format_args!("{} bodies interfere; they are red", red.len()));
-            }
             assemble(loaded, Some(joints), &at, lines, &red)
         }
         // It has no inverse kinematics, so that no other pose is known than that at home.

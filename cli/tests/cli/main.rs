@@ -11,6 +11,7 @@ mod format;
 mod generate;
 mod ik;
 mod inspect;
+mod interference;
 mod kind;
 mod linkage;
 mod measure;
