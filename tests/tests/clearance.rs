@@ -96,8 +96,8 @@ fn grids(manipulator: &Manipulator) -> Vec<Grid> {
     };
     let lower = manipulator.lower_coordinates();
     vec![
-        axes(&|number| [41, 37, 1, 2, 1, 1][number]),
-        axes(&|number| if number < lower { 1 } else { 5 }),
+        axes(&|number| [29, 23, 1, 2, 1, 1][number]),
+        axes(&|number| if number < lower { 1 } else { 4 }),
     ]
 }
 
@@ -134,7 +134,7 @@ fn counts_are_those_of_a_distance_at_every_pose() {
             }
         }
     }
-    assert!(mechanisms >= 15 && clear > 5000 && near > 5000, "{mechanisms}, {clear}, {near}");
+    assert!(mechanisms >= 15 && clear > 2000 && near > 2000, "{mechanisms}, {clear}, {near}");
 }
 
 #[test]
@@ -144,21 +144,27 @@ fn a_clearance_and_a_condition_number_hold_together() {
     let grid = &grids(&manipulator)[0];
     let mode = Modes::One(manipulator.home_mode());
     let clearance = ClearanceLimit { interference: &interference, least: 0.003 };
-    let condition = ConditionLimit { most: 6.0, length: manipulator.characteristic_length() };
-    let of = |limited: bool, clear: bool| {
+    let length = manipulator.characteristic_length();
+    let of = |most: Option<f64>, clear: bool| {
         let mut sweep = Sweep::new(&manipulator, grid, mode);
-        if limited {
-            sweep = sweep.with_limit(condition).unwrap();
+        if let Some(most) = most {
+            sweep = sweep.with_limit(ConditionLimit { most, length }).unwrap();
         }
         if clear {
             sweep = sweep.with_clearance(clearance).unwrap();
         }
         points(&sweep, grid)
     };
-    let [first, second, both] = [of(true, false), of(false, true), of(true, true)];
-    let expected: Vec<u64> = first.iter().copied().filter(|n| second.contains(n)).collect();
-    assert_eq!(both, expected);
-    assert!(both.len() > 50 && both.len() < first.len().min(second.len()));
+    let clear = of(None, true);
+    let mut told = 0;
+    for most in [2.0, 3.0, 5.0, 8.0, 13.0, 21.0] {
+        let conditioned = of(Some(most), false);
+        let both: Vec<u64> =
+            conditioned.iter().copied().filter(|n| clear.binary_search(n).is_ok()).collect();
+        assert_eq!(of(Some(most), true), both);
+        told += usize::from(both.len() < conditioned.len() && both.len() < clear.len());
+    }
+    assert!(told > 0, "{} poses keep the clearance", clear.len());
 }
 
 #[test]

@@ -73,6 +73,9 @@ pub struct LinkageArgs {
 /// singularity. Violations between two samples are found too, unless one comes and goes more than once
 /// there. The rest of the motion is recorded; with --strict the exit status is then 1.
 ///
+/// Two bodies that are nearer than --clearance, or that overlap without it, interfere: when, which two, and how near,
+/// between samples too. The recording shows them red. The answer also names the nearest two of the whole motion.
+///
 /// --time-optimal keeps the sequence of poses and replaces the times: the platform starts and ends at rest, and moves
 /// as fast as the limits of rates and accelerations in the mechanism file let it. Every actuated joint needs a
 /// max_acceleration.
