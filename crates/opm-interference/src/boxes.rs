@@ -14,7 +14,11 @@ use crate::member::{End, Shape, scaled};
 use crate::{Interference, Pair};
 use opm_core::enclosure::{Ball, BodyPoint, MovingBody, Side};
 use opm_core::manipulator::{Manipulator, Mode, Solution};
+use opm_core::mechanism::joint::JointKind;
 use parry3d_f64::math::Vector;
+
+/// Points nearer than this, as a share of the mechanism's size, are one: far less than distances may be off.
+const ONE_POINT: f64 = 1e-12;
 
 /// Whether the members of a mechanism keep a clearance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +81,9 @@ impl<'a> BoxTest<'a> {
                 return EndPlace::AtRest(scaled(&home.coords, interference.unit));
             };
             let point = BodyPoint { body, home };
-            let known = points.iter().position(|known| *known == point);
+            let known = points.iter().position(|known| {
+                *known == point || stay_together(manipulator, known, &point, interference.unit)
+            });
             EndPlace::Moving(known.unwrap_or_else(|| {
                 points.push(point);
                 points.len() - 1
@@ -202,6 +208,34 @@ impl<'a> BoxTest<'a> {
         let off = balls[0].radius.max(balls[1].radius);
         Some((Capsule { ends: balls.map(|ball| ball.centre), radius }, off))
     }
+}
+
+/// Whether points of two bodies are one at every pose: the bodies share a joint, and the points are at its centre, or on its
+/// axis if it is revolute.
+fn stay_together(manipulator: &Manipulator, one: &BodyPoint, other: &BodyPoint, size: f64) -> bool {
+    let legs = &manipulator.mechanism().legs;
+    let last = |leg: usize| legs[leg].joints.len();
+    let joint = match (one.body, other.body) {
+        (MovingBody::Link { leg, joints }, MovingBody::Link { leg: same, joints: next })
+            if leg == same && joints.abs_diff(next) == 1 =>
+        {
+            &legs[leg].joints[joints.min(next)]
+        }
+        (MovingBody::Link { leg, joints }, MovingBody::Platform)
+        | (MovingBody::Platform, MovingBody::Link { leg, joints })
+            if joints + 1 == last(leg) =>
+        {
+            &legs[leg].joints[joints]
+        }
+        _ => return false,
+    };
+    let arm = one.home - joint.point;
+    let off = match joint.kind {
+        JointKind::Revolute => arm.cross(&joint.axis).norm(),
+        JointKind::Universal { .. } | JointKind::Spherical => arm.norm(),
+        JointKind::Prismatic | JointKind::Helical { .. } | JointKind::Cylindrical => return false,
+    };
+    off.max((one.home - other.home).norm()) <= ONE_POINT * size
 }
 
 /// What each body of the skeleton is; `None` for the base.
