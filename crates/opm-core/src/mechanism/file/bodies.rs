@@ -18,10 +18,13 @@ pub(super) fn read(root: &Table<'_>, mechanism: &mut Mechanism) {
     let radius = table.get("radius").and_then(|value| value.positive_length());
     let all = [&moving[..], &[Shapes::BASE]].concat();
     let radii = table.get("radii").and_then(|value| value.open_table());
-    let radii =
-        radii.map(|radii| by_name(&radii, mechanism, &all, |radius| radius.positive_length()));
+    let radii = radii.map(|radii| by_name(&radii, mechanism, &all, length));
     mechanism.bodies = BodyMasses { density, masses: masses.unwrap_or_default() };
     (mechanism.shapes.radius, mechanism.shapes.radii) = (radius, radii.unwrap_or_default());
+}
+
+fn length(value: &Value<'_>) -> Option<f64> {
+    value.positive_length()
 }
 
 /// Reads a number for some of the bodies with these names.
