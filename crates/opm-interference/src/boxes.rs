@@ -136,7 +136,9 @@ impl<'a> BoxTest<'a> {
             if high < self.least - INACCURACY {
                 return Clearance::Blocked;
             }
-            if !(low >= self.least + INACCURACY) {
+            // A bound that is not a number leaves the pair open, too.
+            let apart = low >= self.least + INACCURACY;
+            if !apart {
                 left.pairs.push(number);
             }
         }
@@ -185,13 +187,15 @@ impl<'a> BoxTest<'a> {
         let (distance, s) = match &shapes[other] {
             Shape::Capsule { .. } => match self.capsule(other) {
                 Some((other, s)) if r.is_finite() && s.is_finite() => {
-                    (capsule.to_capsule(&other), s)
+                    (capsule.distance_to_capsule(&other), s)
                 }
                 Some(_) | None => return [f64::NEG_INFINITY, f64::INFINITY],
             },
             _ if !r.is_finite() => return [f64::NEG_INFINITY, f64::INFINITY],
-            Shape::Box { pose, half } => (capsule.to_box(pose, *half), 0.0),
-            Shape::HalfSpace { normal, offset } => (capsule.to_half_space(*normal, *offset), 0.0),
+            Shape::Box { pose, half } => (capsule.distance_to_box(pose, *half), 0.0),
+            Shape::HalfSpace { normal, offset } => {
+                (capsule.distance_to_half_space(*normal, *offset), 0.0)
+            }
         };
         [distance - r - s, distance + r + s]
     }

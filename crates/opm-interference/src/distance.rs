@@ -19,7 +19,7 @@ pub(crate) struct Capsule {
 
 impl Capsule {
     /// The signed distance from another capsule.
-    pub fn to_capsule(&self, other: &Self) -> f64 {
+    pub fn distance_to_capsule(&self, other: &Self) -> f64 {
         self.axes_apart(other) - self.radius - other.radius
     }
 
@@ -41,14 +41,14 @@ impl Capsule {
     }
 
     /// The signed distance from a box with these half edges; minus the radius where the axis is inside.
-    pub fn to_box(&self, pose: &Pose, half: Vector) -> f64 {
+    pub fn distance_to_box(&self, pose: &Pose, half: Vector) -> f64 {
         let [a, b] = self.ends.map(|end| pose.inverse_transform_point(end));
         let (cuboid, axis) = (Cuboid::new(half), Segment::new(a, b));
         distance_support_map_support_map(&Pose::IDENTITY, &cuboid, &axis) - self.radius
     }
 
     /// The signed distance from a half-space: see [`Shape::HalfSpace`](crate::member::Shape::HalfSpace).
-    pub fn to_half_space(&self, normal: Vector, offset: f64) -> f64 {
+    pub fn distance_to_half_space(&self, normal: Vector, offset: f64) -> f64 {
         let [a, b] = self.ends.map(|end| normal.dot(end));
         a.min(b) - offset - self.radius
     }
@@ -79,12 +79,12 @@ mod tests {
     fn close(one: [Vector; 2], other: [Vector; 2]) {
         let capsule = |ends| Capsule { ends, radius: 0.125 };
         let (one_c, other_c) = (capsule(one), capsule(other));
-        let (found, expected) = (one_c.to_capsule(&other_c), apart(one, other) - 0.25);
+        let (found, expected) = (one_c.distance_to_capsule(&other_c), apart(one, other) - 0.25);
         assert!(
             (found - expected).abs() < INACCURACY,
             "{one:?} {other:?}: {found}, not {expected}"
         );
-        assert!((other_c.to_capsule(&one_c) - found).abs() < 1e-12);
+        assert!((other_c.distance_to_capsule(&one_c) - found).abs() < 1e-12);
         assert!(one_c.at_least_to(&other_c) <= found + 1e-12);
     }
 
@@ -134,7 +134,7 @@ mod tests {
             }
             let expected = at(0.0).min(at(1.0)).min(at(from)).min(at(to));
             let capsule = Capsule { ends: [a, b], radius: 0.1 };
-            let found = capsule.to_box(&Pose::IDENTITY, half) + 0.1;
+            let found = capsule.distance_to_box(&Pose::IDENTITY, half) + 0.1;
             assert!((found - expected).abs() < INACCURACY, "{a} {b}: {found}, not {expected}");
         }
     }

@@ -135,10 +135,12 @@ impl<'a> Distances<'a> {
         match (&shapes[other], capsule(other)) {
             (_, Some(other)) => {
                 let at_least = one.at_least_to(&other);
-                if at_least >= most { at_least } else { one.to_capsule(&other) }
+                if at_least >= most { at_least } else { one.distance_to_capsule(&other) }
             }
-            (Shape::Box { pose, half }, _) => one.to_box(pose, *half),
-            (Shape::HalfSpace { normal, offset }, _) => one.to_half_space(*normal, *offset),
+            (Shape::Box { pose, half }, _) => one.distance_to_box(pose, *half),
+            (Shape::HalfSpace { normal, offset }, _) => {
+                one.distance_to_half_space(*normal, *offset)
+            }
             (Shape::Capsule { .. }, None) => f64::INFINITY,
         }
     }
