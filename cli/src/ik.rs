@@ -3,6 +3,7 @@
 use crate::args::{IkArgs, Output};
 use crate::batch::{self, Modes};
 use crate::failure::Failure;
+use crate::interference;
 use crate::load::{self, Loaded};
 use crate::output::named;
 use crate::pose::Checks;
@@ -15,6 +16,7 @@ use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreacha
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::joint::{JointCoordinate, Quantity};
 use opm_core::task::TaskCoordinate;
+use opm_interference::{Distances, Interference, Nearest};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Write;
@@ -76,6 +78,7 @@ struct Answer<'a> {
     /// The distance of the requested transform from the motion, if it is outside. The pose is then the
     /// nearest.
     outside: Option<OutsideMotion>,
+    interference: Interference,
 }
 
 #[derive(Serialize)]
@@ -87,6 +90,8 @@ struct Json<'a> {
     transform: Value,
     #[serde(skip_serializing_if = "Option::is_none")]
     outside: Option<Value>,
+    /// The pairs of bodies that are not tested for interference.
+    set_aside: Value,
 }
 
 #[derive(Serialize)]
@@ -98,6 +103,8 @@ struct JsonSolution {
     /// The dependent coordinates, which may differ from mode to mode.
     #[serde(skip_serializing_if = "Map::is_empty")]
     dependent: Map<String, Value>,
+    /// The two bodies that are nearest to each other.
+    nearest: Value,
 }
 
 #[derive(Serialize)]
@@ -135,7 +142,9 @@ impl<'a> Answer<'a> {
             }
         };
         let all = matches!(modes, Modes::All);
-        Ok(Self { loaded, manipulator, pose, all, solutions, unreachable, outside: None })
+        let interference = Interference::new(manipulator.mechanism());
+        let outside = None;
+        Ok(Self { loaded, manipulator, pose, all, solutions, unreachable, outside, interference })
     }
 
     /// Keeps the solutions that have the given values of dependent coordinates.
@@ -173,7 +182,15 @@ impl<'a> Answer<'a> {
         let (solutions, unreachable) = (Vec::new(), Vec::new());
         let pose = outside.nearest.clone();
         let outside = Some(outside);
-        Self { loaded, manipulator, pose, all, solutions, unreachable, outside }
+        let interference = Interference::new(manipulator.mechanism());
+        Self { loaded, manipulator, pose, all, solutions, unreachable, outside, interference }
+    }
+
+    /// The two bodies that are nearest to each other in a solution.
+    fn nearest(&self, solution: &Solution) -> Option<Nearest> {
+        let mut distances = Distances::new(&self.interference);
+        distances.place(self.manipulator, solution);
+        distances.nearest()
     }
 
     fn json(&self) -> Json<'_> {
@@ -187,6 +204,7 @@ impl<'a> Answer<'a> {
                 joints: named(joints.zip(solution.joints().iter().copied())),
                 imaginary: named(imaginary.zip(solution.imaginary().iter().copied())),
                 dependent: named(dependent().zip(solution.dependent().iter().copied())),
+                nearest: interference::nearest_json(&self.interference, self.nearest(solution)),
             }
         };
         Json {
@@ -203,6 +221,7 @@ impl<'a> Answer<'a> {
                 None => transform::json(self.manipulator, &self.pose),
             },
             outside: self.outside.as_ref().map(transform::outside_json),
+            set_aside: interference::set_aside_json(&self.interference),
         }
     }
 
@@ -249,6 +268,10 @@ impl<'a> Answer<'a> {
                     },
                     self.joint_table(solution)
                 );
+                let nearest = self.nearest(solution);
+                let nearest = interference::nearest_text(&self.interference, nearest, units);
+                let aside = interference::set_aside_text(&self.interference, units);
+                let _ = write!(text, "{nearest}\n{aside}");
             }
             solutions => {
                 let _ =
@@ -306,6 +329,7 @@ impl<'a> Answer<'a> {
         headers.extend(dependent.iter().map(|c| text::header(c.name, c.quantity, units)));
         headers.extend(imaginary().map(|j| text::header(&j.name, j.quantity, units)));
         headers.extend(actuated().map(|(_, c)| text::header(&c.name, c.quantity, units)));
+        headers.push(text::header("nearest", Quantity::Length, units));
         let mut table = Table::new(headers);
         for (mode, solution) in &self.solutions {
             let within = if solution.within_limits() { "yes" } else { "no" };
@@ -324,6 +348,11 @@ impl<'a> Answer<'a> {
             row.extend(
                 actuated().map(|(i, c)| text::number(solution.joints()[i], c.quantity, units)),
             );
+            let nearest = self.nearest(solution).map(|nearest| nearest.distance);
+            row.push(nearest.map_or_else(
+                || "-".to_owned(),
+                |distance| text::number(distance, Quantity::Length, units),
+            ));
             table.row(row);
         }
         table

@@ -17,6 +17,7 @@ mod format;
 mod generate;
 mod ik;
 mod inspect;
+mod interference;
 mod layout;
 mod lines;
 mod linkage;

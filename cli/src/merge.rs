@@ -110,6 +110,9 @@ fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, 
     if let Some(ConditionLimit { most, .. }) = limit {
         command += &format!(" --max-condition {most}");
     }
+    if let Some(clearance) = workspace.clearance() {
+        command += &format!(" --clearance {}", clearance.least);
+    }
     if conditioning.is_some() {
         command += " --conditioning";
     }

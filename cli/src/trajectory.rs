@@ -4,6 +4,7 @@ mod summary;
 
 use crate::args::{Format, Output, TableUnits, TrajectoryArgs};
 use crate::failure::Failure;
+use crate::interference;
 use crate::layout;
 use crate::load;
 use crate::motion;
@@ -103,6 +104,8 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     if let Some(rate) = args.rate {
         request = request.rate(rate);
     }
+    let clearance = interference::clearance(args.clearance)?;
+    request = request.clearance(clearance.unwrap_or(0.0));
     let trajectory = request.trajectory()?;
     if let Some(path) = target.path() {
         loaded.refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;
@@ -175,9 +178,19 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
             count(violations)
         ));
     }
+    let contacts = summary.contacts.iter().map(|found| found.contacts.len()).sum::<usize>();
+    if contacts > 0 && clearance.is_some() {
+        let stretches = crate::text::plural(contacts as u64, "contact");
+        output.warn(format_args!("bodies interfere: {stretches}"));
+    }
     let report = Report { request, summary: &summary, units: loaded.file.units, given_duration };
     if !matches!(target, Target::Printed) {
         output.print(&report.json(), report.text())?;
+    }
+    if args.strict && clearance.is_some() && violations == 0 && contacts > 0 {
+        let problem =
+            format!("{}: bodies interfere (--strict): {}", motion.label, report.first_contact());
+        return Err(Failure::work(problem));
     }
     match args.strict && violations > 0 {
         true => Err(Failure::work(format!(

@@ -16,6 +16,7 @@ pub use work::{Work, threads};
 
 use crate::args::{CloudArgs, Output, WorkspaceArgs};
 use crate::failure::Failure;
+use crate::interference;
 use crate::load::{self, Loaded};
 use crate::pose::{GridAxis, Number};
 use crate::progress::interruptible;
@@ -111,6 +112,7 @@ fn request(args: &WorkspaceArgs, manipulator: &Manipulator) -> Result<WorkspaceR
     request.axes = axes.collect::<Result<_, _>>()?;
     request.length = args.length.map(Number::characteristic_length).transpose()?;
     request.max_condition = args.max_condition;
+    request.clearance = interference::clearance(args.clearance)?;
     request.conditioning = args.conditioning;
     request.shape = args.shape || args.inscribed.is_some();
     request.points = points(&args.cloud);

@@ -8,6 +8,7 @@
 #![allow(clippy::doc_markdown, clippy::doc_link_with_quotes)]
 
 mod arguments;
+mod clearance;
 mod columns;
 mod command;
 mod decomposition;
@@ -38,6 +39,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::clearance::Clearance;
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]

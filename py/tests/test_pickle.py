@@ -33,6 +33,7 @@ def objects(manipulator):
         m.nearest(m.transform(home)),
         m.forward(solutions.joints[:, m.actuated])[0][0],
         m.solids()[0],
+        m.clearance(home),
         m.legs["leg1"][0],
         m.explore(),
         m.task_coordinates[0],

@@ -39,6 +39,27 @@ home = { x = 1, y = 2, z = 3, h = 4, w = 5, theta = 0.1, phi = 0.2, zeta = 0.3, 
 [bodies]
 density = 1200
 masses = { platform = 0.8, S1 = 0.25 }
+radius = 0.1
+radii = { base = 0.2, platform = 0.3, S1 = 0.4 }
+
+[[obstacle]]
+name = "housing"
+type = "box"
+centre = [100, 0, 0]
+size = [1, 2, 3]
+x = [1, 1, 0]
+y = [0, 1, 0]
+
+[[obstacle]]
+type = "capsule"
+from = [200, 0, 0]
+to = [200, 0, 9]
+radius = 2
+
+[[obstacle]]
+type = "half-space"
+point = [0, 0, -99]
+normal = [0, 0, 1]
 
 [[leg]]
 name = "left"
@@ -224,6 +245,8 @@ def fragments():
             other = '{ name = "other", type = "spherical", point = [0, 0, 0] }'
             text = head.replace('angle = "rad"', 'angle = "deg"').partition("[task]")[0]
             yield text + f"[[leg]]\njoints = [\n{joints}\n]\n[[leg]]\njoints = [{other}]\n"
+        elif kind.startswith("obstacles of "):
+            yield named[kind.removeprefix("obstacles of ")] + "\n" + block
         else:
             text = named[kind.removeprefix("task of ")]
             yield re.sub(r"^\[task\]\n.*?\n\n", block + "\n", text, count=1, flags=re.M | re.S)

@@ -261,6 +261,7 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
         platform: displacement * Point3::from(vector(rng)),
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     };
     let classes = [&decomposition.lower, &decomposition.upper];
     let has_height = |class: &&SubspaceClass| matches!(class, SubspaceClass::Schoenflies { .. });

@@ -2,6 +2,7 @@
 
 mod batch;
 mod branches;
+mod clearance;
 mod condition;
 mod constraining_legs;
 mod default_grid;

@@ -53,6 +53,7 @@ fn described(legs: Vec<Vec<Joint>>) -> Mechanism {
         platform: ON_AXIS,
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     }
 }
 

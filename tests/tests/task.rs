@@ -209,6 +209,7 @@ fn level(rng: &mut Rng, rise: f64) -> Mechanism {
         platform: centres[1] + vector(rng) * 0.1,
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     }
 }
 

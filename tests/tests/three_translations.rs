@@ -44,6 +44,7 @@ fn mechanism(legs: Vec<Vec<Joint>>) -> Mechanism {
         platform: Point3::new(0.1, -0.2, 0.3),
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     }
 }
 

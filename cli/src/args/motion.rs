@@ -2,6 +2,7 @@
 
 use super::MechanismArgs;
 use crate::linkage::input::InputValue;
+use crate::pose::Number;
 use clap::{ValueEnum, ValueHint};
 use opm_core::motion::Ends;
 use std::path::PathBuf;
@@ -72,6 +73,9 @@ pub struct LinkageArgs {
 /// singularity. Violations between two samples are found too, unless one comes and goes more than once
 /// there. The rest of the motion is recorded; with --strict the exit status is then 1.
 ///
+/// Two bodies that are nearer than --clearance, or that overlap without it, interfere: when, which two, and how near,
+/// between samples too. The recording shows them red. The answer also names the nearest two of the whole motion.
+///
 /// --time-optimal keeps the sequence of poses and replaces the times: the platform starts and ends at rest, and moves
 /// as fast as the limits of rates and accelerations in the mechanism file let it. Every actuated joint needs a
 /// max_acceleration.
@@ -125,6 +129,10 @@ pub struct TrajectoryArgs {
     /// The fastest timing along the same path, from rest to rest, within the joints' max_rate and max_acceleration
     #[arg(long)]
     pub time_optimal: bool,
+    /// Least distance of two bodies, for example 5mm: where it is less, they interfere; with --strict that is a failure,
+    /// too
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub clearance: Option<Number>,
     /// Exit with status 1 if the mechanism cannot follow all of it
     #[arg(long)]
     pub strict: bool,

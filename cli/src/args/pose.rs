@@ -17,6 +17,10 @@ use std::path::PathBuf;
 /// that of the Euler angles at home. If the manipulator cannot move the platform there at all, the answer
 /// says by how much and in which direction (exit status 0). JSON has `transform` for every pose.
 ///
+/// The two bodies that are nearest to each other are named, with their distance: links as rods between their joints, the
+/// platform, and the obstacles of the file. With --all-modes, a column has that distance for each mode. Pairs that overlap
+/// at home are not tested, and named.
+///
 /// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians, or in units that
 /// the header names: `x [mm],xi [deg]`. A column `t`, as in the table of a motion, is carried through.
 /// CSV out: all task coordinates, those that depend on them, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,

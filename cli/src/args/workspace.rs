@@ -35,6 +35,11 @@ use std::path::PathBuf;
 /// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
 /// takes longer, and does not change the grid that is fitted.
 ///
+/// --clearance keeps links, platform and obstacles apart: links are rods between their joints, with the radii of the
+/// mechanism file, where obstacles stand, too. It is decided by bounds over boxes of poses, and pose by pose where these do
+/// not tell. It needs one working mode, and does not change the grid that is fitted. Pairs that overlap at home are not
+/// tested; they are named.
+///
 /// -o points.npy writes a structured NumPy array (float64) of the coordinates and joints that --axes,
 /// --scalars and --color name. -o cloud.ply writes a binary PLY file whose vertices are the points of the
 /// cloud. Without --scalars, both have every task coordinate; PLY leaves out those named x, y or z. The
@@ -68,6 +73,7 @@ Examples:
   opm workspace plano-spherical-5dof --grid x=-200mm:200mm:201 --grid y=-200mm:200mm:201
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
+  opm workspace plano-spherical-5dof --grid x=-0.2:0.2:201 --grid y=-0.2:0.2:201 --clearance 2mm
   opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
   opm workspace plano-spherical-5dof --kind reachable -o places.mcap
   opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid theta=-10deg:10deg:5
@@ -98,6 +104,9 @@ pub struct WorkspaceArgs {
     /// Count a pose only if its condition number is at most C in one of the working modes
     #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
+    /// Count a pose only if all bodies are at least this far apart, for example 5mm: see `opm ik` for the nearest two
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub clearance: Option<Number>,
     /// Also compute the global conditioning index, the mean of 1 / condition number
     #[arg(long)]
     pub conditioning: bool,
@@ -109,7 +118,7 @@ pub struct WorkspaceArgs {
     pub shape: bool,
     /// Also find what rejects the other poses: for each leg, joint and limit, how many it rejects alone, and how many
     /// with others
-    #[arg(long, conflicts_with_all = ["shard", "max_condition", "vary", "all_modes"])]
+    #[arg(long, conflicts_with_all = ["shard", "max_condition", "clearance", "vary", "all_modes"])]
     pub explain: bool,
     /// Also find the largest disc, ball or box in the set of points
     #[arg(long, value_name = "disc|ball|box", value_parser = inscribed(), conflicts_with = "shard")]

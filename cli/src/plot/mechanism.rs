@@ -4,6 +4,7 @@ use super::label::value_label;
 use super::sized::drawn;
 use crate::args::{MechanismArgs, Output, PlotArgs};
 use crate::failure::Failure;
+use crate::interference;
 use crate::load::{self, Loaded};
 use crate::text::reason;
 use crate::unitless;
@@ -13,9 +14,10 @@ use opm_core::linkage::Linkage;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::Mechanism;
 use opm_core::skeleton::{
-    Body, Configuration, ImaginaryJoints, Material, SeatMotion, Skeleton, Solid,
+    Body, Configuration, ImaginaryJoints, Material, PartKind, SeatMotion, Skeleton, Solid,
 };
 use opm_core::{Quantity, group::subspace::SubspaceClass};
+use opm_interference::{Distances, Interference};
 use opm_plot::{Color, Drawing, Heading, Named, Steps, Unit, ViewFigure};
 use std::collections::BTreeSet;
 
@@ -59,9 +61,21 @@ fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigur
                 imaginary: solution.imaginary(),
                 platform: solution.displacement(&manipulator),
             };
-            let lines = vec![pose_line(loaded, &manipulator, &solution), split_line(decomposition)];
+            let mut lines =
+                vec![pose_line(loaded, &manipulator, &solution), split_line(decomposition)];
             let joints = ImaginaryJoints { decomposition, imaginary };
-            assemble(loaded, Some(joints), &at, lines)
+            let interference = Interference::new(manipulator.mechanism());
+            let mut distances = Distances::new(&interference);
+            distances.place(&manipulator, &solution);
+            let nearest = distances.nearest();
+            if nearest.is_some_and(|nearest| nearest.distance < 0.0) {
+                let units = loaded.file.units;
+                lines.push(interference::nearest_text(&interference, nearest, units));
+            }
+            let pairs =
+                distances.nearer_than(0.0).flat_map(|near| interference.members_of(near.pair));
+            let red: BTreeSet<_> = pairs.map(|member| member.name.clone()).collect();
+            assemble(loaded, Some(joints), &at, lines, &red)
         }
         // It has no inverse kinematics, so that no other pose is known than that at home.
         Err(_) if posed => Err(loaded.compile().map_or_else(
@@ -82,11 +96,12 @@ fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigur
                     let homes: Vec<f64> = imaginary.iter().map(|joint| joint.home).collect();
                     let cuts = ImaginaryJoints { decomposition, imaginary };
                     let lines = vec!["at home".to_owned(), split_line(decomposition)];
-                    assemble(loaded, Some(cuts), &home(&homes), lines)
+                    assemble(loaded, Some(cuts), &home(&homes), lines, &BTreeSet::new())
                 }
                 Err(_) => {
                     let why = "it does not decompose: `opm decompose` says why";
-                    assemble(loaded, None, &home(&[]), vec![format!("at home; {why}")])
+                    let lines = vec![format!("at home; {why}")];
+                    assemble(loaded, None, &home(&[]), lines, &BTreeSet::new())
                 }
             }
         }
@@ -140,12 +155,13 @@ fn split_line(decomposition: &Decomposition) -> String {
     format!("lower section: {}; upper section: {}", lower.name(), upper.name())
 }
 
-/// The figure of a mechanism in a configuration.
+/// The figure of a mechanism in a configuration. The bodies, guides and obstacles with the names `red` interfere.
 fn assemble(
     loaded: &Loaded,
     joints: Option<ImaginaryJoints<'_>>,
     at: &Configuration<'_>,
     lines: Vec<String>,
+    red: &BTreeSet<String>,
 ) -> Result<ViewFigure, Failure> {
     let Loaded { file, label, .. } = loaded;
     let (mechanism, units) = (&file.mechanism, file.units);
@@ -157,11 +173,25 @@ fn assemble(
     let mut names = Vec::new();
     let mut used = BTreeSet::new();
     for (body, place) in skeleton.bodies().iter().zip(&placed) {
+        // The guides of the base come in the order of the joints that they belong to.
+        let sliders = body.seats.iter().filter(|seat| seat.motion == SeatMotion::Slide);
+        let mut guides = sliders.map(|seat| format!("{}/{}", body.name, seat.joint));
         for part in &body.parts {
-            let paint = Paint::of(part.material, || {
-                let divided = joints.filter(|joints| !joints.imaginary.is_empty());
-                divided.and_then(|joints| is_upper(mechanism, joints.decomposition, body))
-            });
+            let interferes = match part.kind {
+                PartKind::Guide { .. } if body.parent.is_none() => {
+                    guides.next().is_some_and(|name| red.contains(&name))
+                }
+                PartKind::Rod | PartKind::Guide { .. } => red.contains(&body.name),
+                PartKind::Joint | PartKind::Ring => false,
+            };
+            let paint = if interferes {
+                Paint::Interfering
+            } else {
+                Paint::of(part.material, || {
+                    let divided = joints.filter(|joints| !joints.imaginary.is_empty());
+                    divided.and_then(|joints| is_upper(mechanism, joints.decomposition, body))
+                })
+            };
             used.insert(paint);
             bodies.push((solid(&part.solid, place, point, factor), paint.color()));
         }
@@ -172,6 +202,14 @@ fn assemble(
                 names.push(Named { name: seat.joint.clone(), at });
             }
         }
+    }
+    for obstacle in &mechanism.shapes.obstacles {
+        let interferes = red.contains(&obstacle.name);
+        let paint = if interferes { Paint::Interfering } else { Paint::Obstacle };
+        used.insert(paint);
+        let solids = Solid::of_obstacle(&obstacle.shape, skeleton.size(), &mechanism.platform);
+        let rest = Isometry3::identity();
+        bodies.extend(solids.iter().map(|s| (solid(s, &rest, point, factor), paint.color())));
     }
     let length = units.symbol(Quantity::Length).to_owned();
     Ok(ViewFigure {
@@ -226,6 +264,8 @@ enum Paint {
     Actuated,
     Passive,
     Imaginary,
+    Obstacle,
+    Interfering,
 }
 
 impl Paint {
@@ -254,6 +294,8 @@ impl Paint {
             Self::Actuated => "actuated joint",
             Self::Passive => "passive joint",
             Self::Imaginary => "imaginary joint",
+            Self::Obstacle => "obstacle",
+            Self::Interfering => "interfering",
         }
     }
 
@@ -267,6 +309,8 @@ impl Paint {
             Self::Actuated => [0xd5, 0x5e, 0x00],
             Self::Passive => [0x56, 0xb4, 0xe9],
             Self::Imaginary => [0xe6, 0xbf, 0xd6],
+            Self::Obstacle => [0x99, 0x7a, 0x4d],
+            Self::Interfering => [0xe0, 0x10, 0x10],
         }
     }
 }

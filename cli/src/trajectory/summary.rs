@@ -1,11 +1,13 @@
 //! The printed summary of a motion.
 
+use crate::interference::{length_text, set_aside_json};
 use crate::text::{self, Table, count, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Violation, ViolationReport};
+use opm_interference::Contact;
 use opm_study::recording::violation_fields;
-use opm_study::{CoordinateRanges, MotionRequest, MotionSummary};
+use opm_study::{Contacts, CoordinateRanges, MotionRequest, MotionSummary};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -67,6 +69,9 @@ impl Report<'_> {
             "violation_count": summary.violation_count,
             "violations": violations,
         });
+        if let Some(contacts) = &summary.contacts {
+            json["interference"] = contacts_json(contacts);
+        }
         if let Some(given) = given_duration {
             json["given_duration"] = json!(given);
         }
@@ -135,7 +140,45 @@ impl Report<'_> {
         if more > 0 {
             let _ = writeln!(text, "and {} more violations", count(more));
         }
+        if let Some(contacts) = &summary.contacts {
+            text += &self.contacts_text(contacts);
+        }
         text
+    }
+
+    /// The nearest bodies, and the contacts, in words.
+    fn contacts_text(&self, of: &Contacts) -> String {
+        let Some((nearest, time)) = of.nearest else { return String::new() };
+        let [one, other] = of.interference.names_of(nearest.pair);
+        let mut text = format!(
+            "\nnearest bodies: {one} and {other}, {} at t = {} s\n",
+            length_text(nearest.distance, self.units),
+            short(time)
+        );
+        for contact in of.contacts.iter().take(MOST_SHOWN) {
+            let _ = writeln!(text, "{}", self.contact_line(of, contact));
+        }
+        let more = of.contacts.len().saturating_sub(MOST_SHOWN);
+        if more > 0 {
+            let _ = writeln!(text, "and {} more contacts", count(more as u64));
+        }
+        text
+    }
+
+    fn contact_line(&self, of: &Contacts, contact: &Contact) -> String {
+        let Contact { pair, start, end, worst, distance } = *contact;
+        let [one, other] = of.interference.names_of(pair);
+        let nearest = length_text(distance, self.units);
+        format!(
+            "t = {start:.6} .. {end:.6} s: {one} and {other} interfere, {nearest} at {worst:.6} s"
+        )
+    }
+
+    /// The first contact in words.
+    pub fn first_contact(&self) -> String {
+        let contacts = self.summary.contacts.as_ref();
+        let first = contacts.and_then(|of| Some(self.contact_line(of, of.contacts.first()?)));
+        first.unwrap_or_default()
     }
 
     /// The first violation in words.
@@ -159,6 +202,24 @@ impl Report<'_> {
             None => format!("t = {start:.6} s: {what}"),
         }
     }
+}
+
+fn contacts_json(of: &Contacts) -> Value {
+    let names = |pair| of.interference.names_of(pair);
+    let contacts = of.contacts.iter().map(|c| {
+        let Contact { pair, start, end, worst, distance } = *c;
+        json!({
+            "pair": names(pair), "start": start, "end": end, "worst": worst, "distance": distance,
+        })
+    });
+    let nearest = of.nearest.map(|(nearest, time)| {
+        json!({ "pair": names(nearest.pair), "distance": nearest.distance, "time": time })
+    });
+    json!({
+        "nearest": nearest,
+        "contacts": contacts.collect::<Vec<_>>(),
+        "set_aside": set_aside_json(&of.interference),
+    })
 }
 
 fn json(report: &ViolationReport<'_>) -> Value {

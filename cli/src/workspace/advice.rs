@@ -40,9 +40,13 @@ pub fn after(workspace: &Workspace, analysis: &Analysis, output: &Output) {
     if analysis.count.reachable == 0 {
         let kind = workspace.kind();
         let nothing = kind.nothing(workspace.limit().is_some());
+        let apart = match workspace.clearance() {
+            Some(_) => " with that clearance",
+            None => "",
+        };
         let hint = fewer(kind, workspace.grid());
         let hint = hint.map_or_else(String::new, |hint| format!("; {hint}"));
-        output.warn(format_args!("{nothing}{hint}"));
+        output.warn(format_args!("{nothing}{apart}{hint}"));
     }
 }
 

@@ -1,6 +1,7 @@
 //! The printed results of a workspace: text for people, and JSON.
 
 use super::aspects;
+use crate::interference::{set_aside_json, set_aside_text};
 use crate::text::{self, Table, count, plural, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
@@ -81,6 +82,10 @@ impl Outcome<'_> {
             json["max_condition"] = most.into();
             json["characteristic_length"] = length.into();
         }
+        if let Some(clearance) = workspace.clearance() {
+            json["clearance"] = clearance.least.into();
+            json["set_aside"] = set_aside_json(&clearance.interference);
+        }
         json
     }
 
@@ -108,6 +113,11 @@ impl Outcome<'_> {
         if let Some(ConditionLimit { most, length }) = workspace.limit() {
             let length = units.show(length, Quantity::Length);
             let _ = writeln!(text, "condition number at most {most} (lengths over {length})\n");
+        }
+        if let Some(clearance) = workspace.clearance() {
+            let least = units.show(clearance.least, Quantity::Length);
+            let aside = set_aside_text(&clearance.interference, units);
+            let _ = writeln!(text, "bodies at least {least} apart\n{aside}");
         }
 
         let share = match found.poses {

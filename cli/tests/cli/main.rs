@@ -12,6 +12,7 @@ mod format;
 mod generate;
 mod ik;
 mod inspect;
+mod interference;
 mod kind;
 mod linkage;
 mod measure;

@@ -50,6 +50,7 @@ fn a_shipped_motion_is_followed() {
             "condition",
             "violation_count",
             "violations",
+            "interference",
         ];
         assert_eq!(keys(&found), expected);
         assert_eq!((&found["samples"], &found["valid"]), (&json!(1001), &json!(1001)));

@@ -22,6 +22,7 @@ mod affine;
 mod area;
 mod boundary;
 mod chain;
+mod places;
 mod planar;
 mod raised;
 mod share;
@@ -40,6 +41,7 @@ use slice::{Bounded, Rectangle, Slice};
 use std::f64::consts::{PI, TAU};
 use target::{Coordinate, Enclosed, Target};
 
+pub use places::{Ball, BodyPoint, MovingBody};
 pub use share::MOST;
 
 /// One coordinate of a box.

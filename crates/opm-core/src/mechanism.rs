@@ -11,11 +11,13 @@ mod hints;
 pub mod joint;
 pub mod leg;
 mod screws;
+mod shapes;
 
 pub use bodies::BodyMasses;
 pub(crate) use hints::HOME_COORDINATES;
 pub use hints::{FrameHints, OrientationCoordinates, TaskHints, TaskKey};
 pub use screws::{ScrewError, ScrewJoint};
+pub use shapes::{Obstacle, ObstacleShape, Shapes};
 
 use crate::mechanism::joint::{Joint, JointCoordinate};
 use crate::mechanism::leg::Leg;
@@ -46,6 +48,8 @@ pub struct Mechanism {
     pub task: TaskHints,
     /// What the bodies weigh.
     pub bodies: BodyMasses,
+    /// How thick the bodies are, and what stands around them.
+    pub shapes: Shapes,
 }
 
 impl Mechanism {

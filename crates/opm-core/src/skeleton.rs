@@ -18,16 +18,17 @@
 //! joint on the base side; the platform's origin is its reference point.
 
 mod centre;
+mod obstacle;
 mod solid;
 
-pub use solid::{Material, Part, Solid};
+pub use solid::{Material, Part, PartKind, Solid};
 
 use crate::decomposition::{Decomposition, Freedom};
 use crate::group::screw::Screw;
 use crate::group::subspace::SubspaceClass;
 use crate::manipulator::ImaginaryJoint;
-use crate::mechanism::Mechanism;
 use crate::mechanism::joint::{Joint, JointKind, ValueCountError};
+use crate::mechanism::{BodyMasses, Mechanism, Shapes};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use solid::Sizes;
 
@@ -42,8 +43,10 @@ pub struct Body {
     pub origin: Point3<f64>,
     /// The solids that the body consists of, in its own frame.
     pub parts: Vec<Part>,
-    /// The joints that connect the body to others, in its own frame.
+    /// The joints that connect the body to others, in its own frame; of a link, first the one on the base side.
     pub seats: Vec<Seat>,
+    /// The radius of its rods, metres.
+    pub radius: f64,
 }
 
 /// The part of a joint that belongs to one body: where the joint is in that body.
@@ -134,6 +137,7 @@ pub struct Skeleton {
     imaginary: Vec<ImaginaryBody>,
     /// The number of joint coordinates of all legs.
     coordinates: usize,
+    size: f64,
 }
 
 /// A joint, and the body on its platform side that it moves.
@@ -172,8 +176,10 @@ impl Skeleton {
         Builder {
             mechanism,
             sizes: Sizes::of(size),
+            size,
             centres: centre::centres(mechanism, size),
             bodies: Vec::new(),
+            guides: Vec::new(),
             movers: Vec::new(),
         }
         .build(joints)
@@ -182,6 +188,12 @@ impl Skeleton {
     /// The bodies; the first one is the base.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
+    }
+
+    /// The size of the mechanism, metres: its joints' points and the platform's are within this distance of each other,
+    /// unless sliders travel farther.
+    pub fn size(&self) -> f64 {
+        self.size
     }
 
     /// The transform from every body's frame to the base, in the order of [`Skeleton::bodies`].
@@ -280,33 +292,39 @@ impl BodyJoint {
 struct Builder<'a> {
     mechanism: &'a Mechanism,
     sizes: Sizes,
+    size: f64,
     /// The centre of every joint, leg by leg.
     centres: Vec<Vec<Point3<f64>>>,
     bodies: Vec<Body>,
+    /// The radius of the guides of every body's sliders.
+    guides: Vec<f64>,
     movers: Vec<Vec<BodyJoint>>,
 }
 
 impl Builder<'_> {
     fn build(mut self, joints: Option<ImaginaryJoints<'_>>) -> Skeleton {
         let mechanism = self.mechanism;
-        self.add("base".into(), None, Point3::origin());
+        let radius = |name: &str| mechanism.shapes.radius_of(name);
+        self.add("base".into(), None, Point3::origin(), radius(Shapes::BASE));
         for (leg, centres) in mechanism.legs.iter().zip(self.centres.clone()) {
             let (outer, links) = leg.joints.split_last().unzip();
             let mut movers = Vec::new();
             for (joint, &centre) in links.unwrap_or_default().iter().zip(&centres) {
-                let body = self.add(format!("{}/{}", leg.name, joint.name), Some(0), centre);
+                let name = format!("{}/{}", leg.name, joint.name);
+                let body = self.add(name, Some(0), centre, radius(&joint.name));
                 movers.push(BodyJoint::new(joint, Some(body)));
             }
             movers.extend(outer.map(|joint: &Joint| BodyJoint::new(joint, None)));
             self.movers.push(movers);
         }
-        let platform = self.add("platform".into(), Some(0), mechanism.platform);
+        let of_platform = radius(BodyMasses::PLATFORM);
+        let platform = self.add("platform".into(), Some(0), mechanism.platform, of_platform);
         self.draw_base();
         for leg in 0..mechanism.legs.len() {
             self.draw_leg(leg, platform);
         }
         let ball = Solid::ball(mechanism.platform, self.sizes.ball);
-        self.draw(platform, ball, Material::Platform);
+        self.draw(platform, ball, Material::Platform, PartKind::Joint);
         let imaginary = joints.map_or_else(Vec::new, |joints| self.imaginary(joints, platform));
         Skeleton {
             coordinates: mechanism.coordinates().count(),
@@ -314,19 +332,29 @@ impl Builder<'_> {
             legs: self.movers,
             platform,
             imaginary,
+            size: self.size,
         }
     }
 
-    fn add(&mut self, name: String, parent: Option<usize>, origin: Point3<f64>) -> usize {
+    /// Adds a body, whose rods have a radius that is given, or follows from the mechanism's size.
+    fn add(
+        &mut self,
+        name: String,
+        parent: Option<usize>,
+        origin: Point3<f64>,
+        radius: Option<f64>,
+    ) -> usize {
         let (parts, seats) = (Vec::new(), Vec::new());
-        self.bodies.push(Body { name, parent, origin, parts, seats });
+        self.guides.push(radius.unwrap_or(self.sizes.guide));
+        let radius = radius.unwrap_or(self.sizes.rod);
+        self.bodies.push(Body { name, parent, origin, parts, seats, radius });
         self.bodies.len() - 1
     }
 
     /// Adds a solid, given in base coordinates at home, to a body.
-    fn draw(&mut self, body: usize, solid: Solid, material: Material) {
+    fn draw(&mut self, body: usize, solid: Solid, material: Material, kind: PartKind) {
         let body = &mut self.bodies[body];
-        body.parts.push(Part { solid: solid.moved(-body.origin.coords), material });
+        body.parts.push(Part { solid: solid.moved(-body.origin.coords), material, kind });
     }
 
     /// Connects two bodies by a joint. Its centre is given in base coordinates at home.
@@ -338,9 +366,9 @@ impl Builder<'_> {
         }
     }
 
-    fn rod(&mut self, body: usize, ends: [Point3<f64>; 2], material: Material) {
+    fn rod(&mut self, body: usize, ends: [Point3<f64>; 2], (material, kind): (Material, PartKind)) {
         if (ends[1] - ends[0]).norm() > self.sizes.touch {
-            self.draw(body, Solid::rod(ends, self.sizes.rod), material);
+            self.draw(body, Solid::rod(ends, self.bodies[body].radius), material, kind);
         }
     }
 
@@ -350,7 +378,8 @@ impl Builder<'_> {
         let feet = centre::around(feet);
         let count = if feet.len() > 2 { feet.len() } else { 1 };
         for i in 0..count {
-            self.rod(0, [feet[i], feet[(i + 1) % feet.len()]], Material::Base);
+            let ends = [feet[i], feet[(i + 1) % feet.len()]];
+            self.rod(0, ends, (Material::Base, PartKind::Ring));
         }
     }
 
@@ -367,14 +396,16 @@ impl Builder<'_> {
                 body if body == platform => Material::Platform,
                 _ => Material::Link,
             };
-            for (side, part) in self.sizes.joint(joint, centres[i]) {
+            // What is before the joint is as thick as its body.
+            let sizes = Sizes { guide: self.guides[between[0]], ..self.sizes };
+            for (side, part) in sizes.joint(joint, centres[i]) {
                 let driven = if joint.actuated { Material::Actuated } else { Material::Passive };
                 let body = between[usize::from(side.outer)];
                 let material = if side.own { driven } else { material(body) };
-                self.draw(body, part, material);
+                self.draw(body, part, material, side.kind);
             }
             let next = centres.get(i + 1).copied().unwrap_or(self.mechanism.platform);
-            self.rod(between[1], [centres[i], next], material(between[1]));
+            self.rod(between[1], [centres[i], next], (material(between[1]), PartKind::Rod));
             let motion = SeatMotion::of(joint.kind);
             let (joint, axis) = (joint.name.clone(), joint.axis);
             self.seat(between, &Seat { joint, motion, centre: centres[i], axis });
@@ -399,7 +430,7 @@ impl Builder<'_> {
         // attachment.
         let line = point.unwrap_or(ends[0].centre);
         let along = |p: &Point3<f64>| (p - line).dot(&axis);
-        let platform = self.add("lower_platform".into(), Some(0), line);
+        let platform = self.add("lower_platform".into(), Some(0), line, None);
         let screw = match point {
             Some(point) => Screw::rotation(axis, point),
             None => Screw::translation(axis),
@@ -412,16 +443,18 @@ impl Builder<'_> {
             let height = along(&end.centre) + step * (i as f64 - 0.5 * (ends.len() - 1) as f64);
             reach = [reach[0].min(height), reach[1].max(height)];
             let centre = line + axis.into_inner() * height;
-            let body = self.add(format!("imaginary/{}", joint.name), Some(platform), centre);
+            let name = format!("imaginary/{}", joint.name);
+            let body = self.add(name, Some(platform), centre, None);
             let (motion, hub) = match point {
                 Some(_) => (SeatMotion::Turn, self.sizes.hub(centre, axis)),
                 None => (SeatMotion::Slide, self.sizes.block(centre, axis)),
             };
-            self.draw(body, hub, Material::Imaginary);
+            self.draw(body, hub, Material::Imaginary, PartKind::Joint);
             if motion == SeatMotion::Turn {
-                self.draw(platform, self.sizes.pin(centre, axis), Material::Imaginary);
+                let pin = self.sizes.pin(centre, axis);
+                self.draw(platform, pin, Material::Imaginary, PartKind::Joint);
             }
-            self.rod(body, [centre, end.centre], Material::Imaginary);
+            self.rod(body, [centre, end.centre], (Material::Imaginary, PartKind::Rod));
             let name = joint.name.clone();
             self.seat([platform, body], &Seat { joint: name, motion, centre, axis });
             let weld = format!("{} on {}", joint.name, self.bodies[end.body].name);
@@ -436,7 +469,8 @@ impl Builder<'_> {
             self.sizes.travel
         };
         let shaft = [reach[0] - margin, reach[1] + margin].map(|h| line + axis.into_inner() * h);
-        self.draw(platform, Solid::rod(shaft, self.sizes.rod), Material::Imaginary);
+        let shaft = Solid::rod(shaft, self.sizes.rod);
+        self.draw(platform, shaft, Material::Imaginary, PartKind::Rod);
         imaginary
     }
 

@@ -111,6 +111,9 @@ pub(crate) enum State {
 /// The colour that bodies turn to while they are stuck, and its share.
 const STUCK: ([f64; 3], f64) = ([0.86, 0.15, 0.15], 0.7);
 
+/// The colour of bodies that interfere.
+const INTERFERING: [f64; 4] = [0.90, 0.05, 0.05, 1.0];
+
 impl State {
     fn tint(self, color: [f64; 4]) -> [f64; 4] {
         let (to, share) = match self {
@@ -122,9 +125,14 @@ impl State {
     }
 }
 
-/// The scene: an entity a body, fixed to the body's frame.
-pub(crate) fn update(bodies: &[Body], state: State, time: Timestamp) -> SceneUpdate {
-    let entities = bodies.iter().map(|body| {
+/// The scene: an entity a body, fixed to the body's frame. The bodies with these numbers interfere.
+pub(crate) fn update(
+    bodies: &[Body],
+    (state, interfering): (State, &[usize]),
+    time: Timestamp,
+) -> SceneUpdate {
+    let entities = bodies.iter().enumerate().map(|(number, body)| {
+        let red = interfering.contains(&number);
         let note = |(key, value): &(String, String)| KeyValuePair {
             key: key.clone(),
             value: value.clone(),
@@ -138,7 +146,8 @@ pub(crate) fn update(bodies: &[Body], state: State, time: Timestamp) -> SceneUpd
             ..SceneEntity::default()
         };
         for solid in &body.solids {
-            let color = color(state.tint(solid.color));
+            let tinted = if red { INTERFERING } else { state.tint(solid.color) };
+            let color = color(tinted);
             match solid.shape {
                 Shape::Cylinder { from, to, radius } => {
                     let (axis, length) = direction(from, to);

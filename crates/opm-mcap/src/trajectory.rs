@@ -9,7 +9,7 @@
 //! | `/condition` | `opm.Condition`: condition number, singularity measures, and `valid`, 1 or 0 |
 //! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know this schema; at most 60 a second |
 //! | `/tf` | `foxglove.FrameTransforms`: where every body is; at most 60 a second |
-//! | `/scene` | `foxglove.SceneUpdate`: what the bodies look like, each in its own frame; red while they are stuck |
+//! | `/scene` | `foxglove.SceneUpdate`: what the bodies look like, each in its own frame; red while they are stuck, and those that interfere |
 //! | `/scene/bodies/NAME` | one `foxglove.PointCloud` for each body, for viewers without scenes: its surface |
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
 //!
@@ -217,6 +217,9 @@ pub struct Posture<'a> {
     /// The frame of every body except the base, in the frame of its parent. They are only read at times of
     /// which [`TrajectoryRecorder::shows`] is true.
     pub frames: &'a [Frame],
+    /// The numbers of the bodies that interfere, ascending: the scene shows them red. They are only read at times of which
+    /// [`TrajectoryRecorder::shows`] is true.
+    pub interfering: &'a [usize],
 }
 
 /// The rates of the joints at one instant.
@@ -246,6 +249,8 @@ struct Shown {
     topic: Topic,
     bodies: Vec<Body>,
     state: State,
+    /// The numbers of the bodies that interfere.
+    interfering: Vec<usize>,
 }
 
 /// Writes a recording of a motion. Any error is final. The [module](self) has an example.
@@ -380,7 +385,12 @@ impl<W: Sink> TrajectoryRecorder<W> {
     /// Writes the shapes of the bodies.
     fn show(&mut self, bodies: &[Body]) -> Result<(), RecordError> {
         let topic = self.log.topic::<foxglove::messages::SceneUpdate>(SCENE_TOPIC)?;
-        self.scene = Some(Shown { topic, bodies: bodies.to_vec(), state: State::Moves });
+        self.scene = Some(Shown {
+            topic,
+            bodies: bodies.to_vec(),
+            state: State::Moves,
+            interfering: Vec::new(),
+        });
         self.draw(START)?;
         for body in bodies {
             let name = format!("{BODIES_TOPIC}{}", body.frame);
@@ -405,16 +415,28 @@ impl<W: Sink> TrajectoryRecorder<W> {
 
     /// Writes the scene in its present state.
     fn draw(&mut self, time: u64) -> Result<(), RecordError> {
-        let Some(Shown { topic, bodies, state }) = &mut self.scene else { return Ok(()) };
-        let scene = update(bodies, *state, stamp(time));
+        let Some(Shown { topic, bodies, state, interfering }) = &mut self.scene else {
+            return Ok(());
+        };
+        let scene = update(bodies, (*state, interfering), stamp(time));
         put(&mut self.log, &mut self.message, topic, time, &scene)
     }
 
-    /// Writes the scene anew where the bodies get stuck, or move again.
-    fn draw_change(&mut self, time: u64, now: State) -> Result<(), RecordError> {
+    /// Writes the scene anew where the bodies get stuck, or move again, and where others interfere.
+    fn draw_change(
+        &mut self,
+        time: u64,
+        (now, interfering): (State, Option<&[usize]>),
+    ) -> Result<(), RecordError> {
         match &mut self.scene {
-            Some(shown) if shown.state != now => {
+            Some(shown)
+                if shown.state != now
+                    || interfering.is_some_and(|all| shown.interfering != all) =>
+            {
                 shown.state = now;
+                if let Some(interfering) = interfering {
+                    shown.interfering = interfering.to_vec();
+                }
                 self.draw(time)
             }
             _ => Ok(()),
@@ -444,7 +466,8 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let next = time.saturating_add(PICTURE_PERIOD);
         let time = self.advance(time)?;
         let state = if sample.posture.is_some() { State::Moves } else { State::Stuck };
-        self.draw_change(time, state)?;
+        let interfering = sample.posture.filter(|_| shows).map(|posture| posture.interfering);
+        self.draw_change(time, (state, interfering))?;
         let log = &mut self.log;
         let write = |log: &mut Log<W>, topic: &mut Option<JointsTopic>, values: &[f64]| match topic
         {

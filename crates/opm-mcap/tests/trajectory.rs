@@ -147,6 +147,7 @@ fn a_motion_has_all_topics() {
         imaginary: &[0.1],
         rates: Some(rates),
         frames: &frames,
+        interfering: &[],
     };
     let at = |valid, posture| Sample {
         pose: &[1.0, 2.0],

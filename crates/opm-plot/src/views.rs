@@ -98,8 +98,9 @@ const LEAST: f64 = 80.0;
 const ABOVE: f64 = 24.0;
 /// The gap between two views, besides the numbers of the axes.
 const BETWEEN: f64 = 26.0;
-/// The room for the legend, and the side of a colour in it.
+/// The room for a line of the legend, the distance of further lines, and the side of a colour in it.
 const LEGEND: f64 = 22.0;
+const LEGEND_LINE: f64 = 18.0;
 const SWATCH: f64 = 11.0;
 /// No extent is drawn shorter than this share of the longest one.
 const SHORTEST: f64 = 0.45;
@@ -134,9 +135,10 @@ impl ViewFigure {
         }
         let top = self.heading.top(width);
         let mut shapes = self.heading.draw(width, height - self.heading.bottom(width));
-        shapes.push(self.draw_legend(top));
+        shapes.push(self.draw_legend(top, width));
+        let legend = self.legend_height(width);
         let columns = [MARGIN + left, MARGIN + left + x + BETWEEN + left];
-        let rows = [top + LEGEND + ABOVE, top + LEGEND + ABOVE + y + BELOW + ABOVE];
+        let rows = [top + legend + ABOVE, top + legend + ABOVE + y + BELOW + ABOVE];
         let place = |column: usize, row: usize, width, height| Rect {
             x: columns[column],
             y: rows[row],
@@ -158,14 +160,14 @@ impl ViewFigure {
         let [x, y, z] = ranges.map(|[low, high]| high - low);
         let width = size.map_or(WIDTH, |size| size.width);
         let across = width - 2.0 * (MARGIN + left) - BETWEEN;
-        let texts = self.heading.top(width) + LEGEND + self.heading.bottom(width);
-        let texts = texts + 2.0 * (ABOVE + BELOW);
-        let high = size.map_or(HIGHEST, |size| size.height - texts);
-        let scale = (across / (x + y)).min(high / (y + z));
-        let fitted = Size {
-            width: (width - across + scale * (x + y)).ceil(),
-            height: (texts + scale * (y + z)).ceil(),
+        let texts = |width: f64| {
+            let heading = self.heading.top(width) + self.heading.bottom(width);
+            heading + self.legend_height(width) + 2.0 * (ABOVE + BELOW)
         };
+        let high = size.map_or(HIGHEST, |size| size.height - texts(width));
+        let scale = (across / (x + y)).min(high / (y + z));
+        let fitted = (width - across + scale * (x + y)).ceil();
+        let fitted = Size { width: fitted, height: (texts(fitted) + scale * (y + z)).ceil() };
         Layout { size: size.unwrap_or(fitted), left, scale, ranges }
     }
 
@@ -186,15 +188,34 @@ impl ViewFigure {
         })
     }
 
-    fn draw_legend(&self, top: f64) -> Shape {
+    /// Where each entry of the legend begins: how far from the left, and in which line.
+    fn legend_places(&self, width: f64) -> Vec<(f64, usize)> {
+        let (mut x, mut line) = (MARGIN, 0);
+        let place = |(name, _): &(String, Color)| {
+            let own = SWATCH + 5.0 + NAME.width(name);
+            if x > MARGIN && x + own > width - MARGIN {
+                (x, line) = (MARGIN, line + 1);
+            }
+            let place = (x, line);
+            x += own + 16.0;
+            place
+        };
+        self.legend.iter().map(place).collect()
+    }
+
+    /// The room for the legend in a figure of this width.
+    fn legend_height(&self, width: f64) -> f64 {
+        let last = self.legend_places(width).last().map_or(0, |&(_, line)| line);
+        LEGEND + last as f64 * LEGEND_LINE
+    }
+
+    fn draw_legend(&self, top: f64, width: f64) -> Shape {
         let mut shapes = Vec::new();
-        let mut x = MARGIN;
-        for (name, color) in &self.legend {
-            let swatch = Rect { x, y: top - SWATCH + 2.0, width: SWATCH, height: SWATCH };
+        for ((name, color), (x, line)) in self.legend.iter().zip(self.legend_places(width)) {
+            let y = top + line as f64 * LEGEND_LINE;
+            let swatch = Rect { x, y: y - SWATCH + 2.0, width: SWATCH, height: SWATCH };
             shapes.push(Shape::Area(Path::rect(swatch), *color));
-            x += SWATCH + 5.0;
-            shapes.push(NAME.text(&**name, [x, top], Anchor::Start));
-            x += NAME.width(name) + 16.0;
+            shapes.push(NAME.text(&**name, [x + SWATCH + 5.0, y], Anchor::Start));
         }
         Shape::Group { kind: "legend", label: String::new(), shapes }
     }

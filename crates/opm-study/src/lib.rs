@@ -93,7 +93,7 @@ pub use kind::{PosePart, UnknownKind, WorkspaceKind};
 pub use linkage::{LinkageRound, RoundSummary, input_intervals};
 pub use measure::{Measure, unit_product};
 pub use motion::{
-    CoordinateRanges, DEFAULT_RATE, MOST_LISTED, MotionRequest, MotionSummary, Range,
+    Contacts, CoordinateRanges, DEFAULT_RATE, MOST_LISTED, MotionRequest, MotionSummary, Range,
 };
 pub use names::{ASPECT, INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 pub use poses::PoseSource;

@@ -3,12 +3,13 @@
 mod batch;
 mod summary;
 
-pub use summary::{CoordinateRanges, MOST_LISTED, MotionSummary, Range};
+pub use summary::{Contacts, CoordinateRanges, MOST_LISTED, MotionSummary, Range};
 
 use crate::error::StudyError;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::motion::PlatformMotion;
 use opm_core::trajectory::{Change, Sample, Trajectory, TrajectoryError};
+use opm_interference::{Distances, Interference, Watch, Watched};
 
 /// Samples per second of a motion without a rate of its own.
 pub const DEFAULT_RATE: f64 = 100.0;
@@ -29,6 +30,8 @@ pub struct MotionRequest<'a> {
     pub mode: Mode,
     /// Samples per second.
     pub rate: f64,
+    /// The least distance of two bodies that is no contact, metres, if contacts are watched for.
+    pub clearance: Option<f64>,
 }
 
 impl<'a> MotionRequest<'a> {
@@ -37,7 +40,7 @@ impl<'a> MotionRequest<'a> {
     pub fn new(manipulator: &'a Manipulator, motion: &'a PlatformMotion, label: &'a str) -> Self {
         let mode = motion.mode.unwrap_or_else(|| manipulator.home_mode());
         let rate = motion.rate.unwrap_or(DEFAULT_RATE);
-        Self { manipulator, motion, label, mode, rate }
+        Self { manipulator, motion, label, mode, rate, clearance: None }
     }
 
     /// Selects another working mode.
@@ -52,12 +55,18 @@ impl<'a> MotionRequest<'a> {
         Self { rate, ..self }
     }
 
+    /// Watches for bodies that are nearer to each other than this, metres.
+    #[must_use]
+    pub fn clearance(self, least: f64) -> Self {
+        Self { clearance: Some(least), ..self }
+    }
+
     /// The trajectory, checked, before its first sample.
     ///
     /// # Errors
     /// The motion cannot be sampled, or lasts too long.
     pub fn trajectory(&self) -> Result<Trajectory<'a>, StudyError> {
-        let Self { manipulator, motion, label, mode, rate } = *self;
+        let Self { manipulator, motion, label, mode, rate, .. } = *self;
         if motion.duration > LONGEST {
             let (motion, duration) = (label.to_owned(), motion.duration);
             return Err(StudyError::LongMotion { motion, duration, most: LONGEST });
@@ -82,10 +91,24 @@ impl<'a> MotionRequest<'a> {
         go_on: impl Fn(u64) -> bool,
     ) -> Result<MotionSummary, StudyError> {
         let mut summary = MotionSummary::new(self.manipulator);
+        let interference = self.clearance.map(|_| Interference::new(self.manipulator.mechanism()));
+        let mut watch =
+            self.clearance.zip(interference.as_ref()).map(|(clearance, interference)| {
+                let Self { manipulator, motion, mode, .. } = *self;
+                let of = Watched { manipulator, motion, mode, clearance };
+                Watch::new(of, Distances::new(interference))
+            });
         let mut number = 0;
         let open = self.each_batch(trajectory, |batch| {
             for (sample, changes) in batch {
                 summary.add(sample);
+                if let Some(watch) = &mut watch {
+                    let solution = Some(&sample.solution).filter(|_| sample.reached);
+                    let time = sample.time;
+                    let watched = watch.advance(time, 1.0 / self.rate, solution);
+                    let pose = |source| TrajectoryError::Pose { time, source };
+                    watched.map_err(|source| self.failed(pose(source)))?;
+                }
                 take(number, sample, changes)?;
                 for change in changes {
                     if let Change::Ends(violation) = change {
@@ -98,6 +121,10 @@ impl<'a> MotionRequest<'a> {
         })?;
         open.into_iter().for_each(|violation| summary.add_violation(violation));
         summary.sort();
+        let found = watch.map(Watch::finish);
+        summary.contacts = interference.zip(found).map(|(interference, (contacts, nearest))| {
+            Contacts { interference, contacts, nearest }
+        });
         Ok(summary)
     }
 }

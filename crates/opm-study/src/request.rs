@@ -5,7 +5,7 @@ mod fit;
 use crate::columns::{PointChoice, PointOptions};
 use crate::error::{RequestError, StudyError};
 use crate::kind::WorkspaceKind;
-use crate::workspace::Workspace;
+use crate::workspace::{Clearance, Workspace};
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
@@ -43,6 +43,8 @@ pub struct WorkspaceRequest {
     pub modes: Option<Modes>,
     /// The largest condition number at which a pose counts.
     pub max_condition: Option<f64>,
+    /// The least distance of bodies at which a pose counts, metres.
+    pub clearance: Option<f64>,
     /// Characteristic length of condition numbers, metres; by default the spread of the joint axes.
     pub length: Option<f64>,
     /// Whether the global conditioning index is requested.
@@ -78,6 +80,13 @@ impl WorkspaceRequest {
     #[must_use]
     pub fn max_condition(mut self, most: f64) -> Self {
         self.max_condition = Some(most);
+        self
+    }
+
+    /// Limits the distance of bodies at the poses that count, metres.
+    #[must_use]
+    pub fn clearance(mut self, least: f64) -> Self {
+        self.clearance = Some(least);
         self
     }
 
@@ -125,6 +134,13 @@ impl WorkspaceRequest {
         let limit = self.max_condition.map(|most| condition_limit(most, length)).transpose()?;
         let modes = self.modes.unwrap_or(Modes::One(manipulator.home_mode()));
         check_kind(kind, &manipulator, modes, limit)?;
+        let clearance = match self.clearance {
+            Some(least) => {
+                check_clearance(least, kind, modes)?;
+                Some(Clearance::new(&manipulator, least))
+            }
+            None => None,
+        };
         let grid = match self.axes.is_empty() {
             true => None,
             false => Some(grid(kind, &manipulator, self.axes)?),
@@ -136,6 +152,7 @@ impl WorkspaceRequest {
             grid,
             modes,
             limit,
+            clearance,
             length,
             length_given: self.length.is_some(),
             conditioning: self.conditioning,
@@ -165,6 +182,7 @@ pub struct CheckedRequest {
     grid: Option<Grid>,
     modes: Modes,
     limit: Option<ConditionLimit>,
+    clearance: Option<Clearance>,
     length: f64,
     length_given: bool,
     conditioning: bool,
@@ -208,7 +226,9 @@ impl CheckedRequest {
     /// # Errors
     /// The work was cancelled.
     pub fn fit(self, progress: &Progress) -> Result<Workspace, Cancelled> {
-        let Self { manipulator, kind, modes, limit, length, conditioning, shape, .. } = self;
+        let Self {
+            manipulator, kind, modes, limit, clearance, length, conditioning, shape, ..
+        } = self;
         let (grid, unbounded) = match self.grid {
             Some(grid) => (grid, None),
             None => {
@@ -229,6 +249,7 @@ impl CheckedRequest {
             grid,
             modes,
             limit,
+            clearance,
             length,
             conditioning,
             shape,
@@ -254,6 +275,20 @@ fn condition_limit(most: f64, length: f64) -> Result<ConditionLimit, RequestErro
     match most {
         1.0.. if most.is_finite() => Ok(ConditionLimit { most, length }),
         _ => Err(RequestError::MaxCondition(most)),
+    }
+}
+
+/// Refuses a clearance where it has no meaning.
+fn check_clearance(least: f64, kind: WorkspaceKind, modes: Modes) -> Result<(), RequestError> {
+    if !(least >= 0.0 && least.is_finite()) {
+        return Err(RequestError::Clearance(least));
+    }
+    if kind.sections() != Sections::Whole {
+        return Err(RequestError::SectionClearance { kind });
+    }
+    match modes {
+        Modes::One(_) => Ok(()),
+        Modes::Any => Err(RequestError::ClearanceModes),
     }
 }
 

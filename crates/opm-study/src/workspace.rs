@@ -6,9 +6,10 @@ use crate::measure::{Measure, grid_measure};
 use crate::poses::PoseSource;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
+use opm_interference::Interference;
 use opm_workspace::{
-    Cancelled, ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes, Progress,
-    Rejections, Sections, SetAxis, SetError, Sweep, Visits,
+    Cancelled, ClearanceLimit, ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes,
+    Progress, Rejections, Sections, SetAxis, SetError, Sweep, Visits,
 };
 use std::sync::Arc;
 
@@ -24,10 +25,28 @@ pub struct Workspace {
     pub(crate) grid: Grid,
     pub(crate) modes: Modes,
     pub(crate) limit: Option<ConditionLimit>,
+    pub(crate) clearance: Option<Clearance>,
     pub(crate) length: f64,
     pub(crate) conditioning: bool,
     pub(crate) shape: bool,
     pub(crate) unbounded: Option<Vec<String>>,
+}
+
+/// The least distance of bodies at which a pose counts.
+#[derive(Clone, Debug)]
+pub struct Clearance {
+    /// The pairs of bodies.
+    pub interference: Arc<Interference>,
+    /// The least distance, metres.
+    pub least: f64,
+}
+
+impl Clearance {
+    /// A clearance of a manipulator's bodies, metres.
+    pub(crate) fn new(manipulator: &Manipulator, least: f64) -> Self {
+        let interference = Arc::new(Interference::new(manipulator.mechanism()));
+        Self { interference, least }
+    }
 }
 
 impl Workspace {
@@ -64,6 +83,11 @@ impl Workspace {
         self.limit
     }
 
+    /// The least distance of bodies at which a pose counts.
+    pub fn clearance(&self) -> Option<&Clearance> {
+        self.clearance.as_ref()
+    }
+
     /// Characteristic length of condition numbers, metres.
     pub fn length(&self) -> f64 {
         self.length
@@ -89,15 +113,23 @@ impl Workspace {
     /// Whether another workspace has the same kind, grid, working modes, and limit on condition numbers with
     /// their characteristic length: the same points, if it is one of the same mechanism.
     pub fn has_request_of(&self, other: &Self) -> bool {
-        let request = |one: &Self| (one.kind, one.modes, one.limit, one.length);
+        let clearance = |one: &Self| one.clearance.as_ref().map(|clearance| clearance.least);
+        let request = |one: &Self| (one.kind, one.modes, one.limit, one.length, clearance(one));
         request(self) == request(other) && self.grid == other.grid
     }
 
     /// The sweep of the grid.
     pub fn sweep(&self) -> Sweep<'_> {
         let sweep = Sweep::new(&self.manipulator, &self.grid, self.modes);
-        match self.limit {
+        let sweep = match self.limit {
             Some(limit) => sweep.with_limit(limit).expect("the request was checked"),
+            None => sweep,
+        };
+        match &self.clearance {
+            Some(Clearance { interference, least }) => {
+                let limit = ClearanceLimit { interference, least: *least };
+                sweep.with_clearance(limit).expect("the request was checked")
+            }
             None => sweep,
         }
     }

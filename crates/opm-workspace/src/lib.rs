@@ -49,6 +49,7 @@
 
 mod aspects;
 mod boundary;
+mod clearance;
 mod components;
 mod condition;
 mod conditioning;
@@ -72,6 +73,7 @@ pub use aspects::{
     Aspect, AspectPath, Aspects, NoPath, SingularCurves, aspect_at, find_path, singular_curves,
 };
 pub use boundary::{MaskError, Outline, Ring, boundary, mask_boundary};
+pub use clearance::{ClearanceError, ClearanceLimit};
 pub use components::Components;
 pub use condition::{ConditionError, ConditionLimit, Conditioned};
 pub use conditioning::ConditioningIndex;

@@ -6,6 +6,7 @@
 //! of rows, between the places where their feasibility changes ([`asked`]).
 
 mod asked;
+mod clear;
 mod clip;
 mod known_range;
 mod limited;
@@ -19,6 +20,7 @@ mod worker;
 pub use runs::Run;
 pub use shard::{Shard, ShardError};
 
+use crate::clearance::{ClearanceError, ClearanceLimit};
 use crate::condition::{ConditionError, ConditionLimit};
 use crate::grid::Grid;
 use crate::ordered::in_order;
@@ -165,6 +167,7 @@ pub struct Sweep<'a> {
     grid: &'a Grid,
     modes: Modes,
     limit: Option<ConditionLimit>,
+    clearance: Option<(ClearanceLimit<'a>, Mode)>,
     shard: Shard,
     /// The number of segments in a row.
     segments: u64,
@@ -188,8 +191,8 @@ impl<'a> Sweep<'a> {
         // Small sheets are not divided: it takes some time to enter one.
         let (stride, sheet) = ((BLOCK / row.min(SEGMENT)).max(1), side * segments);
         let stride = if sheet <= stride { stride - stride % sheet } else { stride };
-        let (limit, shard) = (None, Shard::WHOLE);
-        Self { manipulator, grid, modes, limit, shard, segments, stride, side, sheets }
+        let (limit, clearance, shard) = (None, None, Shard::WHOLE);
+        Self { manipulator, grid, modes, limit, clearance, shard, segments, stride, side, sheets }
     }
 
     /// The grid that is swept.
@@ -221,6 +224,21 @@ impl<'a> Sweep<'a> {
     pub fn with_limit(self, limit: ConditionLimit) -> Result<Self, ConditionError> {
         limit.check(self.grid)?;
         Ok(Self { limit: Some(limit), ..self })
+    }
+
+    /// The same sweep, but a pose counts only if all bodies keep a clearance there. That is decided by bounds over boxes of
+    /// poses, and pose by pose only where these do not tell.
+    ///
+    /// # Errors
+    /// [`ClearanceError`]: a grid of one section alone, several working modes, or a clearance that is not a length.
+    pub fn with_clearance(self, clearance: ClearanceLimit<'a>) -> Result<Self, ClearanceError> {
+        let mode = clearance.check(self.grid, self.modes)?;
+        Ok(Self { clearance: Some((clearance, mode)), ..self })
+    }
+
+    /// The limit on the distance of bodies, if there is one.
+    pub fn clearance(&self) -> Option<ClearanceLimit<'a>> {
+        self.clearance.map(|(limit, _)| limit)
     }
 
     /// The same sweep of one shard of its grid alone. A shard is a number of whole blocks of rows; the

@@ -17,6 +17,7 @@ from . import examples
 from ._native import (
     Aspect,
     Assembly,
+    Clearance,
     Conditioning,
     Decomposition,
     Explorer,
@@ -49,6 +50,7 @@ from ._native import (
 __all__ = [
     "Aspect",
     "Assembly",
+    "Clearance",
     "Conditioning",
     "Decomposition",
     "Explorer",

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "Aspect",
     "Assembly",
+    "Clearance",
     "Conditioning",
     "Decomposition",
     "Explorer",
@@ -621,6 +622,42 @@ class Manipulator:
     @property
     def screws(self) -> dict[str, NDArray[np.float64]]:
         """The joints' unit screws by leg, (f, 6) each: (omega; v) in base coordinates, as they are at home, one row for each degree of freedom."""
+    def clearance(
+        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+    ) -> Clearance:
+        """The two bodies that are nearest to each other at every pose, and how far apart they are.
+
+        Bodies that meet by construction are not tested: those that share a joint, or joints at one point. Nor are pairs that
+        overlap at home (:attr:`Clearance.set_aside`), where the shapes are wrong rather than the mechanism.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+            One row for each pose, one column for each task coordinate; metres and radians.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. One for each processor if not given.
+
+        Returns
+        -------
+        Clearance
+            Distances in metres, and names of pairs.
+
+        Raises
+        ------
+        OpmError
+            The columns are not the task coordinates, a number is not finite, or the mode is unknown.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("plano-spherical-5dof")
+        >>> clearance = m.clearance([m.home])
+        >>> one, other = clearance.pairs[clearance.pair[0]]
+        >>> bool(clearance.distance[0] > 0)
+        True
+        """
     def solids(self, pose: Sequence[float] | NDArray[np.float64] | None = None, *, mode: str = "home") -> list[Solid]:
         """The solids that the mechanism is drawn with, from its joint screws alone.
 
@@ -1186,6 +1223,30 @@ class Singularity:
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,): whether the pose is in reach, joint limits not considered."""
+
+@final
+class Clearance:
+    """The two bodies that are nearest to each other, at each of ``n`` poses.
+
+    Links and the platform are rods between their joints, with the radii of the mechanism file; obstacles are those of the file.
+    """
+
+    @property
+    def distance(self) -> NDArray[np.float64]:
+        """(n,): the distance of the nearest two, metres; negative where they overlap, NaN where the pose is out of reach."""
+    @property
+    def pair(self) -> NDArray[np.int64]:
+        """(n,): which two these are, as an index of `pairs`; -1 where the pose is out of reach."""
+    @property
+    def pairs(self) -> list[tuple[str, str]]:
+        """The names of the pairs that are tested."""
+    @property
+    def set_aside(self) -> list[tuple[str, str, float]]:
+        """The pairs that are not tested because they overlap at home: their names, and by how much, metres."""
+    @property
+    def mode(self) -> str:
+        """The working mode."""
+    def __len__(self) -> int: ...
 
 @final
 class Solid:

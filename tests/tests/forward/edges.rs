@@ -300,6 +300,7 @@ fn turntable(rng: &mut Rng) -> Option<Manipulator> {
         platform: Point3::origin(),
         task: Default::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     };
     Manipulator::new(mechanism).ok()
 }

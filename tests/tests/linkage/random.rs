@@ -131,5 +131,6 @@ pub fn linkage(rng: &mut Rng, pattern: [usize; 2]) -> Mechanism {
         platform: far,
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     }
 }

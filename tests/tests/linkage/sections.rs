@@ -186,6 +186,7 @@ fn mechanism(rng: &mut Rng, shared: Shared, mut sections: [Section; 2]) -> Mecha
         platform,
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     }
 }
 

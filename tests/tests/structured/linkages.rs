@@ -82,6 +82,7 @@ fn apart(mut lower: Vec<Joint>, upper: Vec<Joint>) -> Mechanism {
         platform,
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     }
 }
 

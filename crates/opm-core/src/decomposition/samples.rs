@@ -48,6 +48,7 @@ pub(crate) fn mechanism(name: &str, legs: Vec<Vec<Joint>>) -> Mechanism {
         platform: Point3::origin(),
         task: TaskHints::default(),
         bodies: Default::default(),
+        shapes: Default::default(),
     }
 }
 

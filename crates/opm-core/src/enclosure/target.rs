@@ -171,7 +171,7 @@ impl<const N: usize> Enclosed<N> {
     }
 
     /// The rotation as a unit vector.
-    fn unit_vector(self) -> Plane<N> {
+    pub fn unit_vector(self) -> Plane<N> {
         match self {
             Self::UnitDirection(e) => e,
             Self::Direction(e) => e.direction(),

@@ -46,7 +46,9 @@
 //! Every key may be left out. `opm decompose` prints the resulting frames.
 //!
 //! `[bodies]`, in both forms, says what the bodies weigh, for models of simulators: `density` in kilograms per cubic metre,
-//! and `masses`, a table of kilograms by the names of bodies: `platform`, or the joint that carries a link.
+//! and `masses`, a table of kilograms by the names of bodies: `platform`, or the joint that carries a link; and how thick
+//! they are: `radius` of all, and `radii` by name. `[[obstacle]]` says what stands around the mechanism
+//! ([`Obstacle`](super::Obstacle)).
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
 //! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Some names are columns of tables and
@@ -63,6 +65,8 @@ mod heading;
 pub mod hint;
 #[cfg(feature = "files")]
 mod joints;
+#[cfg(feature = "files")]
+mod obstacles;
 #[cfg(feature = "files")]
 mod parameters;
 mod problem;

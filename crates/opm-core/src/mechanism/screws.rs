@@ -1,6 +1,6 @@
 //! Mechanisms built from the screws of their joints alone.
 
-use super::{BodyMasses, Mechanism, TaskHints};
+use super::{BodyMasses, Mechanism, Shapes, TaskHints};
 use crate::group::screw::Screw;
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::Leg;
@@ -121,7 +121,8 @@ impl Mechanism {
             .map(|(name, joints)| Leg::new(name, joints.into_iter().map(build).collect()))
             .collect();
         let (task, bodies) = (TaskHints::default(), BodyMasses::default());
-        Ok(Self { name: name.into(), legs, platform, task, bodies })
+        let shapes = Shapes::default();
+        Ok(Self { name: name.into(), legs, platform, task, bodies, shapes })
     }
 }
 

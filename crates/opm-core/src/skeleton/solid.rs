@@ -69,6 +69,22 @@ impl Material {
     }
 }
 
+/// What a part of a body stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartKind {
+    /// A rod between two joints of the body, or from a joint of the platform to its reference point.
+    Rod,
+    /// A guide of a slider, as long as the slider's travel. A slider without limits has a guide of any length.
+    Guide {
+        /// Whether its length follows from limits.
+        limited: bool,
+    },
+    /// A pin, a collar, a block or a ball: a sign for a joint.
+    Joint,
+    /// A ring of rods from leg to leg: a sign for the base.
+    Ring,
+}
+
 /// A solid that is a part of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
@@ -76,6 +92,8 @@ pub struct Part {
     pub solid: Solid,
     /// The kind of body or joint, which decides the colour.
     pub material: Material,
+    /// What it stands for.
+    pub kind: PartKind,
 }
 
 impl Solid {
@@ -109,13 +127,15 @@ pub(super) struct Sizes {
     pub touch: f64,
     /// Radius of a rod.
     pub rod: f64,
+    /// Radius of a slider's guide.
+    pub guide: f64,
     /// Radius of a ball.
     pub ball: f64,
     /// Length of the collar around a pin.
     pub collar: f64,
     /// How far a slider without limits is drawn to travel to either side.
     pub travel: f64,
-    pin: f64,
+    pub pin: f64,
 }
 
 /// Which of a joint's two bodies a part belongs to, and its colour.
@@ -125,6 +145,7 @@ pub(super) struct Side {
     pub outer: bool,
     /// Whether the part has the joint's own colour rather than its body's.
     pub own: bool,
+    pub kind: PartKind,
 }
 
 impl Sizes {
@@ -132,6 +153,7 @@ impl Sizes {
         Self {
             touch: TOUCH * size,
             rod: 0.012 * size,
+            guide: 0.6 * 0.012 * size,
             ball: 0.03 * size,
             collar: 0.045 * size,
             travel: 0.5 * size,
@@ -141,23 +163,27 @@ impl Sizes {
 
     /// The parts of a joint with the given centre.
     pub fn joint(&self, joint: &Joint, centre: Point3<f64>) -> Vec<(Side, Solid)> {
-        let inner = |own| Side { outer: false, own };
-        let outer = |own| Side { outer: true, own };
+        let inner = |own| Side { outer: false, own, kind: PartKind::Joint };
+        let outer = |own| Side { outer: true, own, kind: PartKind::Joint };
+        let guide = |coordinate: usize| {
+            let limited = joint.coordinates[coordinate].limits.is_some();
+            Side { outer: false, own: false, kind: PartKind::Guide { limited } }
+        };
         let pin = |axis| self.pin(centre, axis);
         match joint.kind {
             JointKind::Revolute => {
                 vec![(inner(true), pin(joint.axis)), (outer(false), self.hub(centre, joint.axis))]
             }
             JointKind::Prismatic => vec![
-                (inner(false), self.rail(joint, 0, 1.0, centre)),
+                (guide(0), self.rail(joint, 0, 1.0, centre)),
                 (outer(true), self.block(centre, joint.axis)),
             ],
             JointKind::Cylindrical => vec![
-                (inner(false), self.rail(joint, 1, 1.0, centre)),
+                (guide(1), self.rail(joint, 1, 1.0, centre)),
                 (outer(true), self.sleeve(centre, joint.axis)),
             ],
             JointKind::Helical { pitch } => vec![
-                (inner(false), self.rail(joint, 0, pitch, centre)),
+                (guide(0), self.rail(joint, 0, pitch, centre)),
                 (outer(true), self.sleeve(centre, joint.axis)),
             ],
             JointKind::Universal { second } => vec![
@@ -199,7 +225,7 @@ impl Sizes {
         let (low, high) = (low.min(high), low.max(high));
         // A little longer, so that the slider is still on it at its limit.
         let at = |s: f64| centre + joint.axis.into_inner() * s;
-        Solid::rod([at(low - self.collar), at(high + self.collar)], 0.6 * self.rod)
+        Solid::rod([at(low - self.collar), at(high + self.collar)], self.guide)
     }
 
     fn cylinder(

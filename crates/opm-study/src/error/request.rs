@@ -19,6 +19,8 @@ pub enum RequestOption {
     Mode,
     /// The largest condition number.
     MaxCondition,
+    /// The least distance of bodies.
+    Clearance,
     /// The characteristic length of condition numbers.
     Length,
     /// The global conditioning index.
@@ -45,6 +47,7 @@ impl RequestOption {
             Self::Grid => "axes of the grid",
             Self::Mode => "modes",
             Self::MaxCondition => "max_condition",
+            Self::Clearance => "clearance",
             Self::Length => "length",
             Self::Conditioning => "conditioning",
             Self::Axes => "axes",
@@ -107,6 +110,15 @@ pub enum RequestError {
     },
     /// The limit on the condition number is below one, or not a number.
     MaxCondition(f64),
+    /// The clearance is below zero, or not a number.
+    Clearance(f64),
+    /// A clearance is given for another kind than one of poses.
+    SectionClearance {
+        /// The kind of workspace.
+        kind: WorkspaceKind,
+    },
+    /// A clearance is given for any working mode.
+    ClearanceModes,
     /// The characteristic length is out of range.
     Length(f64),
     /// A characteristic length is given, but no condition number uses it.
@@ -261,6 +273,9 @@ impl RequestError {
     pub fn option(&self) -> RequestOption {
         match self {
             Self::MaxCondition(_) | Self::SectionCondition { .. } => RequestOption::MaxCondition,
+            Self::Clearance(_) | Self::SectionClearance { .. } | Self::ClearanceModes => {
+                RequestOption::Clearance
+            }
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
@@ -291,6 +306,14 @@ impl RequestError {
         let with = |kind: &WorkspaceKind| format!("{} {kind}", spell(RequestOption::Kind));
         match self {
             Self::MaxCondition(most) => format!("{most:?}, expected a number of at least 1"),
+            Self::Clearance(least) => format!("{least:?} m, expected a length of 0 or more"),
+            Self::SectionClearance { kind } => {
+                format!("with {}: a section alone has no clearance", with(kind))
+            }
+            Self::ClearanceModes => format!(
+                "with {} any: bodies are elsewhere in each mode; give one",
+                spell(RequestOption::Mode)
+            ),
             Self::Length(length) => {
                 format!("{length:?} m, expected a positive length, 1e-75 to 1e75 m")
             }

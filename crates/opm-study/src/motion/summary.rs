@@ -2,6 +2,7 @@
 
 use opm_core::manipulator::Manipulator;
 use opm_core::trajectory::{Sample, Violation};
+use opm_interference::{Contact, Interference, Nearest};
 
 /// Number of violations that are kept. All are counted.
 pub const MOST_LISTED: usize = 10_000;
@@ -49,6 +50,19 @@ pub struct MotionSummary {
     pub violations: Vec<Violation>,
     /// The number of all violations.
     pub violation_count: u64,
+    /// Where two bodies are nearer than the clearance, if that was watched for.
+    pub contacts: Option<Contacts>,
+}
+
+/// The contacts of a motion.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    /// The pairs that were tested, with their names.
+    pub interference: Interference,
+    /// The contacts in the order of time.
+    pub contacts: Vec<Contact>,
+    /// The nearest pair of the whole motion, and the time, seconds.
+    pub nearest: Option<(Nearest, f64)>,
 }
 
 impl MotionSummary {
@@ -63,6 +77,7 @@ impl MotionSummary {
             condition: None,
             violations: Vec::new(),
             violation_count: 0,
+            contacts: None,
         }
     }
 

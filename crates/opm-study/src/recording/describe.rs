@@ -2,7 +2,7 @@
 
 use super::{Attachment, PROGRAM, record};
 use crate::kind::WorkspaceKind;
-use crate::workspace::Workspace;
+use crate::workspace::{Clearance, Workspace};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::Metadata;
@@ -16,6 +16,9 @@ const CONDITIONING: &str = "conditioning";
 
 /// The parts of a conditioning index; `sum` counts units of 2⁻⁶⁰.
 const CONDITIONING_PARTS: [&str; 4] = ["poses", "min", "max", "sum"];
+
+/// The key of the least distance of bodies.
+const CLEARANCE: &str = "clearance";
 
 /// The key of the largest shape inside the set, and the prefix of the keys of its coordinates.
 const INSCRIBED: &str = "inscribed";
@@ -36,6 +39,9 @@ pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
     if let Some(ConditionLimit { most, length }) = workspace.limit {
         run.insert("max_condition".to_owned(), most.to_string());
         run.insert("characteristic_length".to_owned(), length.to_string());
+    }
+    if let Some(clearance) = &workspace.clearance {
+        run.insert(CLEARANCE.to_owned(), clearance.least.to_string());
     }
     for Axis { name, min, max, count } in workspace.grid.axes() {
         run.insert(format!("grid.{name}"), format!("{min}:{max}:{count}"));
@@ -77,6 +83,10 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
         None => None,
         Some(length) => Some(length?),
     };
+    let clearance = match number(CLEARANCE) {
+        None => None,
+        Some(least) => Some(Clearance::new(&manipulator, least?)),
+    };
     let length = limit.map(|limit| limit.length).or(conditioning);
     let length = length.unwrap_or_else(|| manipulator.characteristic_length());
     let conditioning = conditioning.is_some();
@@ -87,6 +97,7 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
         grid,
         modes,
         limit,
+        clearance,
         length,
         conditioning,
         shape,

@@ -4,11 +4,12 @@ use super::scene::{Scene, imaginary_coordinates, joint_coordinates};
 use super::{Attachment, PROGRAM, create, expect_mcap, record};
 use crate::error::StudyError;
 use crate::motion::{MOST_LISTED, MotionRequest, MotionSummary};
-use opm_core::manipulator::Manipulator;
+use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::motion::Path as MotionPath;
 use opm_core::skeleton;
 use opm_core::task::TaskCoordinate;
 use opm_core::trajectory::{Change, Sample, Trajectory, Violation, ViolationReport};
+use opm_interference::{Distances, Interference};
 use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded};
 use opm_mcap::{Metadata, PartialFile, RecordError, TrajectoryRecorder};
 use serde_json::{Value, json};
@@ -25,6 +26,10 @@ pub struct MotionRecorder<'a> {
     /// Whether the upper and the lower section have a parallel singularity measure.
     parallel: [bool; 2],
     measures: Vec<f64>,
+    /// The pairs of bodies, if contacts are watched for.
+    interference: Option<Interference>,
+    /// The numbers of the scene's bodies that interfere at the present sample.
+    interfering: Vec<usize>,
 }
 
 impl<'a> MotionRecorder<'a> {
@@ -46,7 +51,20 @@ impl<'a> MotionRecorder<'a> {
         let recorded = recorded(&request, files, &scene, parallel);
         let recorder = TrajectoryRecorder::new(file, &recorded);
         let recorder = recorder.map_err(|error| StudyError::record(&place, error))?;
-        Ok(Self { request, recorder, scene, place, last: 0, parallel, measures: Vec::new() })
+        let interference =
+            request.clearance.map(|_| Interference::new(request.manipulator.mechanism()));
+        let (last, measures, interfering) = (0, Vec::new(), Vec::new());
+        Ok(Self {
+            request,
+            recorder,
+            scene,
+            place,
+            last,
+            parallel,
+            measures,
+            interference,
+            interfering,
+        })
     }
 
     /// Follows the motion from end to end, and completes the recording: see [`MotionRequest::follow`].
@@ -64,6 +82,24 @@ impl<'a> MotionRecorder<'a> {
         let summary = request.follow(trajectory, take, go_on)?;
         self.finish(&summary)?;
         Ok(summary)
+    }
+
+    /// Finds the bodies that interfere in a solution.
+    fn find_interfering(&mut self, solution: &Solution) {
+        self.interfering.clear();
+        let Some((interference, clearance)) =
+            self.interference.as_ref().zip(self.request.clearance)
+        else {
+            return;
+        };
+        let mut distances = Distances::new(interference);
+        distances.place(self.request.manipulator, solution);
+        for near in distances.nearer_than(clearance) {
+            let members = interference.members_of(near.pair);
+            self.interfering.extend(members.map(|member| self.scene.body_of(member)));
+        }
+        self.interfering.sort_unstable();
+        self.interfering.dedup();
     }
 
     /// Records a sample, and the transitions up to it.
@@ -112,13 +148,18 @@ impl<'a> MotionRecorder<'a> {
         });
         let (joints, imaginary) = (&solution.joints(), &solution.imaginary());
         let posture = if sample.reached {
+            if self.recorder.shows(now) {
+                self.find_interfering(solution);
+            }
             let frames = if self.recorder.shows(now) {
                 let platform = solution.displacement(manipulator);
                 self.scene.frames(&skeleton::Configuration { joints, imaginary, platform })
             } else {
                 &[]
             };
-            Some(Posture { dependent: solution.dependent(), joints, imaginary, rates, frames })
+            let dependent = solution.dependent();
+            let interfering = &self.interfering;
+            Some(Posture { dependent, joints, imaginary, rates, frames, interfering })
         } else {
             None
         };
@@ -157,18 +198,38 @@ impl<'a> MotionRecorder<'a> {
                     .collect();
                 self.recorder.describe(&format!("violation.{}", number + 1), &record)?;
             }
+            for (number, contact) in contacts(summary).take(MOST_LISTED).enumerate() {
+                self.recorder.describe(&format!("interference.{}", number + 1), &contact)?;
+            }
             Ok(())
         };
         let result = record([
             ("samples", summary.samples.to_string()),
             ("valid", summary.valid.to_string()),
             ("violations", summary.violation_count.to_string()),
+            ("interferences", contacts(summary).count().to_string()),
             ("violations_listed", summary.violations.len().min(MOST_LISTED).to_string()),
         ]);
         complete()
             .and_then(|()| self.recorder.finish(&result))
             .map_err(|error: RecordError| StudyError::record(&self.place, error))
     }
+}
+
+/// The contacts of a motion as metadata.
+fn contacts(summary: &MotionSummary) -> impl Iterator<Item = Metadata> + '_ {
+    let all = summary.contacts.iter();
+    all.flat_map(|of| of.contacts.iter().map(move |contact| (of, contact))).map(|(of, contact)| {
+        let [one, other] = of.interference.names_of(contact.pair);
+        record([
+            ("one", one.to_owned()),
+            ("other", other.to_owned()),
+            ("start", contact.start.to_string()),
+            ("end", contact.end.to_string()),
+            ("worst", contact.worst.to_string()),
+            ("distance", contact.distance.to_string()),
+        ])
+    })
 }
 
 /// The description of the recorded motion.

@@ -5,12 +5,15 @@ use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::joint::{Joint, JointCoordinate};
 use opm_core::skeleton::{Body, Configuration, ImaginaryJoints, Material, Seat, Skeleton, Solid};
+use opm_interference::member::{Member, MemberKind};
 use opm_mcap::scene::{self, Shape};
 use opm_mcap::trajectory::{Coordinate, Frame, Role};
 
 /// The bodies, and a buffer for their poses.
 pub struct Scene {
     skeleton: Skeleton,
+    /// What stands around the mechanism, each at rest in the base.
+    obstacles: Vec<scene::Body>,
     placed: Vec<Isometry3<f64>>,
     frames: Vec<Frame>,
 }
@@ -18,7 +21,19 @@ pub struct Scene {
 impl Scene {
     pub fn new(mechanism: &Mechanism, cuts: ImaginaryJoints<'_>) -> Self {
         let skeleton = Skeleton::new(mechanism, Some(cuts));
-        Self { skeleton, placed: Vec::new(), frames: Vec::new() }
+        let size = skeleton.size();
+        let obstacles = mechanism.shapes.obstacles.iter().map(|obstacle| {
+            let solids = Solid::of_obstacle(&obstacle.shape, size, &mechanism.platform);
+            let solid = |solid| scene::Solid { shape: shape(&solid), color: OBSTACLE };
+            scene::Body {
+                frame: format!("obstacle/{}", obstacle.name),
+                parent: Some(0),
+                solids: solids.into_iter().map(solid).collect(),
+                notes: Vec::new(),
+            }
+        });
+        let obstacles = obstacles.collect();
+        Self { skeleton, obstacles, placed: Vec::new(), frames: Vec::new() }
     }
 
     pub fn of(manipulator: &Manipulator) -> Self {
@@ -26,7 +41,7 @@ impl Scene {
         Self::new(manipulator.mechanism(), ImaginaryJoints { decomposition, imaginary })
     }
 
-    /// The shapes and colours of the bodies.
+    /// The shapes and colours of the bodies, and then of the obstacles.
     pub fn bodies(&self) -> Vec<scene::Body> {
         let body = |body: &Body| scene::Body {
             frame: body.name.clone(),
@@ -38,7 +53,8 @@ impl Scene {
                 .collect(),
             notes: body.seats.iter().map(note).collect(),
         };
-        self.skeleton.bodies().iter().map(body).collect()
+        let bodies = self.skeleton.bodies().iter().map(body);
+        bodies.chain(self.obstacles.iter().cloned()).collect()
     }
 
     /// The poses of all bodies except the base.
@@ -50,7 +66,18 @@ impl Scene {
             let q = g.rotation.coords;
             Frame { translation: g.translation.vector.into(), rotation: [q.x, q.y, q.z, q.w] }
         }));
+        let at_rest = Frame { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] };
+        self.frames.extend(self.obstacles.iter().map(|_| at_rest));
         &self.frames
+    }
+
+    /// The number of the scene's body for a member of the mechanism that may interfere.
+    pub fn body_of(&self, member: &Member) -> usize {
+        match member.kind {
+            MemberKind::Body(body) => body,
+            MemberKind::Guide(_) => 0,
+            MemberKind::Obstacle(number) => self.skeleton.bodies().len() + number,
+        }
     }
 }
 
@@ -99,6 +126,9 @@ fn shape(solid: &Solid) -> Shape {
         }
     }
 }
+
+/// The colour of obstacles.
+const OBSTACLE: [f64; 4] = [0.60, 0.48, 0.30, 1.0];
 
 /// Colours that are distinct for people with colour blindness (by Okabe and Ito), and greys.
 fn color(material: Material) -> [f64; 4] {

@@ -129,6 +129,41 @@ impl AskedRows {
         &self.numbers
     }
 
+    /// The first coordinates of the window's poses.
+    pub fn first(&self) -> &[f64] {
+        &self.first
+    }
+
+    /// The second coordinates of the rows.
+    pub fn second(&self) -> &[f64] {
+        &self.second
+    }
+
+    /// The poses that are left: the place of the row, and from which number in the window to which.
+    pub fn pieces(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
+        self.left.iter().map(|piece| (piece.row, piece.from as usize, piece.to as usize))
+    }
+
+    /// Leaves those poses that are `kept`: for each row, one answer for each pose of the window.
+    pub fn keep(&mut self, kept: &[bool]) {
+        let width = self.first.len();
+        let pieces = std::mem::take(&mut self.left);
+        for piece in pieces {
+            let row = &kept[piece.row * width..][..width];
+            let mut next = piece.from;
+            while next < piece.to {
+                let end = (next..piece.to).find(|&pose| row[pose as usize] != row[next as usize]);
+                let end = end.unwrap_or(piece.to);
+                if row[next as usize] {
+                    let apart = piece.apart && next == piece.from;
+                    self.left.push(Piece { from: next, to: end, apart, ..piece });
+                }
+                next = end;
+            }
+        }
+        self.find_row_ends();
+    }
+
     /// Whether any row is not clipped.
     pub fn any_unclipped(&self) -> bool {
         self.clipped.contains(&Clipped::Not)
@@ -270,6 +305,11 @@ impl AskedRows {
                 }
             }
         }
+        self.find_row_ends();
+    }
+
+    /// Finds where the pieces of each row end.
+    fn find_row_ends(&mut self) {
         self.ends.clear();
         let mut end = 0;
         for row in 0..self.numbers.len() {

@@ -1,5 +1,6 @@
 //! Slices of few poses: poses of many slices are decided together.
 
+use super::clear::ClearPoses;
 use super::runs::{self, Run};
 use super::worker::{Ranges, Visitor};
 use super::{Count, Hits, Sweep};
@@ -18,6 +19,8 @@ pub struct Together<'a> {
     batch: Batch,
     /// Decides by the limit on the condition number, if there is one.
     limited: Option<Conditioned<'a>>,
+    /// Decides by the clearance, if there is one.
+    clear: Option<Box<ClearPoses<'a>>>,
     /// The numbers of the present pose's coordinates, and their values.
     digits: Vec<u64>,
     pose: Vec<f64>,
@@ -28,7 +31,13 @@ pub struct Together<'a> {
     first: Vec<f64>,
 }
 
-impl Sweep<'_> {
+impl<'a> Sweep<'a> {
+    /// Working memory for the clearance, if there is one.
+    pub(super) fn clear_poses(&self) -> Option<Box<ClearPoses<'a>>> {
+        let (limit, mode) = self.clearance?;
+        Some(Box::new(ClearPoses::new(self.manipulator, limit, mode)))
+    }
+
     /// Whether poses of several slices are decided together.
     pub(super) fn takes_slices_together(&self) -> bool {
         self.grid.sections() == Sections::Whole
@@ -45,6 +54,7 @@ impl<'a> Together<'a> {
             ranges,
             batch: sweep.manipulator.batch(),
             limited: sweep.limit.map(limited),
+            clear: sweep.clear_poses(),
             digits: vec![0; axes],
             pose: vec![0.0; axes],
             poses: Vec::new(),
@@ -76,8 +86,10 @@ impl<'a> Together<'a> {
                 self.advance(sweep);
             }
             let reached = &mut self.reached[..count as usize];
+            // With a clearance, imaginary joints are taken where it is kept.
+            let any = self.clear.is_none();
             let mut used = |imaginary: usize, range: [f64; 2]| {
-                range.into_iter().for_each(|end| found.widen(imaginary, end));
+                range.into_iter().filter(|_| any).for_each(|end| found.widen(imaginary, end));
             };
             match &mut self.limited {
                 Some(conditioned) => {
@@ -92,6 +104,21 @@ impl<'a> Together<'a> {
                 None => {
                     let (mode, batch) = (sweep.modes.one(), &mut self.batch);
                     sweep.manipulator.decide_many(&self.poses, mode, batch, reached, used);
+                }
+            }
+            if let Some(clear) = &mut self.clear {
+                let poses = self.poses.chunks(self.pose.len());
+                for (reached, pose) in
+                    reached.iter_mut().zip(poses).filter(|(reached, _)| **reached)
+                {
+                    match clear.at(pose) {
+                        Some(imaginary) if self.ranges == Ranges::Wanted => {
+                            let values = imaginary.iter().enumerate();
+                            values.for_each(|(number, &value)| found.widen(number, value));
+                        }
+                        Some(_) => {}
+                        None => *reached = false,
+                    }
                 }
             }
             found.poses += count;

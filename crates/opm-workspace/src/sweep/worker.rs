@@ -1,6 +1,7 @@
 //! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
 
 use super::asked::{AskedRows, Clipped};
+use super::clear::ClearPoses;
 use super::clip::{Clip, ClippedRows, Intersect, Intersection, ROWS, RowState, Rows};
 use super::known_range::KnownRanges;
 use super::limited::LimitedRows;
@@ -36,6 +37,7 @@ pub struct Worker<'a> {
     fixed: Option<(Range<u64>, Box<AskedRows>)>,
     hits: HitPoses,
     limit: Option<LimitedRows<'a>>,
+    clear: Option<Box<ClearPoses<'a>>>,
     one: OnePose,
     together: Option<Together<'a>>,
     /// The angles of imaginary joints over the poses that this thread found.
@@ -193,6 +195,7 @@ impl<'a> Worker<'a> {
             fixed: None,
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },
             limit: sweep.limit.map(|limit| LimitedRows::new(manipulator, limit)),
+            clear: sweep.clear_poses(),
             one: OnePose {
                 pose: pose(),
                 all: manipulator.all_modes(),
@@ -245,7 +248,7 @@ impl<'a> Worker<'a> {
         self.clipping.clip(&self.sheet, &numbers, window);
         // Nobody has to know which poses these are.
         let count_alone = hit.is_none() && self.limit.is_none();
-        let counted = count_alone && self.sheet.kind == SheetKind::Regions;
+        let counted = count_alone && self.clear.is_none() && self.sheet.kind == SheetKind::Regions;
         let mut reachable = 0;
         if counted {
             reachable += self.clipping.clipped[0].total();
@@ -259,6 +262,9 @@ impl<'a> Worker<'a> {
             let wanted = |branches: &[SliceBranch]| !(fixed && is_fixed(branches));
             asked.cut_arcs(sweep, sheet, wanted);
             asked.ask(sweep, sheet, wanted);
+            if let Some(clear) = &mut self.clear {
+                clear.retain(sweep, &mut asked, &self.sheet.others);
+            }
             let unused = self.sheet.branches().any(|branch| branch.unused);
             if unused && self.limit.is_none() && asked.count() > 0 {
                 self.use_branches(&asked, numbers.start, fixed, found);
@@ -380,9 +386,18 @@ impl<'a> Worker<'a> {
         let axes = self.sweep.grid.axes();
         self.go_to_row(number);
         self.row.take(std::iter::once(window));
+        if let Some(clear) = &mut self.clear {
+            let pose = &mut self.one.pose;
+            pose[1..].copy_from_slice(&self.sheet.others);
+            self.row.retain(|number| {
+                pose[0] = axes[0].value(number);
+                clear.at(pose).is_some()
+            });
+        }
         let count = if let Some(limit) = &mut self.limit {
             limit.begin(self.ranges == Ranges::Wanted);
-            limit.add(self.sweep, std::iter::once(window), &self.sheet.others, found);
+            let left = self.row.reached.iter().copied();
+            limit.add(self.sweep, left, &self.sheet.others, found);
             limit.decide(self.sweep, found);
             self.row.retain(|_| limit.next())
         } else {

@@ -41,7 +41,7 @@ use crate::chain::planar::{PlanarChain, PlanarJoint};
 use crate::group::PlanarDisplacement;
 use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::mechanism::leg::{ImaginaryLabel, Leg};
-use crate::mechanism::{BodyMasses, Mechanism, TaskHints};
+use crate::mechanism::{BodyMasses, Mechanism, Shapes, TaskHints};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -189,6 +189,7 @@ impl PlanarPlanar {
                 ..TaskHints::default()
             },
             bodies: BodyMasses::default(),
+            shapes: Shapes::default(),
         })
     }
 

@@ -31,7 +31,7 @@ use crate::chain::spherical::SphericalChain;
 use crate::group::JointDisplacement;
 use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::mechanism::leg::{ImaginaryLabel, Leg};
-use crate::mechanism::{BodyMasses, Mechanism, TaskHints};
+use crate::mechanism::{BodyMasses, Mechanism, Shapes, TaskHints};
 use nalgebra::{Complex, Point3, Rotation3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -157,6 +157,7 @@ impl PlanoSpherical {
                 ..TaskHints::default()
             },
             bodies: BodyMasses::default(),
+            shapes: Shapes::default(),
         })
     }
 

@@ -29,7 +29,7 @@ use crate::chain::translational::TranslationalChain;
 use crate::group::{CylindricalDisplacement, JointDisplacement};
 use crate::mechanism::joint::{Joint, JointKind, JointLimits};
 use crate::mechanism::leg::{ImaginaryLabel, Leg};
-use crate::mechanism::{BodyMasses, Mechanism, TaskHints};
+use crate::mechanism::{BodyMasses, Mechanism, Shapes, TaskHints};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Point3, Unit, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -126,6 +126,7 @@ impl TranslationalHelical {
                 ..TaskHints::default()
             },
             bodies: BodyMasses::default(),
+            shapes: Shapes::default(),
         })
     }
 }

@@ -78,7 +78,7 @@ pub fn text(mechanism: &Mechanism, family: Option<&Family>, units: FileUnits) ->
             let coordinates = mechanism.task.coordinates;
             let hints = TaskHints { coordinates, ..TaskHints::default() };
             let task = writer::task(&hints, units, Digits::All);
-            family.write_in(units) + &task + &writer::bodies(&mechanism.bodies)
+            family.write_in(units) + &task + &writer::surroundings(mechanism, units, Digits::All)
         }
         None => write(mechanism, units, Digits::All),
     }

@@ -6,12 +6,14 @@ use super::reader::{Table, UniqueNames, Value, all};
 use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
 use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{
-    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, TaskHints, TaskKey,
+    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, Shapes, TaskHints,
+    TaskKey,
 };
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
 
-pub(super) const KEYS: &[&str] = &["format", "name", "units", "platform", "task", "bodies", "leg"];
+pub(super) const KEYS: &[&str] =
+    &["format", "name", "units", "platform", "task", "bodies", "obstacle", "leg"];
 pub(super) const LEG_KEYS: &[&str] = &["name", "joints"];
 pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates", "home"];
 /// The keys of `[task]` in the file of a family, of which the frames are given.
@@ -141,8 +143,8 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         let problem = format!("found {count} {tables} [[leg]], expected at least 2 legs");
         root.reader.report(at, problem);
     }
-    let bodies = BodyMasses::default();
-    (Mechanism { name: name.to_owned(), legs, platform, task, bodies }, locations)
+    let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
+    (Mechanism { name: name.to_owned(), legs, platform, task, bodies, shapes }, locations)
 }
 
 /// Reads `[task]`: how the pose is measured. Whether it fits the geometry is checked later.

@@ -3,7 +3,7 @@
 use super::problem::{FileErrors, Locations, Problem};
 use super::reader::{Reader, Table};
 use super::units::{AngleUnit, FileUnits, LengthUnit};
-use super::{MechanismFile, bodies, joints};
+use super::{MechanismFile, bodies, joints, obstacles};
 use crate::chain::Branch;
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::{AssemblyError, AssemblyReason, FORMS, Family};
@@ -13,7 +13,7 @@ use toml::de::DeTable;
 pub(crate) const FORMAT: i64 = 1;
 
 /// The keys that the file of every family may have.
-pub(super) const FAMILY_KEYS: &[&str] = &["task", "bodies"];
+pub(super) const FAMILY_KEYS: &[&str] = &["task", "bodies", "obstacle"];
 
 /// Reads the text of a mechanism file.
 ///
@@ -74,7 +74,8 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     let units = root.reader.units();
     let Some(family) = root.get("family") else {
         let (mut mechanism, noted) = joints::read(root, name);
-        mechanism.bodies = bodies::read(root, &mechanism);
+        bodies::read(root, &mut mechanism);
+        mechanism.shapes.obstacles = obstacles::read(root);
         let places = Locations::default();
         return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
     };
@@ -85,7 +86,8 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     let coordinates = task.map(|task| joints::read_angles(&task, &mut noted)).unwrap_or_default();
     let (family, mut mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
     mechanism.task.coordinates = coordinates;
-    mechanism.bodies = bodies::read(root, &mechanism);
+    bodies::read(root, &mut mechanism);
+    mechanism.shapes.obstacles = obstacles::read(root);
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
     Some((MechanismFile { mechanism, units, mode, family, places }, noted))
 }

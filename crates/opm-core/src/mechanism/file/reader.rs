@@ -175,6 +175,22 @@ impl<'a> Value<'a> {
         self.quantity(Quantity::Length)
     }
 
+    /// Reads a length above zero; returns it in metres.
+    pub(crate) fn positive_length(&self) -> Option<f64> {
+        let length = self.length()?;
+        if length > 0.0 {
+            return Some(length);
+        }
+        let found = self.reader.units().show(length, Quantity::Length);
+        self.report(format!("is {found}, expected a length above 0"));
+        None
+    }
+
+    /// Reads three lengths above zero; returns them in metres.
+    pub(crate) fn positive_lengths(&self) -> Option<[f64; 3]> {
+        self.each("lengths [a, b, c]", Self::positive_length)
+    }
+
     /// The values of an array; `expected` describes the array.
     pub(crate) fn items(&self, expected: &str) -> Option<Vec<Value<'a>>> {
         match self.value {
@@ -344,11 +360,18 @@ impl<'a> Table<'a> {
 
     /// The tables of an array of tables; none if the key is missing.
     pub(crate) fn tables(&self, key: &str, keys: &[&str]) -> Vec<Table<'a>> {
+        let tables = self.open_tables(key);
+        tables.iter().for_each(|table| table.allow(keys));
+        tables
+    }
+
+    /// The same, where the keys of each table are still to be checked.
+    pub(crate) fn open_tables(&self, key: &str) -> Vec<Table<'a>> {
         let Some(value) = self.get(key) else { return Vec::new() };
         let Some(items) = value.items(&format!("an array of tables [[{key}]]")) else {
             return Vec::new();
         };
-        items.iter().filter_map(|item| item.table(keys)).collect()
+        items.iter().filter_map(Value::open_table).collect()
     }
 }
 

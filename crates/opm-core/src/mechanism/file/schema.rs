@@ -7,11 +7,11 @@
 
 mod families;
 mod joints;
+mod surroundings;
 mod values;
 
 pub(crate) use values::{closed, number, text};
 
-use super::LARGEST;
 use super::read::FORMAT;
 use super::units::{AngleUnit, LengthUnit};
 use serde_json::{Map, Value, json};
@@ -25,7 +25,8 @@ pub fn schema() -> String {
     let mut properties = head("mechanism");
     properties.extend(families::properties());
     properties.extend(joints::properties());
-    properties.insert("bodies".to_owned(), bodies());
+    properties.insert("bodies".to_owned(), surroundings::bodies());
+    properties.insert("obstacle".to_owned(), surroundings::obstacles());
     // Both kinds of files have legs in `leg`.
     properties.insert("leg".to_owned(), legs());
     document(
@@ -76,28 +77,6 @@ pub(crate) fn head(kind: &str) -> Properties {
         "The units of the numbers in this file, such as { length = \"mm\", angle = \"deg\" }.";
     add("units", closed(description, units, &["length", "angle"]));
     properties
-}
-
-/// What the bodies weigh.
-fn bodies() -> Value {
-    let positive = |what: &str| json!({ "description": what, "type": "number", "exclusiveMinimum": 0, "maximum": LARGEST });
-    let density =
-        "The density of all bodies whose masses are not given, kilograms per cubic metre.";
-    let masses =
-        "Masses in kilograms, by the names of bodies: platform, or the joint that carries a link.";
-    let masses = json!({
-        "description": masses,
-        "type": "object",
-        "additionalProperties": positive("The mass of this body, kilograms."),
-    });
-    let properties = [("density", positive(density)), ("masses", masses)];
-    let description =
-        "What the bodies weigh, for models of simulators; kinematics do not depend on it.";
-    closed(
-        description,
-        properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect(),
-        &[],
-    )
 }
 
 /// The legs of a list of joints, and those of families whose legs are all alike.

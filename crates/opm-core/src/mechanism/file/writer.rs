@@ -3,7 +3,7 @@
 use super::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
 use crate::mechanism::{
-    BodyMasses, HOME_COORDINATES, Mechanism, OrientationCoordinates, TaskHints,
+    HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, OrientationCoordinates, TaskHints,
 };
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
@@ -37,7 +37,7 @@ pub fn write(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String 
     );
     let _ = write!(text, "\n[platform]\npoint = {}\n", writer.point(mechanism.platform));
     text.push_str(&writer.task(&mechanism.task));
-    text.push_str(&bodies(&mechanism.bodies));
+    text.push_str(&writer.surroundings(mechanism));
     for leg in &mechanism.legs {
         let _ = write!(text, "\n[[leg]]\nname = {}\njoints = [\n", quoted(&leg.name));
         for joint in &leg.joints {
@@ -53,17 +53,9 @@ pub(super) fn task(hints: &TaskHints, units: FileUnits, digits: Digits) -> Strin
     Writer { units, digits }.task(hints)
 }
 
-/// The table `[bodies]` of a mechanism, or nothing if no mass is given.
-pub(super) fn bodies(given: &BodyMasses) -> String {
-    let mut text = String::new();
-    if let Some(density) = given.density {
-        let _ = writeln!(text, "density = {density:?}");
-    }
-    if !given.masses.is_empty() {
-        let masses = given.masses.iter().map(|(name, mass)| format!("{} = {mass:?}", quoted(name)));
-        let _ = writeln!(text, "masses = {{ {} }}", masses.collect::<Vec<_>>().join(", "));
-    }
-    if text.is_empty() { text } else { format!("\n[bodies]\n{text}") }
+/// The table `[bodies]` of a mechanism and its obstacles; nothing if none of it is given.
+pub(super) fn surroundings(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String {
+    Writer { units, digits }.surroundings(mechanism)
 }
 
 #[derive(Clone, Copy)]
@@ -105,6 +97,67 @@ impl Writer {
             lines.push(format!("coordinates = {}", quoted(hints.coordinates.name())));
         }
         if lines.is_empty() { String::new() } else { format!("\n[task]\n{}\n", lines.join("\n")) }
+    }
+
+    fn surroundings(self, mechanism: &Mechanism) -> String {
+        let obstacles = mechanism.shapes.obstacles.iter().map(|obstacle| self.obstacle(obstacle));
+        self.bodies(mechanism) + &obstacles.collect::<String>()
+    }
+
+    /// The table `[bodies]`, or nothing if it has no entries.
+    fn bodies(self, mechanism: &Mechanism) -> String {
+        let (weights, shapes) = (&mechanism.bodies, &mechanism.shapes);
+        let mut text = String::new();
+        if let Some(density) = weights.density {
+            let _ = writeln!(text, "density = {density:?}");
+        }
+        let table = |key: &str, given: &[(String, f64)], number: &dyn Fn(f64) -> String| {
+            let entries =
+                given.iter().map(|(name, of)| format!("{} = {}", quoted(name), number(*of)));
+            let entries: Vec<_> = entries.collect();
+            match entries.is_empty() {
+                true => String::new(),
+                false => format!("{key} = {{ {} }}\n", entries.join(", ")),
+            }
+        };
+        text += &table("masses", &weights.masses, &|mass| format!("{mass:?}"));
+        if let Some(radius) = shapes.radius {
+            let _ = writeln!(text, "radius = {}", self.length(radius));
+        }
+        text += &table("radii", &shapes.radii, &|radius| self.length(radius));
+        if text.is_empty() { text } else { format!("\n[bodies]\n{text}") }
+    }
+
+    /// A table `[[obstacle]]`.
+    fn obstacle(self, obstacle: &Obstacle) -> String {
+        let keys = match &obstacle.shape {
+            ObstacleShape::Box { centre, size, edges: [x, y] } => {
+                let [a, b, c] = size.map(|edge| self.length(edge)).into();
+                let mut keys = format!(
+                    "type = \"box\"\ncentre = {}\nsize = [{a}, {b}, {c}]\n",
+                    self.point(*centre)
+                );
+                if [*x, *y] != ObstacleShape::level() {
+                    let (x, y) = (self.direction(x), self.direction(y));
+                    let _ = write!(keys, "x = {x}\ny = {y}\n");
+                }
+                keys
+            }
+            ObstacleShape::Capsule { ends, radius } => {
+                let [from, to] = ends.map(|end| self.point(end));
+                let radius = self.length(*radius);
+                format!("type = \"capsule\"\nfrom = {from}\nto = {to}\nradius = {radius}\n")
+            }
+            ObstacleShape::HalfSpace { point, normal } => {
+                let (point, normal) = (self.point(*point), self.direction(normal));
+                format!("type = \"half-space\"\npoint = {point}\nnormal = {normal}\n")
+            }
+        };
+        format!("\n[[obstacle]]\nname = {}\n{keys}", quoted(&obstacle.name))
+    }
+
+    fn length(self, length: f64) -> String {
+        self.number(length, Quantity::Length)
     }
 
     /// The entries of a joint, one per key.

@@ -415,3 +415,48 @@ fn limits_of_motion() {
         assert_problem(PLANO, "b2 = 100", to, message);
     }
 }
+
+#[test]
+fn obstacles_and_radii() {
+    let with = |text: &str| format!("{JOINTS}\n{text}\n");
+    let marked = |text: &str, message: &str| {
+        let text = with(text);
+        let place = location_of(&text, "^");
+        let errors = problems(&text.replace('^', ""));
+        let [problem] = &errors.problems[..] else { panic!("{text}: {errors}") };
+        assert!(problem.message.contains(message), "{message:?} in {problem}");
+        assert_eq!((problem.line, problem.column), place, "{problem}");
+    };
+    for (text, message) in [
+        ("[bodies]\nradius = ^0", "`radius` is 0 mm, expected a length above 0"),
+        ("[bodies]\nradii = { platform = ^-2 }", "`platform` is -2 mm, expected a length above 0"),
+        ("[bodies]\nradii = { c1 = 2, s7 = ^2 }", "no body is called \"s7\""),
+        ("[bodies]\n^radious = 2", "unknown key `radious`, did you mean `radius`"),
+        ("^[[obstacle]]\nname = \"a\"", "`type` is missing, expected the obstacle's type"),
+        ("[[obstacle]]\ntype = ^\"ball\"", "`type` is \"ball\""),
+        ("[[obstacle]]\ntype = \"box\"\ncentre = [0, 0, 0]\nsize = [1, ^0, 1]", "`size` is 0 mm"),
+        ("[[obstacle]]\ntype = \"box\"\ncentre = [0, 0, 0]\nsize = ^[1, 1]", "`size` has 2 values"),
+        (
+            "[[obstacle]]\ntype = \"box\"\ncentre = [0, 0, 0]\nsize = [1, 1, 1]\nx = ^[0, 3, 0]",
+            "`x` and `y` are parallel",
+        ),
+        (
+            "[[obstacle]]\ntype = \"capsule\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nradius = ^-1",
+            "`radius` is -1 mm",
+        ),
+        (
+            "[[obstacle]]\ntype = \"half-space\"\npoint = [0, 0, 0]\nnormal = ^[0, 0, 0]",
+            "`normal` is zero, expected a direction",
+        ),
+        (
+            "[[obstacle]]\ntype = \"half-space\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n^size = 3",
+            "unknown key `size`",
+        ),
+        (
+            "[[obstacle]]\nname = ^\"platform\"\ntype = \"half-space\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]",
+            "is the name of the platform",
+        ),
+    ] {
+        marked(text, message);
+    }
+}

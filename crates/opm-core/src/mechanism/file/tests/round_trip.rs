@@ -3,7 +3,9 @@
 use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, write};
 use crate::mechanism::joint::{Joint, JointKind, MotionLimits};
 use crate::mechanism::leg::Leg;
-use crate::mechanism::{BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, TaskHints};
+use crate::mechanism::{
+    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, Shapes, TaskHints,
+};
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;
 
@@ -89,6 +91,39 @@ fn vectors(task: &TaskHints) -> Vec<Option<Vector3<f64>>> {
     [task.axis].into_iter().chain(frame(&task.lower)).chain(frame(&task.upper)).collect()
 }
 
+fn obstacle() -> impl Strategy<Value = ObstacleShape> {
+    let length = || 0.01..2.0_f64;
+    let edges = prop_oneof![
+        Just(ObstacleShape::level()),
+        [direction(), direction()].prop_filter("two edges", |[x, y]| x.cross(y).norm() > 0.1),
+    ];
+    prop_oneof![
+        (point(), [length(), length(), length()], edges).prop_map(|(centre, size, edges)| {
+            ObstacleShape::Box { centre, size: size.into(), edges }
+        }),
+        ([point(), point()], length())
+            .prop_map(|(ends, radius)| ObstacleShape::Capsule { ends, radius }),
+        (point(), direction())
+            .prop_map(|(point, normal)| ObstacleShape::HalfSpace { point, normal }),
+    ]
+}
+
+/// Every number of a shape.
+fn numbers_of(shape: &ObstacleShape) -> Vec<f64> {
+    match shape {
+        ObstacleShape::Box { centre, size, edges: [x, y] } => {
+            let numbers = centre.iter().chain(size.iter());
+            numbers.chain(x.iter()).chain(y.iter()).copied().collect()
+        }
+        ObstacleShape::Capsule { ends: [a, b], radius } => {
+            a.iter().chain(b.iter()).chain([radius]).copied().collect()
+        }
+        ObstacleShape::HalfSpace { point, normal } => {
+            point.iter().chain(normal.iter()).copied().collect()
+        }
+    }
+}
+
 fn mechanism() -> impl Strategy<Value = Mechanism> {
     let legs = prop::collection::vec(prop::collection::vec(joint(), 1..6), 2..6);
     // Names consist of all letters that a name may have.
@@ -97,7 +132,13 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
         !name.contains(|c: char| c.is_control() || ",=\"".contains(c))
     });
     let weights = (proptest::option::of(1.0..9e3_f64), prop::collection::vec(0.01..9.0_f64, 0..30));
-    (names, legs, point(), task(), weights).prop_map(|(name, legs, platform, task, weights)| {
+    let around = (
+        proptest::option::of(0.001..0.1_f64),
+        prop::collection::vec(0.001..0.1_f64, 0..30),
+        prop::collection::vec(obstacle(), 0..4),
+    );
+    let all = (names, legs, point(), task(), weights, around);
+    all.prop_map(|(name, legs, platform, task, weights, around)| {
         let mut number = 0;
         let mut legs: Vec<Leg> = legs
             .into_iter()
@@ -117,10 +158,18 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
             })
             .collect();
         legs[0].joints[0].actuated = true;
-        let mut mechanism = Mechanism { name, legs, platform, task, bodies: BodyMasses::default() };
+        let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
+        let mut mechanism = Mechanism { name, legs, platform, task, bodies, shapes };
         let names = mechanism.body_names().map(str::to_owned);
         let masses = names.zip(weights.1).collect();
         mechanism.bodies = BodyMasses { density: weights.0, masses };
+        let (radius, radii, shapes) = around;
+        let bodies = mechanism.body_names().chain([Shapes::BASE]).map(str::to_owned);
+        let radii = bodies.zip(radii).collect();
+        let obstacle =
+            |(number, shape)| Obstacle { name: format!("{} {number}", mechanism.name), shape };
+        let obstacles = shapes.into_iter().enumerate().map(obstacle).collect();
+        mechanism.shapes = Shapes { radius, radii, obstacles };
         mechanism
     })
 }
@@ -169,6 +218,21 @@ proptest! {
             prop_assert!(off.norm() < WRITTEN, "{text}");
         }
         prop_assert_eq!(&read.bodies, &mechanism.bodies);
+        let (found, expected) = (&read.shapes, &mechanism.shapes);
+        let near = |a: f64, b: f64| (a - b).abs() < WRITTEN;
+        prop_assert_eq!(found.radius.is_some(), expected.radius.is_some());
+        prop_assert!(near(found.radius.unwrap_or_default(), expected.radius.unwrap_or_default()));
+        prop_assert_eq!(found.radii.len(), expected.radii.len());
+        for ((name, radius), (other, expected)) in found.radii.iter().zip(&expected.radii) {
+            prop_assert!(name == other && near(*radius, *expected), "{text}");
+        }
+        prop_assert_eq!(found.obstacles.len(), expected.obstacles.len());
+        for (found, expected) in found.obstacles.iter().zip(&expected.obstacles) {
+            prop_assert_eq!(&found.name, &expected.name);
+            let [found, expected] = [found, expected].map(|obstacle| numbers_of(&obstacle.shape));
+            prop_assert_eq!(found.len(), expected.len());
+            prop_assert!(found.iter().zip(expected).all(|(a, b)| near(*a, b)), "{text}");
+        }
         prop_assert_eq!(read.task.home.len(), mechanism.task.home.len());
         for (read, written) in read.task.home.iter().zip(&mechanism.task.home) {
             prop_assert_eq!(&read.0, &written.0);

@@ -1,0 +1,73 @@
+//! The part of the schema that describes bodies, and what stands around a mechanism.
+
+use super::values::{
+    array, cases, closed, described, direction, form, in_units, name, numbers, object, point,
+};
+use crate::mechanism::file::LARGEST;
+use crate::mechanism::file::obstacles::TYPES;
+use crate::numeric::Quantity;
+use serde_json::{Value, json};
+
+fn above_zero(what: &str) -> Value {
+    json!({ "description": what, "type": "number", "exclusiveMinimum": 0, "maximum": LARGEST })
+}
+
+fn length(what: &str) -> Value {
+    json!({ "description": in_units(what, Quantity::Length), "type": "number", "exclusiveMinimum": 0 })
+}
+
+/// What the bodies weigh, and how thick they are.
+pub fn bodies() -> Value {
+    let by_name = |what: &str, of: Value| json!({ "description": what, "type": "object", "additionalProperties": of });
+    let density =
+        "The density of all bodies whose masses are not given, kilograms per cubic metre.";
+    let masses =
+        "Masses in kilograms, by the names of bodies: platform, or the joint that carries a link.";
+    let radius = "the radius of the rods of all bodies whose radius is not given";
+    let radii =
+        "Radii of rods, by the names of bodies: base, platform, or the joint that carries a link.";
+    let properties = [
+        ("density", above_zero(density)),
+        ("masses", by_name(masses, above_zero("The mass of this body, kilograms."))),
+        ("radius", length(radius)),
+        ("radii", by_name(radii, length("the radius of this body's rods"))),
+    ];
+    let description = "What the bodies weigh, for models of simulators, and how thick they are, for interference; \
+                       kinematics do not depend on it.";
+    closed(
+        description,
+        properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect(),
+        &[],
+    )
+}
+
+/// What stands around the mechanism.
+pub fn obstacles() -> Value {
+    let types = TYPES.map(|(word, _)| word);
+    let description = "What it is: a box, a capsule (a cylinder with hemispheres at its ends), or all points on one \
+                       side of a plane.";
+    let size = in_units("the lengths of the edges, above 0", Quantity::Length);
+    let properties = [
+        ("name", name("The obstacle's name. If it is not given: obstacle1, obstacle2, ...")),
+        ("type", json!({ "description": description, "enum": types })),
+        ("centre", point("the centre of a box", 3)),
+        ("size", numbers(&size, 3)),
+        ("x", direction("the direction of a box's first edge; [1, 0, 0] if it is not given")),
+        ("y", direction("the direction of a box's second edge; [0, 1, 0] if it is not given")),
+        ("from", point("one end of a capsule's axis", 3)),
+        ("to", point("the other end of a capsule's axis", 3)),
+        ("radius", length("the radius of a capsule")),
+        ("point", point("a point of the plane", 3)),
+        ("normal", direction("the direction out of the obstacle")),
+    ];
+    let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
+    let mut obstacle = described("An obstacle, in base coordinates.", object(properties));
+    obstacle["required"] = json!(["type"]);
+    let forms = TYPES.iter().map(|&(word, kind)| (word, form(&kind.keys(), kind.needs(), &[])));
+    if let (Value::Object(obstacle), Value::Object(forms)) =
+        (&mut obstacle, cases("type", forms.collect()))
+    {
+        obstacle.extend(forms);
+    }
+    array("What stands around the mechanism, at rest in the base.", obstacle)
+}

@@ -1,0 +1,71 @@
+//! Contacts along a motion whose times are known.
+
+use nalgebra::{Unit, Vector3};
+use opm_core::mechanism::{Obstacle, ObstacleShape, examples, file};
+use opm_core::motion::{Harmonics, Path, PlatformMotion, Sinusoid};
+use opm_core::{Manipulator, Trajectory};
+use opm_interference::{Contact, Distances, Interference, Watch, Watched};
+use std::f64::consts::PI;
+
+/// Times are found to 1e-10 of a step; distances are exact to rounding, and the lowest to 1e-8 of a step.
+const CLOSE: f64 = 1e-7;
+
+const RADIUS: f64 = 0.002;
+const AMPLITUDE: f64 = 0.03;
+
+/// The contacts of the platform with a wall, where the platform of a 3-RRR swings along x by `AMPLITUDE` once in two
+/// seconds. At rest the platform is at such a distance of the wall that the largest swing passes it by `share` less.
+fn contacts(share: f64, clearance: f64, rate: f64) -> (Vec<Contact>, f64) {
+    let text = examples::find("planar-3rrr").unwrap().text;
+    let mut mechanism = file::read(text).unwrap().mechanism;
+    let ends = mechanism.legs.iter().map(|leg| leg.joints[2].point.x);
+    let right = ends.chain([mechanism.platform.x]).fold(f64::MIN, f64::max) + RADIUS;
+    let point = Vector3::x() * (right + clearance + share * AMPLITUDE);
+    let normal = Unit::new_normalize(-Vector3::x());
+    let shape = ObstacleShape::HalfSpace { point: point.into(), normal };
+    mechanism.shapes.obstacles = vec![Obstacle { name: "wall".to_owned(), shape }];
+    mechanism.shapes.radius = Some(RADIUS);
+    let manipulator = Manipulator::new(mechanism).unwrap();
+    let coordinates = manipulator.task_coordinates().iter();
+    let mut path: Vec<_> = coordinates.map(|c| Harmonics::constant(c.home)).collect();
+    path[0].sinusoids.push(Sinusoid { amplitude: AMPLITUDE, frequency: 0.5, phase: 0.0 });
+    let (name, path) = ("swing".to_owned(), Path::Harmonics(path));
+    let motion = PlatformMotion { name, start: 0.0, duration: 2.0, rate: None, mode: None, path };
+    let mode = manipulator.home_mode();
+    let interference = Interference::new(manipulator.mechanism());
+    let of = Watched { manipulator: &manipulator, motion: &motion, mode, clearance };
+    let mut watch = Watch::new(of, Distances::new(&interference));
+    let mut trajectory = Trajectory::new(&manipulator, &motion, mode, rate).unwrap();
+    while trajectory.advance().unwrap() {
+        let sample = trajectory.sample();
+        assert!(sample.reached);
+        watch.advance(sample.time, 1.0 / rate, Some(&sample.solution)).unwrap();
+    }
+    let (contacts, nearest) = watch.finish();
+    let (nearest, _) = nearest.unwrap();
+    let platform = |c: &Contact| interference.names_of(c.pair) == ["platform", "wall"];
+    (contacts.into_iter().filter(platform).collect(), nearest.distance)
+}
+
+#[test]
+fn contacts_begin_and_end_when_the_platform_passes() {
+    // The last one is over between two samples, which do not touch.
+    for (share, rate) in [(0.5, 40.0), (0.5, 5.0), (0.9, 19.0), (0.9999, 19.0)] {
+        for clearance in [0.0, 0.004] {
+            let (found, nearest) = contacts(share, clearance, rate);
+            let [contact] = &found[..] else { panic!("{share}: {found:?}") };
+            let start = f64::asin(share) / PI;
+            assert!((contact.start - start).abs() < CLOSE, "{share}: {contact:?}, not {start}");
+            assert!((contact.end - (1.0 - start)).abs() < CLOSE, "{share}: {contact:?}");
+            assert!((contact.worst - 0.5).abs() < 1e-4, "{contact:?}");
+            let distance = clearance - (1.0 - share) * AMPLITUDE;
+            assert!((contact.distance - distance).abs() < CLOSE, "{contact:?}, not {distance}");
+            assert!(nearest <= contact.distance + CLOSE);
+        }
+    }
+}
+
+#[test]
+fn what_does_not_touch_is_no_contact() {
+    assert_eq!(contacts(1.0001, 0.0, 19.0).0, []);
+}

@@ -1,0 +1,122 @@
+//! How far the bodies of a mechanism are from each other at many poses.
+
+use crate::arguments;
+use crate::manipulator::Manipulator;
+use crate::pickle::{frozen, pickled};
+use crate::rows::{Rows, Tables};
+use numpy::PyArray1;
+use opm_interference::{Distances, Interference};
+use pyo3::prelude::*;
+use std::num::NonZeroUsize;
+
+/// The two bodies that are nearest to each other, at each of ``n`` poses.
+///
+/// Links and the platform are rods between their joints, with the radii of the mechanism file; obstacles are those of the file.
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+pub struct Clearance {
+    /// (n,): the distance of the nearest two, metres; negative where they overlap, NaN where the pose is out of reach.
+    distance: Py<PyArray1<f64>>,
+    /// (n,): which two these are, as an index of `pairs`; -1 where the pose is out of reach.
+    pair: Py<PyArray1<i64>>,
+    /// The names of the pairs that are tested.
+    pairs: Vec<(String, String)>,
+    /// The pairs that are not tested because they overlap at home: their names, and by how much, metres.
+    set_aside: Vec<(String, String, f64)>,
+    /// The working mode.
+    mode: String,
+}
+
+pickled!(Clearance { distance, pair, pairs, set_aside, mode });
+
+#[pymethods]
+impl Clearance {
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.distance.bind(py).len()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("<Clearance of {} poses, {} pairs>", self.__len__(py)?, self.pairs.len()))
+    }
+}
+
+#[pymethods]
+impl Manipulator {
+    /// The two bodies that are nearest to each other at every pose, and how far apart they are.
+    ///
+    /// Bodies that meet by construction are not tested: those that share a joint, or joints at one point. Nor are pairs that
+    /// overlap at home (:attr:`Clearance.set_aside`), where the shapes are wrong rather than the mechanism.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (n, d) array_like
+    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
+    ///
+    /// Returns
+    /// -------
+    /// Clearance
+    ///     Distances in metres, and names of pairs.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The columns are not the task coordinates, a number is not finite, or the mode is unknown.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import opm_kinematics as opm
+    /// >>> m = opm.examples.load("plano-spherical-5dof")
+    /// >>> clearance = m.clearance([m.home])
+    /// >>> one, other = clearance.pairs[clearance.pair[0]]
+    /// >>> bool(clearance.distance[0] > 0)
+    /// True
+    #[pyo3(signature = (poses, *, mode = "home", threads = None))]
+    fn clearance(
+        &self,
+        py: Python<'_>,
+        poses: &Bound<'_, PyAny>,
+        mode: &str,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<Clearance> {
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
+        let (manipulator, mode) = (&*self.inner, self.mode(mode)?);
+        let interference = Interference::new(manipulator.mechanism());
+        let tables = Tables::fill(
+            py,
+            poses.count,
+            [1, 1],
+            threads,
+            || (manipulator.solution(), Distances::new(&interference)),
+            |(solution, distances), row, [distance, pair]| {
+                let found = manipulator.inverse(poses.row(row), mode, solution);
+                let found = found.map_err(|error| format!("pose {row}: {error}"))?;
+                pair[0] = -1.0;
+                let Some(solution) = found else { return Ok([false; 2]) };
+                distances.place(manipulator, solution);
+                if let Some(nearest) = distances.nearest() {
+                    (distance[0], pair[0]) = (nearest.distance, nearest.pair as f64);
+                }
+                Ok([true; 2])
+            },
+        )?;
+        let flat = |number: usize| tables.table(number).call_method0("ravel");
+        let pair = flat(1)?.call_method1("astype", ("int64",))?;
+        let own = |name: &str| name.to_owned();
+        let names = |number| -> (String, String) { interference.names_of(number).map(own).into() };
+        let set_aside = interference.set_aside_pairs().iter().map(|pair| {
+            let [one, other] = pair.names.clone();
+            (one, other, pair.overlap)
+        });
+        Ok(Clearance {
+            distance: frozen(flat(0)?.cast_into()?)?,
+            pair: frozen(pair.cast_into()?)?,
+            pairs: (0..interference.pairs()).map(names).collect(),
+            set_aside: set_aside.collect(),
+            mode: manipulator.format_mode(mode),
+        })
+    }
+}
