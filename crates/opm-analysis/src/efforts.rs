@@ -21,6 +21,9 @@ const BALANCED: f64 = 1e-6;
 /// An effort is determined if the internal efforts have less than this share of their work in it.
 const DETERMINED: f64 = 1e-9;
 
+/// A part of an effort below this share of the others is rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// What the actuators do against a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Balance {
@@ -146,12 +149,13 @@ impl Statics<'_> {
     /// [`Statics::per_wrench`].
     pub fn worst(&self, actuated: usize) -> Option<Worst> {
         let [fx, fy, fz, mx, my, mz] = self.per_wrench(actuated)?;
-        let of = |vector: Vector3<f64>| {
-            let norm = vector.norm();
-            (norm, if norm > 0.0 { vector / norm } else { vector })
+        let (force, moment) = (Vector3::new(fx, fy, fz), Vector3::new(mx, my, mz));
+        let whole = force.norm().max(moment.norm() / self.length());
+        let of = |vector: Vector3<f64>, unit: f64| match vector.norm() {
+            norm if norm / unit > ROUNDING * whole => (norm, vector / norm),
+            _ => (0.0, Vector3::zeros()),
         };
-        let ((per_force, force), (per_moment, moment)) =
-            (of(Vector3::new(fx, fy, fz)), of(Vector3::new(mx, my, mz)));
+        let ((per_force, force), (per_moment, moment)) = (of(force, 1.0), of(moment, self.length()));
         Some(Worst { per_force, force, per_moment, moment })
     }
 

@@ -73,8 +73,7 @@ impl Transmission {
 pub enum NoTransmission {
     /// A section has another number of inputs than freedoms.
     #[error(
-        "the {section} section has {inputs} inputs and {freedoms} freedoms; transmission indices need as many inputs \
-         as freedoms"
+        "the {section} section needs an input for each freedom; freedoms: {freedoms}, inputs: {inputs}"
     )]
     Inputs {
         /// The section.
