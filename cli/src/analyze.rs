@@ -9,11 +9,11 @@ use crate::failure::Failure;
 use crate::load as mechanisms;
 use crate::pose::Number;
 use crate::unitless;
-use load::Load;
-use opm_analysis::{Balance, NoTransmission, Statics, Transmissions};
+use load::LinkStiffness;
+use opm_analysis::{Balance, Compliant, Load, NoTransmission, Springs, Statics, Transmissions};
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_study::characteristic_length;
-use report::Report;
+use report::{Elastic, Report};
 
 pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let loaded = mechanisms::open(&args.mechanism, output)?;
@@ -21,8 +21,7 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let mode = mechanisms::mode(&manipulator, &args.mode)?;
     let length = args.length.map(Number::characteristic_length).transpose()?;
     let length = characteristic_length(length, &manipulator)?;
-    let load =
-        args.wrench.map(|components| Load { components, at: args.at, directions: args.frame });
+    let load = args.wrench.map(|given| Load { wrench: given.0, at: args.at.0, axes: args.frame });
     let mut analyser = Analyser::new(&manipulator, length, load);
     if let Some(input) = &args.poses {
         return poses::run(args, input, output, &loaded, (&mut analyser, mode));
@@ -32,18 +31,27 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let mut at = manipulator.solution();
     let found = manipulator.inverse(&pose, mode, &mut at);
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
+    let mut springs = None;
+    if let Some(LinkStiffness([translation, rotation])) = args.link_stiffness {
+        let actuators = load::actuators(args.joint_stiffness.as_ref(), &manipulator)
+            .map_err(|error| Failure::flag("--joint-stiffness", error))?;
+        let given = Springs { actuators, translation, rotation };
+        let compliant = Compliant::new(&manipulator, given);
+        springs = Some(compliant.map_err(|error| Failure::flag("--link-stiffness", error))?);
+    }
+    let mut elastic = None;
     if reached {
         checks.verify(&manipulator, &at, loaded.file.units)?;
         analyser.update(&at)?;
+        elastic = springs.as_mut().map(|compliant| {
+            let stiffness = compliant.stiffness(&at)?;
+            let reactions = analyser.wrench(&at).map(|w| compliant.reactions(&stiffness, &w));
+            Some(Elastic { stiffness, reactions: reactions.flatten() })
+        });
     }
-    let report = Report {
-        analyser: &analyser,
-        at: &at,
-        pose: &pose,
-        mode,
-        reached,
-        units: loaded.file.units,
-    };
+    let units = loaded.file.units;
+    let report =
+        Report { analyser: &analyser, at: &at, pose: &pose, mode, reached, elastic, units };
     output.print(&report.json(), report.text())
 }
 

@@ -197,6 +197,7 @@ fn flag(option: RequestOption) -> &'static str {
         RequestOption::Grid => "--grid",
         RequestOption::Mode => "--mode",
         RequestOption::MaxCondition => "--max-condition",
+        RequestOption::Limit => "--limit",
         RequestOption::Length => "--length",
         RequestOption::Conditioning => "--conditioning",
         RequestOption::Axes => "--axes",

@@ -57,6 +57,7 @@ fn argument(option: RequestOption) -> &'static str {
         RequestOption::Grid => "grid",
         RequestOption::Mode => "mode",
         RequestOption::MaxCondition => "max_condition",
+        RequestOption::Limit => "limits",
         RequestOption::Length => "length",
         RequestOption::Conditioning => "conditioning",
         RequestOption::Axes => "axes",

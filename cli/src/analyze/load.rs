@@ -1,10 +1,9 @@
 //! Loads in the syntax of the command line.
 
-use crate::pose::{Misread, Number};
-use clap::ValueEnum;
-use nalgebra::{Isometry3, Point3, Vector3};
-use opm_analysis::Wrench;
+use crate::pose::{Misread, Number, Pose};
+use opm_analysis::{LoadPoint, Wrench};
 use opm_core::Quantity;
+use opm_core::manipulator::Manipulator;
 use std::str::FromStr;
 
 /// Largest component, newtons and newton metres.
@@ -14,26 +13,46 @@ const NAMES: [&str; 6] = ["FX", "FY", "FZ", "MX", "MY", "MZ"];
 
 /// The six components of a wrench, newtons and newton metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WrenchComponents([f64; 6]);
+pub struct WrenchComponents(pub Wrench);
 
 /// Where a force acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LoadPoint {
-    /// At the platform's reference point.
-    Platform,
-    /// At the base's origin.
-    Base,
-    /// At a point of the platform, from the reference point, metres.
-    From(Vector3<f64>),
+pub struct At(pub LoadPoint);
+
+/// The stiffness of links against translations, N/m, and against rotations, N m/rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkStiffness(pub [f64; 2]);
+
+impl FromStr for LinkStiffness {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let read = |name: &str, number: Number| match number.bare(name)? {
+            value if value > 0.0 => Ok(value),
+            value => Err(Misread(format!("{name} is {value:?}, expected a number above 0"))),
+        };
+        numbers(text, ["KT", "KR"], read).map(Self)
+    }
 }
 
-/// The axes of a load.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Directions {
-    /// Those of the base
-    Base,
-    /// Those that the platform carries, which are the base's where its orientation is the identity
-    Platform,
+/// The stiffness of every actuated coordinate, in their order; those that are not given are rigid.
+pub fn actuators(given: Option<&Pose>, manipulator: &Manipulator) -> Result<Vec<f64>, Misread> {
+    let all = manipulator.coordinates();
+    let names: Vec<&str> = manipulator.actuated().iter().map(|&i| &*all[i].name).collect();
+    let mut found = vec![f64::INFINITY; names.len()];
+    for (name, number) in given.into_iter().flat_map(Pose::assignments) {
+        let Some(place) = names.iter().position(|known| *known == name) else {
+            let known = names.join(", ");
+            return Err(Misread(format!("no actuated joint {name:?}, expected one of {known}")));
+        };
+        found[place] = match number.bare(name)? {
+            value if value > 0.0 => value,
+            value => {
+                return Err(Misread(format!("{name} is {value:?}, expected a number above 0")));
+            }
+        };
+    }
+    Ok(found)
 }
 
 /// The numbers of a list, each with its name.
@@ -64,20 +83,21 @@ impl FromStr for WrenchComponents {
     type Err = Misread;
 
     fn from_str(text: &str) -> Result<Self, Misread> {
-        numbers(text, NAMES, |name, number| number.bare(name)).map(Self)
+        let components = numbers(text, NAMES, |name, number| number.bare(name))?;
+        Ok(Self(Wrench::from_components(components)))
     }
 }
 
-impl FromStr for LoadPoint {
+impl FromStr for At {
     type Err = Misread;
 
     fn from_str(text: &str) -> Result<Self, Misread> {
         match text.trim() {
-            "platform" => Ok(Self::Platform),
-            "base" => Ok(Self::Base),
+            "platform" => Ok(Self(LoadPoint::Platform)),
+            "base" => Ok(Self(LoadPoint::Base)),
             point if point.contains(',') => {
                 let of = |name: &str, number: Number| number.value_of(name, Quantity::Length);
-                numbers(point, ["X", "Y", "Z"], of).map(|p| Self::From(p.into()))
+                numbers(point, ["X", "Y", "Z"], of).map(|p| Self(LoadPoint::From(p.into())))
             }
             other => Err(Misread(format!(
                 "{other:?}, expected platform, base, or a point X,Y,Z of the platform"
@@ -86,38 +106,10 @@ impl FromStr for LoadPoint {
     }
 }
 
-/// A load as it is given.
-#[derive(Clone, Copy, Debug)]
-pub struct Load {
-    pub components: WrenchComponents,
-    pub at: LoadPoint,
-    pub directions: Directions,
-}
-
-impl Load {
-    /// The wrench at the reference point of a platform, in base directions.
-    pub fn on(&self, platform: &Isometry3<f64>) -> Wrench {
-        let turned = |v: Vector3<f64>| match self.directions {
-            Directions::Base => v,
-            Directions::Platform => platform.rotation * v,
-        };
-        let Wrench { force, moment } = Wrench::from_components(self.components.0);
-        let wrench = Wrench { force: turned(force), moment: turned(moment) };
-        let reference = Point3::from(platform.translation.vector);
-        let from = match self.at {
-            LoadPoint::Platform => reference,
-            LoadPoint::Base => Point3::origin(),
-            LoadPoint::From(arm) => reference + turned(arm),
-        };
-        wrench.moved(&from, &reference)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::UnitQuaternion;
-    use std::f64::consts::FRAC_PI_2;
+    use nalgebra::Vector3;
 
     #[test]
     fn a_load_is_six_numbers_and_a_point() {
@@ -131,35 +123,12 @@ mod tests {
             let message = text.parse::<WrenchComponents>().expect_err(text).to_string();
             assert!(message.contains(expected), "{text}: {message}");
         }
-        assert_eq!("10mm,0,1".parse(), Ok(LoadPoint::From(Vector3::new(0.01, 0.0, 1.0))));
+        let arm = LoadPoint::From(Vector3::new(0.01, 0.0, 1.0));
+        assert_eq!("10mm,0,1".parse(), Ok(At(arm)));
         for (text, expected) in [("tool", "expected platform, base"), ("1,2deg,3", "Y is a length")]
         {
-            let message = text.parse::<LoadPoint>().expect_err(text).to_string();
+            let message = text.parse::<At>().expect_err(text).to_string();
             assert!(message.contains(expected), "{text}: {message}");
         }
-    }
-
-    /// A force along the platform's x, at a point on its y, on a platform that is turned by a right angle about z.
-    #[test]
-    fn a_load_acts_where_it_is_said_to() {
-        let turned = UnitQuaternion::from_scaled_axis(Vector3::z() * FRAC_PI_2);
-        let platform = Isometry3::from_parts([3.0, 0.0, 0.0].into(), turned);
-        let load = |at, directions| Load {
-            components: WrenchComponents([2.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
-            at,
-            directions,
-        };
-        let close = |wrench: Wrench, expected: [f64; 6]| {
-            let found = wrench.components();
-            found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12)
-        };
-        let arm = LoadPoint::From(Vector3::new(0.0, 0.5, 0.0));
-        let found = load(arm, Directions::Platform).on(&platform);
-        assert!(close(found, [0.0, 2.0, 0.0, 0.0, 0.0, 0.0]), "{found:?}");
-        let found = load(LoadPoint::Platform, Directions::Base).on(&platform);
-        assert!(close(found, [2.0, 0.0, 0.0, 0.0, 0.0, 1.0]), "{found:?}");
-        // At the base's origin, 3 m from the reference point: a force along the platform's x, the base's y.
-        let found = load(LoadPoint::Base, Directions::Platform).on(&platform);
-        assert!(close(found, [0.0, 2.0, 0.0, 0.0, 0.0, -5.0]), "{found:?}");
     }
 }

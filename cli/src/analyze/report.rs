@@ -5,7 +5,7 @@ use crate::output::named;
 use crate::text::{self, Table, short};
 use crate::transform;
 use nalgebra::Vector3;
-use opm_analysis::{Balance, Capacity, Efforts, Transmission, Wrench};
+use opm_analysis::{Balance, Capacity, Efforts, Reactions, Stiffness, Transmission, Wrench};
 use opm_core::Quantity;
 use opm_core::manipulator::{Mode, Solution};
 use opm_core::mechanism::file::FileUnits;
@@ -20,7 +20,63 @@ pub struct Report<'a> {
     pub pose: &'a [f64],
     pub mode: Mode,
     pub reached: bool,
+    /// If stiffnesses are given: how the mechanism gives way, unless the pose is singular.
+    pub elastic: Option<Option<Elastic>>,
     pub units: FileUnits,
+}
+
+/// How a mechanism gives way at a pose.
+pub struct Elastic {
+    pub stiffness: Stiffness,
+    /// For the load, if there is one.
+    pub reactions: Option<Reactions>,
+}
+
+impl Elastic {
+    fn json(&self, report: &Report<'_>) -> Value {
+        let manipulator = report.analyser.manipulator;
+        let legs = &manipulator.mechanism().legs;
+        let rows = self.stiffness.platform.row_iter();
+        let mut json = json!({
+            "matrix": rows.map(|row| row.iter().copied().collect::<Vec<f64>>()).collect::<Vec<_>>(),
+        });
+        let Some(found) = &self.reactions else { return json };
+        let wrenches = |names: &mut dyn Iterator<Item = String>, all: &[Wrench]| {
+            let each = names.zip(all).map(|(name, w)| (name, json!(w.components())));
+            Value::Object(each.collect())
+        };
+        json["displacement"] = json!(found.displacement.as_slice());
+        json["legs"] = wrenches(&mut legs.iter().map(|leg| leg.name.clone()), &found.legs);
+        let joints = legs.iter().flat_map(|leg| &leg.joints);
+        json["joints"] = wrenches(&mut joints.map(|joint| joint.name.clone()), &found.joints);
+        let efforts: Vec<_> = found.efforts.iter().map(|&effort| Some(effort)).collect();
+        json["efforts"] = report.actuated(&efforts);
+        json
+    }
+
+    fn text(&self, report: &Report<'_>) -> String {
+        let manipulator = report.analyser.manipulator;
+        let names = ["FX", "FY", "FZ", "MX", "MY", "MZ"];
+        let mut table = Table::new(["stiffness", ">x", ">y", ">z", ">rx", ">ry", ">rz"]);
+        for (name, row) in names.iter().zip(self.stiffness.platform.row_iter()) {
+            let cells = row.iter().map(|&value| short(value));
+            table.row(std::iter::once((*name).to_owned()).chain(cells));
+        }
+        let mut text = format!("{table}\n");
+        let Some(found) = &self.reactions else { return text };
+        let mut table = Table::new(["load on", ">FX", ">FY", ">FZ", ">MX", ">MY", ">MZ"]);
+        for (leg, wrench) in manipulator.mechanism().legs.iter().zip(&found.legs) {
+            let cells = wrench.components().map(short);
+            table.row(std::iter::once(leg.name.clone()).chain(cells));
+        }
+        let _ = writeln!(text, "{table}");
+        let d = &found.displacement;
+        let (moved, turned) = (d.fixed_rows::<3>(0).norm(), d.fixed_rows::<3>(3).norm());
+        let moved = report.units.show(moved, Quantity::Length);
+        let turned = report.units.show(turned, Quantity::Angle);
+        let _ = writeln!(text, "the platform gives way by {moved}, {turned}\n");
+        text
+    }
 }
 
 impl Report<'_> {
@@ -56,6 +112,9 @@ impl Report<'_> {
             self.worst(),
             self.capacity().map_or(Value::Null, |found| self.capacity_json(&found)),
             self.transmission(),
+            self.elastic.as_ref().map_or(Value::Null, |found| {
+                found.as_ref().map_or(Value::Null, |found| found.json(self))
+            }),
             self.statics().length().into(),
             transform::at(manipulator, self.at),
         ];
@@ -188,6 +247,14 @@ impl Report<'_> {
                 shown(found.moment)
             );
         }
+        match &self.elastic {
+            None => {}
+            Some(Some(found)) => text += &found.text(self),
+            Some(None) => {
+                let why = "a leg's passive joints are dependent, or it has no link";
+                let _ = writeln!(text, "no stiffness here: {why}\n");
+            }
+        }
         self.transmission_text(&mut text);
         text
     }
@@ -264,7 +331,7 @@ impl Report<'_> {
 }
 
 /// The keys of what is computed at a pose.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "wrench",
     "balance",
     "efforts",
@@ -274,6 +341,7 @@ const KEYS: [&str; 11] = [
     "worst",
     "capacity",
     "transmission",
+    "stiffness",
     "length",
     "transform",
 ];

@@ -1,9 +1,11 @@
 //! Arguments of `opm analyze`.
 
 use super::MechanismArgs;
-use crate::analyze::load::{Directions, LoadPoint, WrenchComponents};
+use crate::analyze::load::{At, LinkStiffness, WrenchComponents};
 use crate::pose::{Number, Pose};
 use clap::ValueHint;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use opm_analysis::LoadAxes;
 use std::path::PathBuf;
 
 /// Forces and transmission at a pose: efforts of the actuators, payload, transmission indices
@@ -22,6 +24,9 @@ use std::path::PathBuf;
 /// `max_effort`, the largest force and moment that the actuators bear in every direction. With a load, these are
 /// on top of it. docs/analysis.md has the definitions.
 ///
+/// Statics do not tell what the legs of an overconstrained mechanism, or redundant actuators, carry: --link-stiffness
+/// and --joint-stiffness do, by the virtual joint method.
+///
 /// CSV in: as for `opm ik`. CSV out: the pose, `reachable`, `within_limits`, `mode`, `balance`, the efforts
 /// (`effort.NAME`), and the indices that the mechanism has.
 #[derive(Debug, clap::Args)]
@@ -29,6 +34,7 @@ use std::path::PathBuf;
 Examples:
   opm analyze plano-spherical-5dof --pose x=10mm,xi=15deg
   opm analyze plano-spherical-5dof --pose xi=15deg --wrench 10,0,0,0,0,0.5 --format json
+  opm analyze plano-spherical-5dof --wrench 0,0,-100,0,0,0 --link-stiffness 1e7,1e4
   opm analyze planar-3rrr --wrench 0,-20,0,0,0,0 --at 50mm,0,0 --frame platform
   opm analyze planar-3rrr --poses poses.csv --wrench 0,-20,0,0,0,0 -o efforts.csv")]
 pub struct AnalyzeArgs {
@@ -53,10 +59,23 @@ pub struct AnalyzeArgs {
         requires = "wrench",
         allow_hyphen_values = true
     )]
-    pub at: LoadPoint,
+    pub at: At,
     /// The axes of --wrench and --at: those of the base, or those that the platform carries
-    #[arg(long, value_name = "AXES", value_enum, default_value_t = Directions::Base)]
-    pub frame: Directions,
+    #[arg(
+        long,
+        value_name = "base|platform",
+        value_parser = axes(),
+        default_value = "base",
+        requires = "wrench"
+    )]
+    pub frame: LoadAxes,
+    /// Stiffness of each link against translations of its end, N/m, and against rotations, N m/rad: adds the platform's
+    /// stiffness, and with --wrench the reactions in the legs
+    #[arg(long, value_name = "KT,KR", conflicts_with = "poses", allow_hyphen_values = true)]
+    pub link_stiffness: Option<LinkStiffness>,
+    /// Stiffness of actuators, N/m or N m/rad; one that is not given is rigid
+    #[arg(long, value_name = "NAME=K,...", requires = "link_stiffness")]
+    pub joint_stiffness: Option<Pose>,
     /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
@@ -73,4 +92,10 @@ pub struct AnalyzeArgs {
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,
+}
+
+/// Parses which axes a load is along.
+fn axes() -> impl TypedValueParser<Value = LoadAxes> {
+    let names = PossibleValuesParser::new(LoadAxes::NAMED.map(|(name, _)| name));
+    names.map(|name| LoadAxes::from_name(&name).unwrap_or_default())
 }

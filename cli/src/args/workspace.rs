@@ -1,7 +1,7 @@
 //! Arguments of the commands that sweep a workspace, and join the shards of one.
 
 use super::MechanismArgs;
-use crate::pose::{GridAxis, Number, Pose};
+use crate::pose::{GridAxis, IndexLimit, Number, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use opm_study::{AxisScale, WorkspaceKind};
@@ -28,8 +28,9 @@ use std::path::PathBuf;
 /// on their left: in the JSON output, in the recording, and in the picture that `opm plot` makes of it.
 /// `imaginary` has neither boundary nor measure, since values of joints lie on no grid.
 ///
-/// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
-/// takes longer, and does not change the grid that is fitted.
+/// --max-condition keeps away from singularities: see `opm velocity`. --limit does so with an index of
+/// `opm analyze`: --limit lti=0.7 leaves the good-transmission workspace. Both are decided pose by pose, which
+/// takes longer, and do not change the grid that is fitted.
 ///
 /// -o points.npy writes a structured NumPy array (float64) of the coordinates and joints that --axes,
 /// --scalars and --color name. -o cloud.ply writes a binary PLY file whose vertices are the points of the
@@ -93,6 +94,9 @@ pub struct WorkspaceArgs {
     /// Count a pose only if its condition number is at most C in one of the working modes
     #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
+    /// Count a pose only if an index is as good as VALUE: lti=0.7, effort_per_force=2, payload=50 (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub limit: Vec<IndexLimit>,
     /// Also compute the global conditioning index, the mean of 1 / condition number
     #[arg(long)]
     pub conditioning: bool,
@@ -104,7 +108,7 @@ pub struct WorkspaceArgs {
     pub shape: bool,
     /// Also find what rejects the other poses: for each leg, joint and limit, how many it rejects alone, and how many
     /// with others
-    #[arg(long, conflicts_with_all = ["shard", "max_condition", "vary", "all_modes"])]
+    #[arg(long, conflicts_with_all = ["shard", "max_condition", "limit", "vary", "all_modes"])]
     pub explain: bool,
     /// Also find the largest disc, ball or box in the set of points
     #[arg(long, value_name = "disc|ball|box", value_parser = inscribed(), conflicts_with = "shard")]

@@ -155,7 +155,8 @@ impl Statics<'_> {
             norm if norm / unit > ROUNDING * whole => (norm, vector / norm),
             _ => (0.0, Vector3::zeros()),
         };
-        let ((per_force, force), (per_moment, moment)) = (of(force, 1.0), of(moment, self.length()));
+        let ((per_force, force), (per_moment, moment)) =
+            (of(force, 1.0), of(moment, self.length()));
         Some(Worst { per_force, force, per_moment, moment })
     }
 

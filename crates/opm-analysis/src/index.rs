@@ -107,6 +107,14 @@ impl Index {
         Self::ALL.into_iter().find(|index| index.name() == name)
     }
 
+    /// Whether a manipulator has this index.
+    ///
+    /// # Errors
+    /// Why it does not.
+    pub fn check(self, manipulator: &Manipulator) -> Result<(), IndexError> {
+        Indices::new(manipulator, manipulator.characteristic_length(), [self]).map(drop)
+    }
+
     /// Whether a value is as good as a bound, or better. A value that is not a number is not.
     pub fn admits(self, value: f64, bound: f64) -> bool {
         if self.facts().large_is_good { value >= bound } else { value <= bound }
@@ -214,6 +222,12 @@ impl<'a> Indices<'a> {
     /// The indices, in the order of their values.
     pub fn indices(&self) -> &[Index] {
         &self.indices
+    }
+
+    /// The value of an index at the pose that was evaluated last; `None` if it is none of these indices.
+    pub fn value(&self, index: Index) -> Option<f64> {
+        let place = self.indices.iter().position(|&known| known == index)?;
+        Some(self.values[place])
     }
 
     /// The values at a solved pose that is in reach. NaN where a pose has none: an effort at a serial singularity. At a

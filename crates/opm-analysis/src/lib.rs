@@ -7,6 +7,7 @@
 //! | which efforts balance a load, and which loads are worst | [`Statics::efforts`], [`Statics::worst`] |
 //! | which loads actuators with limits bear | [`Statics::capacity`], [`Statics::facets`] |
 //! | how well motion and force are transmitted | [`Transmissions`] |
+//! | how much the platform gives way, and how the legs share a load | [`Compliant`] |
 //! | one number for a colour, a column or a limit | [`Indices`] |
 //!
 //! Everything is in SI and radians. The signs, the formulas and their sources are in `docs/analysis.md`.
@@ -37,6 +38,7 @@ mod efforts;
 mod index;
 mod screws;
 mod statics;
+mod stiffness;
 mod transmission;
 mod wrench;
 
@@ -45,5 +47,6 @@ pub use efforts::{Balance, Efforts, Worst};
 pub use index::{Facts, Index, IndexBounds, IndexError, Indices};
 pub use screws::{Freedom, Screws};
 pub use statics::Statics;
+pub use stiffness::{Compliant, Reactions, SpringError, Springs, Stiffness};
 pub use transmission::{InputIndices, NoTransmission, Transmission, Transmissions};
-pub use wrench::Wrench;
+pub use wrench::{Load, LoadAxes, LoadPoint, Wrench};

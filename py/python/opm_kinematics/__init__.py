@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import examples
 from ._native import (
+    Analysis,
     Assembly,
     Conditioning,
     Decomposition,
@@ -46,6 +47,7 @@ from ._native import (
 )
 
 __all__ = [
+    "Analysis",
     "Assembly",
     "Conditioning",
     "Decomposition",

@@ -115,7 +115,8 @@ impl Rejected<'_> {
                 Column::Zero
                 | Column::Imaginary(_)
                 | Column::Actuated(_)
-                | Column::InverseCondition => 0.0,
+                | Column::InverseCondition
+                | Column::Index(_) => 0.0,
             }));
             if !row.iter().all(|value| value.is_finite()) {
                 // Without its dependent coordinates, a pose does not say where the platform is.

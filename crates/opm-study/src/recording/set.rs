@@ -84,9 +84,11 @@ impl<'a> SetCloud<'a> {
             }
             Column::Share => [0.0, 1.0],
             Column::Imaginary(i) => self.analysis.count.imaginary[i].unwrap_or_default(),
-            Column::Zero | Column::Actuated(_) | Column::Tip(_) | Column::InverseCondition => {
-                [0.0, 0.0]
-            }
+            Column::Zero
+            | Column::Actuated(_)
+            | Column::Tip(_)
+            | Column::InverseCondition
+            | Column::Index(_) => [0.0, 0.0],
         };
         layout(&self.shown, color_range, "task", self.measures())
     }
@@ -135,7 +137,10 @@ impl<'a> SetCloud<'a> {
                         imaginary.get_or_insert_with(|| self.imaginary(&point, &mut branches))[i]
                     }
                     Column::Zero => 0.0,
-                    Column::Actuated(_) | Column::Tip(_) | Column::InverseCondition => {
+                    Column::Actuated(_)
+                    | Column::Tip(_)
+                    | Column::InverseCondition
+                    | Column::Index(_) => {
                         unreachable!("points of a set are not poses")
                     }
                 };
@@ -168,7 +173,8 @@ impl<'a> SetCloud<'a> {
                 | Column::Imaginary(_)
                 | Column::Actuated(_)
                 | Column::Tip(_)
-                | Column::InverseCondition => None,
+                | Column::InverseCondition
+                | Column::Index(_) => None,
             })
             .collect();
         let coordinates = coordinates?;
