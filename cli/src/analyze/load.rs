@@ -1,6 +1,7 @@
 //! Loads in the syntax of the command line.
 
 use crate::pose::{Misread, Number, Pose};
+use crate::text::plural;
 use opm_analysis::{LoadPoint, Wrench};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
@@ -65,7 +66,8 @@ fn numbers<const N: usize>(
     if parts.len() != N {
         let count = if text.trim().is_empty() { 0 } else { parts.len() };
         let expected = names.join(",");
-        return Err(Misread(format!("{count} numbers in {text:?}, expected {N}: {expected}")));
+        let count = plural(count as u64, "number");
+        return Err(Misread(format!("{count} in {text:?}, expected {N}: {expected}")));
     }
     let mut values = [0.0; N];
     for ((value, part), name) in values.iter_mut().zip(parts).zip(names) {

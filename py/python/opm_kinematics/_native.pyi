@@ -14,6 +14,7 @@ __all__ = [
     "Explorer",
     "Inscribed",
     "Intersection",
+    "Joint",
     "LegSplit",
     "Linkage",
     "Manipulator",
