@@ -22,6 +22,7 @@ def motions(exported):
     """Velocities of the joints that the constraints allow, as columns; and what of them is the platform's, as (v; w)."""
     model, data = exported.model, exported.data
     mujoco.mj_fwdPosition(model, data)
+    mujoco.mj_sensorPos(model, data)
     rows = data.efc_J.reshape(-1, model.nv)[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]
     _, values, right = np.linalg.svd(rows)
     rank = int((values > 1e-9 * values[0]).sum())
