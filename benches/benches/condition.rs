@@ -3,7 +3,7 @@
 
 use opm_benches::{Contender, compare, example, sweep_grid};
 use opm_core::manipulator::{Manipulator, Solution};
-use opm_workspace::{ConditionLimit, Conditioned, ConditioningIndex, Grid, Modes, Progress, Sweep};
+use opm_workspace::{Conditioned, ConditioningIndex, Grid, Modes, PoseLimit, Progress, Sweep};
 
 fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread pool");
@@ -16,7 +16,7 @@ fn main() {
         let reachable = pool.install(|| sweep.count(&Progress::default())).expect("not cancelled");
         let reachable = reachable.reachable;
         // A limit that some half of the poses keep.
-        let limit = ConditionLimit { most: 20.0, length };
+        let limit = PoseLimit::none(length).with_condition(20.0);
         let limited = sweep.with_limit(limit).expect("a grid of poses");
         let admitted = by_pose(&manipulator, &grid, modes, limit);
         let timings = compare(vec![
@@ -65,7 +65,7 @@ fn by_inverse(manipulator: &Manipulator, grid: &Grid) -> u64 {
 }
 
 /// Counts the poses that a limit admits.
-fn by_pose(manipulator: &Manipulator, grid: &Grid, modes: Modes, limit: ConditionLimit) -> u64 {
+fn by_pose(manipulator: &Manipulator, grid: &Grid, modes: Modes, limit: PoseLimit) -> u64 {
     let mut conditioned = Conditioned::new(manipulator, limit);
     let mut pose = [0.0; 5];
     let admitted = (0..grid.poses()).filter(|&index| {

@@ -1,5 +1,6 @@
 //! Every argument of the command line; the doc comments are the help.
 
+mod analyze;
 mod convert;
 mod explore;
 mod export;
@@ -11,6 +12,7 @@ mod pose;
 mod recording;
 mod workspace;
 
+pub use analyze::AnalyzeArgs;
 pub use convert::ConvertArgs;
 pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
@@ -58,6 +60,7 @@ Examples:
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
   opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
+  opm analyze plano-spherical-5dof --wrench 0,0,0,1,0,0   what the actuators carry at a pose
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
@@ -102,6 +105,7 @@ pub enum Command {
     Decompose(DecomposeArgs),
     Ik(IkArgs),
     Velocity(VelocityArgs),
+    Analyze(AnalyzeArgs),
     Fk(FkArgs),
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),

@@ -48,6 +48,12 @@ impl Change {
         let quantity = file.quantity_of(&self.name);
         let si = |number: Number| match quantity {
             Some(quantity) => number.value_of(&self.name, quantity),
+            None if file.is_effort(&self.name) => number.without_unit().ok_or_else(|| {
+                Misread::new(format!(
+                    "{} is in N or N m, expected a number without a unit",
+                    self.name
+                ))
+            }),
             None => number.value_of(&self.name, Quantity::Length).or(Ok(0.0)),
         };
         Ok(match self.value {
@@ -109,6 +115,11 @@ impl Loaded {
     /// The number of the file that `--vary` names, its values in SI, and its quantity.
     pub fn varied<'a>(&self, vary: &'a GridAxis) -> Result<Varied<'a>, Failure> {
         let name = vary.name();
+        if self.file.is_effort(name) {
+            let problem =
+                format!("{name} is an effort: nothing that is counted here depends on it");
+            return Err(Failure::flag("--vary", problem));
+        }
         let Some(quantity) = self.file.quantity_of(name) else {
             let unknown = self.file.with([(name, ParameterValue::Number(0.0))]);
             let problem = unknown.err().map_or_else(String::new, |errors| errors.to_string());

@@ -198,6 +198,7 @@ fn flag(option: RequestOption) -> &'static str {
         RequestOption::Mode => "--mode",
         RequestOption::MaxCondition => "--max-condition",
         RequestOption::Clearance => "--clearance",
+        RequestOption::Limit => "--limit",
         RequestOption::Length => "--length",
         RequestOption::Conditioning => "--conditioning",
         RequestOption::Axes => "--axes",

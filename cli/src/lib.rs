@@ -2,6 +2,7 @@
 //!
 //! The program is a library with the function [`main`], so that the Python package can include the command.
 
+mod analyze;
 mod args;
 mod batch;
 mod change;
@@ -72,6 +73,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Decompose(command) => decompose::run(command, output),
         Command::Ik(command) => ik::run(command, output),
         Command::Velocity(command) => velocity::run(command, output),
+        Command::Analyze(command) => analyze::run(command, output),
         Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),

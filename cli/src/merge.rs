@@ -8,7 +8,7 @@ use crate::workspace::{Effort, Outcome, Work, advice, grid_flags, points, thread
 use opm_core::mechanism::file::FileUnits;
 use opm_study::recording::{Attachment, Findings, Shards, StoredShard, WorkspaceRecording};
 use opm_study::{MissingShards, StudyError, Workspace, WorkspaceKind};
-use opm_workspace::{ConditionLimit, Progress};
+use opm_workspace::Progress;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -107,11 +107,14 @@ fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, 
         command += &format!(" --mode {}", quoted(&mode));
     }
     let (limit, conditioning) = (workspace.limit(), workspace.conditioning_length());
-    if let Some(ConditionLimit { most, .. }) = limit {
+    if let Some(most) = limit.and_then(|limit| limit.max_condition()) {
         command += &format!(" --max-condition {most}");
     }
     if let Some(clearance) = workspace.clearance() {
         command += &format!(" --clearance {}", clearance.least);
+    }
+    for (index, bound) in limit.iter().flat_map(|limit| limit.indices.iter()) {
+        command += &format!(" --limit {index}={bound}");
     }
     if conditioning.is_some() {
         command += " --conditioning";

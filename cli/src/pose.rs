@@ -62,6 +62,25 @@ pub struct OverAxis {
     max: Option<Number>,
 }
 
+/// The worst value of an index at which a pose counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IndexLimit {
+    /// The index's name.
+    pub name: String,
+    /// Its worst value.
+    pub bound: f64,
+}
+
+impl FromStr for IndexLimit {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let (name, value) = assignment(text, "NAME=VALUE, for example lti=0.7")?;
+        let bound = value.parse::<Number>()?.bare(name)?;
+        Ok(Self { name: name.to_owned(), bound })
+    }
+}
+
 /// A value of one task coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SliceValue {

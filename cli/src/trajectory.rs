@@ -57,6 +57,7 @@ impl<'a> Target<'a> {
             let options = [
                 ("--rates", args.rates, "a recording has them anyway"),
                 ("--accelerations", args.accelerations, "a recording has them anyway"),
+                ("--indices", args.indices, "a recording has none"),
                 ("--units", args.units == TableUnits::File, "a recording is in metres and radians"),
             ];
             if let Some((flag, _, why)) = options.into_iter().find(|(_, given, _)| *given) {
@@ -120,6 +121,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let options = TableOptions {
         rates: args.rates,
         accelerations: args.accelerations,
+        indices: args.indices,
         units: (args.units == TableUnits::File).then_some(loaded.file.units),
     };
     let progress = interruptible()?;

@@ -113,6 +113,7 @@ fn request(args: &WorkspaceArgs, manipulator: &Manipulator) -> Result<WorkspaceR
     request.length = args.length.map(Number::characteristic_length).transpose()?;
     request.max_condition = args.max_condition;
     request.clearance = interference::clearance(args.clearance)?;
+    request.limits = args.limit.iter().map(|limit| (limit.name.clone(), limit.bound)).collect();
     request.conditioning = args.conditioning;
     request.shape = args.shape || args.inscribed.is_some();
     request.points = points(&args.cloud);

@@ -58,6 +58,7 @@ fn argument(option: RequestOption) -> &'static str {
         RequestOption::Mode => "mode",
         RequestOption::MaxCondition => "max_condition",
         RequestOption::Clearance => "clearance",
+        RequestOption::Limit => "limits",
         RequestOption::Length => "length",
         RequestOption::Conditioning => "conditioning",
         RequestOption::Axes => "axes",

@@ -38,6 +38,8 @@ pub struct Joint {
     max_rate: Vec<Option<f64>>,
     /// The largest acceleration, per second squared, or None.
     max_acceleration: Vec<Option<f64>>,
+    /// The largest effort of the actuator, N or N m, or None.
+    max_effort: Vec<Option<f64>>,
 }
 
 pickled!(Joint {
@@ -54,6 +56,7 @@ pickled!(Joint {
     limits,
     max_rate,
     max_acceleration,
+    max_effort,
 });
 
 impl Joint {
@@ -79,6 +82,7 @@ impl Joint {
             limits: each().map(|c| c.limits.map(|[low, high]| (low, high))).collect(),
             max_rate: each().map(|c| c.motion_limits.max_rate).collect(),
             max_acceleration: each().map(|c| c.motion_limits.max_acceleration).collect(),
+            max_effort: each().map(|c| c.max_effort).collect(),
         }
     }
 }

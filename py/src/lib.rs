@@ -7,6 +7,7 @@
 // Doc comments here are docstrings for Python, in numpydoc's format.
 #![allow(clippy::doc_markdown, clippy::doc_link_with_quotes)]
 
+mod analysis;
 mod arguments;
 mod clearance;
 mod columns;
@@ -39,6 +40,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::analysis::Analysis;
     #[pymodule_export]
     use crate::clearance::Clearance;
     #[pymodule_export]

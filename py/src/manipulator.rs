@@ -172,8 +172,8 @@ impl Manipulator {
     /// The geometric parameters of its family by name; empty for a list of joints.
     ///
     /// ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
-    /// of its joints, ``leg1.max_rate.S`` and ``leg1.max_acceleration.S`` those of its motion. Values are in metres, radians
-    /// and seconds. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None if there are none.
+    /// of its joints, ``leg1.max_rate.S`` and ``leg1.max_acceleration.S`` those of its motion, ``leg1.max_effort.S`` that of its
+    /// actuator. Values are in metres, radians, seconds and newtons. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None if there are none.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -194,8 +194,8 @@ impl Manipulator {
     /// changes : mapping, optional
     ///     New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
     ///     full name (``leg1.h``) sets it in one leg and takes precedence. In a list of joints, ``S1.limits``,
-    ///     ``S1.max_rate``, ``S1.max_acceleration`` and ``S1.home`` are those of one joint coordinate, and ``limits`` those of
-    ///     all joints that have any.
+    ///     ``S1.max_rate``, ``S1.max_acceleration``, ``S1.max_effort`` and ``S1.home`` are those of one joint coordinate, and
+    ///     ``limits`` those of all joints that have any.
     /// **named
     ///     New values for names without dots.
     ///

@@ -69,6 +69,9 @@ pub struct Sweep {
 ///     ``"home"``, ``"any"``, or a sign for every two-valued choice.
 /// max_condition : float, optional
 ///     Only poses whose condition number is at most this count, in a mode in which it is.
+/// limits : dict of str to float, optional
+///     Only poses whose indices are as good as these values, in a mode in which they are: ``{"lti": 0.7}``. The names are
+///     those of :class:`Analysis`.
 /// length : float, optional
 ///     Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
 /// threads : int, optional
@@ -100,8 +103,8 @@ pub struct Sweep {
 /// >>> opm.sweep(m, kind="dexterous", x=(-0.1, 0.1, 41), y=(-0.1, 0.1, 41), zeta=tilt, xi=tilt, psi=tilt)
 #[pyfunction]
 #[pyo3(signature = (
-    manipulator, /, *, kind = "grid", mode = "home", max_condition = None, length = None, threads = None,
-    executor = None, shards = None, **axes
+    manipulator, /, *, kind = "grid", mode = "home", max_condition = None, limits = None, length = None,
+    threads = None, executor = None, shards = None, **axes
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn sweep(
@@ -110,6 +113,7 @@ pub fn sweep(
     kind: &str,
     mode: &str,
     max_condition: Option<f64>,
+    limits: Option<BTreeMap<String, f64>>,
     length: Option<f64>,
     #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     executor: Option<Bound<'_, PyAny>>,
@@ -119,6 +123,7 @@ pub fn sweep(
     let mut query = WorkspaceRequest::new(named(kind)?);
     query.axes = query::axes(axes.unwrap_or_default())?;
     (query.max_condition, query.length) = (max_condition, length);
+    query.limits = limits.unwrap_or_default().into_iter().collect();
     let parts = Parts::new(executor, shards)?;
     let planned = Sweep::planned(py, manipulator, query, mode.to_owned(), threads)?;
     let plan = Bound::new(py, planned)?;
@@ -149,7 +154,15 @@ impl Sweep {
     /// The largest condition number at which a pose counts, if it is limited.
     #[getter]
     fn max_condition(&self) -> Option<f64> {
-        self.workspace.limit().map(|limit| limit.most)
+        self.workspace.limit().and_then(|limit| limit.max_condition())
+    }
+
+    /// The worst values of indices at which a pose counts, by name.
+    #[getter]
+    fn limits(&self) -> BTreeMap<String, f64> {
+        let limit = self.workspace.limit();
+        let each = limit.iter().flat_map(|limit| limit.indices.iter());
+        each.map(|(index, bound)| (index.name().to_owned(), bound)).collect()
     }
 
     /// Characteristic length of condition numbers, metres.

@@ -636,6 +636,8 @@ impl Trajectory {
     ///     Also the first derivatives by time.
     /// accelerations : bool, optional
     ///     Also the second derivatives by time.
+    /// indices : bool, optional
+    ///     Also the indices of :class:`Analysis` that the mechanism has, by their names.
     /// units : str, optional
     ///     ``"si"``: metres and radians; or ``"file"``: those of the mechanism file, which the header names: ``S1 [mm]``.
     ///
@@ -643,13 +645,14 @@ impl Trajectory {
     /// ------
     /// OpmError
     ///     The file cannot be written, or its name ends otherwise.
-    #[pyo3(signature = (path, *, rates = false, accelerations = false, units = "si"))]
+    #[pyo3(signature = (path, *, rates = false, accelerations = false, indices = false, units = "si"))]
     fn write_table(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::path)] path: PathBuf,
         rates: bool,
         accelerations: bool,
+        indices: bool,
         units: &str,
     ) -> PyResult<()> {
         let Source { manipulator, motion, file_name, mode, rate, .. } = &self.source;
@@ -661,7 +664,7 @@ impl Trajectory {
             ),
             other => return Err(wrong(format!("units: {other:?}, expected \"si\" or \"file\""))),
         };
-        let options = TableOptions { rates, accelerations, units };
+        let options = TableOptions { rates, accelerations, indices, units };
         let request = MotionRequest::new(&manipulator.inner, motion, file_name);
         let request = request.mode(*mode).rate(*rate);
         let stop = AtomicBool::new(false);

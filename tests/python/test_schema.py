@@ -329,6 +329,7 @@ def with_all_limits(document):
             leg["limits"] = {joint: [-1000, 1000] for joint in joints.split()}
             leg["max_rate"] = dict.fromkeys(joints.split(), 500)
             leg["max_acceleration"] = dict.fromkeys(joints.split(), 2000)
+            leg["max_effort"] = dict.fromkeys(joints.split(), 80)
     return document
 
 

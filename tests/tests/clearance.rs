@@ -8,7 +8,7 @@ use opm_core::mechanism::{Obstacle, ObstacleShape, file};
 use opm_core::skeleton::Skeleton;
 use opm_interference::{Distances, Interference};
 use opm_workspace::{
-    Axis, ClearanceError, ClearanceLimit, ConditionLimit, Count, Grid, Modes, Progress, Run, Sweep,
+    Axis, ClearanceError, ClearanceLimit, Count, Grid, Modes, PoseLimit, Progress, Run, Sweep,
 };
 
 /// A mechanism with thin rods, and obstacles of every kind around it.
@@ -148,7 +148,7 @@ fn a_clearance_and_a_condition_number_hold_together() {
     let of = |most: Option<f64>, clear: bool| {
         let mut sweep = Sweep::new(&manipulator, grid, mode);
         if let Some(most) = most {
-            sweep = sweep.with_limit(ConditionLimit { most, length }).unwrap();
+            sweep = sweep.with_limit(PoseLimit::none(length).with_condition(most)).unwrap();
         }
         if clear {
             sweep = sweep.with_clearance(clearance).unwrap();

@@ -6,7 +6,7 @@ use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::velocity::ConditionQuery;
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::{ConditionLimit, Conditioned, Modes};
+use opm_workspace::{Conditioned, Modes, PoseLimit};
 
 /// What is found of one pose: the condition number in the first admitted mode, and the ranges of the imaginary joints over
 /// all admitted modes.
@@ -19,7 +19,7 @@ fn by_modes(
     manipulator: &Manipulator,
     pose: &[f64],
     mode: Option<Mode>,
-    limit: ConditionLimit,
+    limit: PoseLimit,
 ) -> Found {
     let mut jacobians = manipulator.jacobians();
     let mut at: Solution = manipulator.solution();
@@ -58,7 +58,7 @@ fn compare(
     manipulator: &Manipulator,
     poses: &[f64],
     mode: Option<Mode>,
-    limit: ConditionLimit,
+    limit: PoseLimit,
     compared: &mut Compared,
 ) {
     let width = manipulator.task_coordinates().len();
@@ -129,10 +129,10 @@ fn poses(rng: &mut Rng, manipulator: &Manipulator, count: usize) -> Vec<f64> {
     poses
 }
 
-fn limits(rng: &mut Rng, manipulator: &Manipulator) -> ConditionLimit {
+fn limits(rng: &mut Rng, manipulator: &Manipulator) -> PoseLimit {
     let length = manipulator.characteristic_length() * (0.3 + rng.f64());
     let most = [f64::INFINITY, 1e9, 1e3, 30.0, 8.0, 3.0][rng.usize(..6)];
-    ConditionLimit { most, length }
+    PoseLimit::none(length).with_condition(most)
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn near_singularities() {
         let far = (0..32).map(|i| low - 10_f64.powf(-0.5 * f64::from(i)));
         let poses: Vec<f64> = near.chain(far).chain([low, high]).flat_map(between).collect();
         for most in [1e3, 1e6, 1e9, 1e12, f64::INFINITY] {
-            let limit = ConditionLimit { most, length };
+            let limit = PoseLimit::none(length).with_condition(most);
             compare(&manipulator, &poses, Some(mode), limit, &mut compared);
         }
     }

@@ -4,7 +4,7 @@ use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_tests::random::{Options, PAIRS, mechanism};
 use opm_workspace::{
-    Axis, Cancelled, ConditionLimit, Count, Grid, Hits, Modes, Progress, Run, Shard, Sweep, replay,
+    Axis, Cancelled, Count, Grid, Hits, Modes, PoseLimit, Progress, Run, Shard, Sweep, replay,
 };
 
 /// The runs of a sweep with their rows, in the order in which they are reported.
@@ -123,7 +123,8 @@ fn a_replay_gives_what_the_sweep_gave() {
             // With a limit on the condition number, too.
             let length = manipulator.characteristic_length();
             if length > 0.0 && length.is_finite() {
-                let limited = sweep.with_limit(ConditionLimit { most: 8.0, length }).unwrap();
+                let limited =
+                    sweep.with_limit(PoseLimit::none(length).with_condition(8.0)).unwrap();
                 let (count, kept) = limited.count_and_keep(usize::MAX, &progress).unwrap();
                 assert_eq!(count, limited.count(&progress).unwrap(), "{pair:?}");
                 let kept = kept.unwrap().iter().map(|run| run.to - run.from).sum::<u64>();

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_tests::by_inverse::{by_inverse, by_predicate};
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::{Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sweep};
+use opm_workspace::{Axis, Cancelled, Grid, Modes, PoseLimit, Progress, Sweep};
 
 /// A grid about home with more values along the coordinates of the lower section, or with few of them, so that slices
 /// have few poses.
@@ -115,7 +115,7 @@ fn a_limited_sweep_finds_what_is_conditioned_well_enough() {
             let most = conditions.get(conditions.len() / 2).copied().unwrap_or(1.0);
             let (reached, expected) =
                 by_predicate(&manipulator, &grid, modes, |solution| condition(solution) <= most);
-            let limit = ConditionLimit { most, length };
+            let limit = PoseLimit::none(length).with_condition(most);
             let sweep = Sweep::new(&manipulator, &grid, modes).with_limit(limit).unwrap();
             let count = sweep.count(&Progress::default()).unwrap();
             assert_eq!(count, expected, "{pair:?} {modes:?}");

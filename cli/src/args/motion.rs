@@ -114,6 +114,9 @@ pub struct TrajectoryArgs {
     /// Also the accelerations in the table: second derivatives by time, as dd.NAME
     #[arg(long, requires = "output")]
     pub accelerations: bool,
+    /// Also the indices of `opm analyze` in the table: iti, oti, lti, effort_per_force, effort_per_moment, payload
+    #[arg(long, requires = "output")]
+    pub indices: bool,
     /// Units of the table: SI and radians, or those of the mechanism file, which the header then names
     #[arg(long, value_enum, default_value_t = TableUnits::Si, requires = "output")]
     pub units: TableUnits,

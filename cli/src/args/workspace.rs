@@ -1,7 +1,7 @@
 //! Arguments of the commands that sweep a workspace, and join the shards of one.
 
 use super::MechanismArgs;
-use crate::pose::{GridAxis, Number, Pose};
+use crate::pose::{GridAxis, IndexLimit, Number, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use opm_study::{AxisScale, WorkspaceKind};
@@ -32,8 +32,9 @@ use std::path::PathBuf;
 /// measure, poses, measure and extent of each, and singularity curves in JSON and in the picture. A recording stores with each
 /// point the number of its aspect, as `aspect`, with 0 for a singular pose. `opm path` finds paths in them.
 ///
-/// --max-condition keeps away from singularities: see `opm velocity`. It is decided pose by pose, which
-/// takes longer, and does not change the grid that is fitted.
+/// --max-condition keeps away from singularities: see `opm velocity`. --limit does so with an index of
+/// `opm analyze`: --limit lti=0.7 leaves the good-transmission workspace. Both are decided pose by pose, which
+/// takes longer, and do not change the grid that is fitted.
 ///
 /// --clearance keeps links, platform and obstacles apart: links are rods between their joints, with the radii of the
 /// mechanism file, where obstacles stand, too. It is decided by bounds over boxes of poses, and pose by pose where these do
@@ -107,6 +108,9 @@ pub struct WorkspaceArgs {
     /// Count a pose only if all bodies are at least this far apart, for example 5mm: see `opm ik` for the nearest two
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub clearance: Option<Number>,
+    /// Count a pose only if an index is as good as VALUE: lti=0.7, effort_per_force=2, payload=50 (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub limit: Vec<IndexLimit>,
     /// Also compute the global conditioning index, the mean of 1 / condition number
     #[arg(long)]
     pub conditioning: bool,
@@ -118,7 +122,7 @@ pub struct WorkspaceArgs {
     pub shape: bool,
     /// Also find what rejects the other poses: for each leg, joint and limit, how many it rejects alone, and how many
     /// with others
-    #[arg(long, conflicts_with_all = ["shard", "max_condition", "clearance", "vary", "all_modes"])]
+    #[arg(long, conflicts_with_all = ["shard", "max_condition", "limit", "clearance", "vary", "all_modes"])]
     pub explain: bool,
     /// Also find the largest disc, ball or box in the set of points
     #[arg(long, value_name = "disc|ball|box", value_parser = inscribed(), conflicts_with = "shard")]

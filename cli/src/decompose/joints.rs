@@ -45,5 +45,6 @@ fn joint_json(leg: &str, joint: &Joint) -> Value {
         "limits": each(|c| json!(c.limits)),
         "max_rate": each(|c| json!(c.motion_limits.max_rate)),
         "max_acceleration": each(|c| json!(c.motion_limits.max_acceleration)),
+        "max_effort": each(|c| json!(c.max_effort)),
     })
 }

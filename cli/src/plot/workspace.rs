@@ -29,7 +29,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let layout = Layout::new(source);
     let points = source.recording.topic(SLICES_TOPIC).and_then(|topic| topic.points);
     if points.unwrap_or(0) == 0 {
-        let limited = source.metadata("run").contains_key("max_condition");
+        let limited = source.metadata("run").contains_key("characteristic_length");
         let (label, nothing) = (&source.label, layout.kind.nothing(limited));
         return Err(Failure::work(format!("{label}: nothing to draw: {nothing}")));
     }
@@ -187,6 +187,9 @@ fn heading(source: &Source<'_>, layout: &Layout) -> Heading {
     }
     if let Some(most) = run.get("max_condition") {
         parts.push(format!("condition number at most {most}"));
+    }
+    for (name, bound) in run.iter().filter_map(|(key, v)| Some((key.strip_prefix("limit.")?, v))) {
+        parts.push(format!("limit {name} = {bound}"));
     }
     let number = |text: Option<&String>| text.and_then(|text| text.parse::<u64>().ok());
     match (number(result.get("reachable")), number(run.get("poses"))) {

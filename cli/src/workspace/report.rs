@@ -2,11 +2,12 @@
 
 use super::aspects;
 use crate::interference::{set_aside_json, set_aside_text};
+use crate::output::named;
 use crate::text::{self, Table, count, plural, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_study::{Analysis, Shape, Workspace, WorkspaceKind};
-use opm_workspace::{Axis, ConditionLimit, GridSet, Outline, Sections, Shard};
+use opm_workspace::{Axis, GridSet, Outline, Sections, Shard};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -78,9 +79,15 @@ impl Outcome<'_> {
         if let Some(shard) = self.shard {
             json["shard"] = shard.to_string().into();
         }
-        if let Some(ConditionLimit { most, length }) = workspace.limit() {
-            json["max_condition"] = most.into();
-            json["characteristic_length"] = length.into();
+        if let Some(limit) = workspace.limit() {
+            if let Some(most) = limit.max_condition() {
+                json["max_condition"] = most.into();
+            }
+            if !limit.indices.is_empty() {
+                let each = limit.indices.iter().map(|(index, bound)| (index.name(), bound));
+                json["limits"] = named(each).into();
+            }
+            json["characteristic_length"] = limit.length.into();
         }
         if let Some(clearance) = workspace.clearance() {
             json["clearance"] = clearance.least.into();
@@ -110,9 +117,18 @@ impl Outcome<'_> {
             axes.row([&*axis.name, &end(axis.min), &end(axis.max), symbol, &count(axis.count)]);
         }
         let _ = writeln!(text, "\n\n{axes}");
-        if let Some(ConditionLimit { most, length }) = workspace.limit() {
-            let length = units.show(length, Quantity::Length);
-            let _ = writeln!(text, "condition number at most {most} (lengths over {length})\n");
+        if let Some(limit) = workspace.limit() {
+            let length = units.show(limit.length, Quantity::Length);
+            if let Some(most) = limit.max_condition() {
+                let _ = writeln!(text, "condition number at most {most} (lengths over {length})");
+            }
+            for (index, bound) in limit.indices.iter() {
+                let opm_analysis::Facts { unit, about, large_is_good, .. } = index.facts();
+                let most = if large_is_good { "least" } else { "most" };
+                let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+                let _ = writeln!(text, "{about} at {most} {bound}{unit}");
+            }
+            text.push('\n');
         }
         if let Some(clearance) = workspace.clearance() {
             let least = units.show(clearance.least, Quantity::Length);

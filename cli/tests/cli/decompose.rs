@@ -110,6 +110,7 @@ fn joints_are_those_of_the_file() {
         "point": [0.1, 0.04, 0.0], "pitch": null, "actuated": true, "coordinates": ["r"],
         "unit": "rad", "home": PI / 2.0, "limits": [0.0, PI], "max_rate": null,
         "max_acceleration": null,
+        "max_effort": null,
     });
     assert_eq!(joints[0], r);
     let p = &joints[1];

@@ -1,5 +1,6 @@
 //! Tests of the program as a user runs it: output, files and exit status.
 
+mod analyze;
 mod aspects;
 mod bad_input;
 mod batch;

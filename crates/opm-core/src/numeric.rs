@@ -8,6 +8,8 @@ pub(crate) mod least_squares;
 pub mod number;
 mod quantity;
 pub mod rotation;
-pub(crate) mod svd;
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
+pub mod svd;
 
 pub use quantity::Quantity;

@@ -4,6 +4,7 @@
 use crate::error::{RequestError, RequestOption};
 use crate::kind::WorkspaceKind;
 use crate::names::{ASPECT, INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
+use opm_analysis::Index;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::CoordinateKind;
 use opm_workspace::{Axis, Grid, GridSet};
@@ -26,6 +27,8 @@ pub enum Column {
     Tip(usize),
     /// One over the condition number.
     InverseCondition,
+    /// An index of the pose.
+    Index(Index),
     /// The share of the orientations that reach a place.
     Share,
     /// The number of the aspect that a pose is in, 0 for a singular one.
@@ -147,10 +150,10 @@ impl PointOptions {
 }
 
 impl PointChoice {
-    /// Whether one of the values is a condition number.
-    pub fn has_condition(&self) -> bool {
+    /// Whether one of the values depends on the characteristic length: a condition number, or an index.
+    pub fn has_length(&self) -> bool {
         let mut asked = self.scalars.iter().flatten().chain(&self.color);
-        asked.any(|named| named.column == Column::InverseCondition)
+        asked.any(|named| matches!(named.column, Column::InverseCondition | Column::Index(_)))
     }
 }
 
@@ -212,6 +215,8 @@ fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
             if kind == WorkspaceKind::Aspects {
                 known.push(NamedColumn::new(ASPECT, Column::Aspect));
             }
+            let indices = Index::ALL.into_iter().filter(|index| index.check(manipulator).is_ok());
+            known.extend(indices.map(|index| NamedColumn::new(index.name(), Column::Index(index))));
         }
         WorkspaceKind::Reachable | WorkspaceKind::Dexterous => {
             known.push(NamedColumn::new(SHARE, Column::Share));

@@ -6,11 +6,12 @@ use crate::columns::{PointChoice, PointOptions};
 use crate::error::{RequestError, StudyError};
 use crate::kind::WorkspaceKind;
 use crate::workspace::{Clearance, Workspace};
+use opm_analysis::Index;
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
 use opm_workspace::{
-    Aspects, Axis, Cancelled, ConditionLimit, Grid, Modes, Progress, Sections, default_grid,
+    Aspects, Axis, Cancelled, Grid, Modes, PoseLimit, Progress, Sections, default_grid,
 };
 use std::sync::Arc;
 
@@ -45,6 +46,8 @@ pub struct WorkspaceRequest {
     pub max_condition: Option<f64>,
     /// The least distance of bodies at which a pose counts, metres.
     pub clearance: Option<f64>,
+    /// The worst values of indices ([`Index`]) at which a pose counts, by their names.
+    pub limits: Vec<(String, f64)>,
     /// Characteristic length of condition numbers, metres; by default the spread of the joint axes.
     pub length: Option<f64>,
     /// Whether the global conditioning index is requested.
@@ -90,6 +93,13 @@ impl WorkspaceRequest {
         self
     }
 
+    /// Limits an index of the poses that count: `lti` at 0.7.
+    #[must_use]
+    pub fn limit(mut self, index: impl Into<String>, bound: f64) -> Self {
+        self.limits.push((index.into(), bound));
+        self
+    }
+
     /// Sets the characteristic length of condition numbers, metres.
     #[must_use]
     pub fn length(mut self, length: f64) -> Self {
@@ -131,7 +141,7 @@ impl WorkspaceRequest {
             return Err(RequestError::NotOfPoses { kind });
         }
         let length = characteristic_length(self.length, &manipulator)?;
-        let limit = self.max_condition.map(|most| condition_limit(most, length)).transpose()?;
+        let limit = pose_limit(self.max_condition, &self.limits, length, &manipulator)?;
         let modes = self.modes.unwrap_or(Modes::One(manipulator.home_mode()));
         check_kind(kind, &manipulator, modes, limit)?;
         let clearance = match self.clearance {
@@ -181,7 +191,7 @@ pub struct CheckedRequest {
     kind: WorkspaceKind,
     grid: Option<Grid>,
     modes: Modes,
-    limit: Option<ConditionLimit>,
+    limit: Option<PoseLimit>,
     clearance: Option<Clearance>,
     length: f64,
     length_given: bool,
@@ -216,7 +226,7 @@ impl CheckedRequest {
     /// # Errors
     /// [`RequestError::UnusedLength`]
     pub fn refuse_unused_length(&self) -> Result<(), RequestError> {
-        let used = self.points.has_condition() || self.conditioning || self.limit.is_some();
+        let used = self.points.has_length() || self.conditioning || self.limit.is_some();
         if self.length_given && !used { Err(RequestError::UnusedLength) } else { Ok(()) }
     }
 
@@ -270,12 +280,35 @@ pub fn characteristic_length(
     if LENGTHS.contains(&length) { Ok(length) } else { Err(RequestError::Length(length)) }
 }
 
-/// A limit on the condition number with a characteristic length.
-fn condition_limit(most: f64, length: f64) -> Result<ConditionLimit, RequestError> {
+/// The limit that a largest condition number and worst values of indices make together; `None` without any.
+fn pose_limit(
+    most: Option<f64>,
+    limits: &[(String, f64)],
+    length: f64,
+    manipulator: &Manipulator,
+) -> Result<Option<PoseLimit>, RequestError> {
+    let mut limit = PoseLimit::none(length);
     match most {
-        1.0.. if most.is_finite() => Ok(ConditionLimit { most, length }),
-        _ => Err(RequestError::MaxCondition(most)),
+        None => {}
+        Some(most) if most >= 1.0 && most.is_finite() => limit.most = most,
+        Some(most) => return Err(RequestError::MaxCondition(most)),
     }
+    for (name, bound) in limits {
+        let name = || name.clone();
+        let index = Index::from_name(&name()).ok_or_else(|| {
+            let known = Index::ALL.map(|index| index.name().to_owned()).into();
+            RequestError::UnknownIndex { name: name(), known }
+        })?;
+        if limit.indices.iter().any(|(known, _)| known == index) {
+            return Err(RequestError::RepeatedLimit { name: name() });
+        }
+        if !bound.is_finite() {
+            return Err(RequestError::LimitNotFinite { name: name(), bound: *bound });
+        }
+        index.check(manipulator)?;
+        limit = limit.with_index(index, *bound);
+    }
+    Ok((limit != PoseLimit::none(length)).then_some(limit))
 }
 
 /// Refuses a clearance where it has no meaning.
@@ -297,7 +330,7 @@ fn check_kind(
     kind: WorkspaceKind,
     manipulator: &Manipulator,
     modes: Modes,
-    limit: Option<ConditionLimit>,
+    limit: Option<PoseLimit>,
 ) -> Result<(), RequestError> {
     let names = |list: &[TaskCoordinate]| list.iter().map(|c| c.name.to_owned()).collect();
     let dependent: Vec<String> = names(manipulator.dependent_coordinates());
@@ -320,8 +353,13 @@ fn check_kind(
         let coordinates = names(manipulator.task_coordinates());
         return Err(RequestError::NoPart { kind, part, coordinates, dependent });
     }
-    if kind.sections() != Sections::Whole && limit.is_some() {
-        return Err(RequestError::SectionCondition { kind });
+    if kind.sections() != Sections::Whole
+        && let Some(limit) = limit
+    {
+        return Err(match limit.indices.iter().next() {
+            Some((index, _)) => RequestError::SectionIndex { kind, name: index.name() },
+            None => RequestError::SectionCondition { kind },
+        });
     }
     if matches!(kind, WorkspaceKind::Imaginary | WorkspaceKind::Aspects) && modes == Modes::Any {
         return Err(RequestError::SeveralModes { kind });

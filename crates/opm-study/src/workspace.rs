@@ -8,8 +8,8 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_interference::Interference;
 use opm_workspace::{
-    Cancelled, ClearanceLimit, ConditionLimit, ConditioningIndex, Count, Grid, GridSet, Modes,
-    Progress, Rejections, Sections, SetAxis, SetError, Sweep, Visits,
+    Cancelled, ClearanceLimit, ConditioningIndex, Count, Grid, GridSet, Modes, PoseLimit, Progress,
+    Rejections, Sections, SetAxis, SetError, Sweep, Visits,
 };
 use std::sync::Arc;
 
@@ -24,8 +24,8 @@ pub struct Workspace {
     pub(crate) kind: WorkspaceKind,
     pub(crate) grid: Grid,
     pub(crate) modes: Modes,
-    pub(crate) limit: Option<ConditionLimit>,
     pub(crate) clearance: Option<Clearance>,
+    pub(crate) limit: Option<PoseLimit>,
     pub(crate) length: f64,
     pub(crate) conditioning: bool,
     pub(crate) shape: bool,
@@ -78,8 +78,8 @@ impl Workspace {
         }
     }
 
-    /// The largest condition number at which a pose counts.
-    pub fn limit(&self) -> Option<ConditionLimit> {
+    /// What a pose has to be like to count: its condition number and its indices.
+    pub fn limit(&self) -> Option<PoseLimit> {
         self.limit
     }
 

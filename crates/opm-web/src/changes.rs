@@ -7,7 +7,7 @@ use opm_core::Quantity;
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::file::{FileUnits, MechanismFile};
-use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::joint::{DriveLimit, Joint, JointKind};
 use opm_core::nalgebra::{Point3, Unit, Vector3};
 use serde::Serialize;
 
@@ -47,9 +47,10 @@ pub fn dimensions(file: &MechanismFile) -> Vec<Dimension> {
     }
 }
 
-/// The parameters of a family, but for the limits of motion: nothing that is shown depends on these.
+/// The parameters of a family, but for the limits of how joints are driven: nothing that is shown depends on these.
 fn of_family(family: &Family, units: FileUnits) -> Vec<Dimension> {
-    let moves = |name: &str| name.contains(".max_rate.") || name.contains(".max_acceleration.");
+    let drives = DriveLimit::ALL.map(|limit| format!(".{}.", limit.key()));
+    let moves = |name: &str| drives.iter().any(|drive| name.contains(drive));
     let dimension = |(name, value): (String, ParameterValue)| {
         let quantity = family.quantity_of(&name)?;
         let (group, label) = name.split_once('.')?;

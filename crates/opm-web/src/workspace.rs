@@ -9,7 +9,7 @@ use crate::units::{shown, shown_range};
 use opm_core::Quantity;
 use opm_study::{Workspace, WorkspaceKind, WorkspaceRequest};
 use opm_workspace::{
-    Axis, ConditionLimit, Conditioned, Count, GridSet, Modes, Progress, boundary, default_grid,
+    Axis, Conditioned, Count, GridSet, Modes, PoseLimit, Progress, boundary, default_grid,
 };
 use serde::Serialize;
 
@@ -149,7 +149,7 @@ pub fn colours(
         numbers[plane.place(number)] = value as f32;
     };
     let unit = if by == CONDITION {
-        let limit = ConditionLimit { most: f64::MAX, length: manipulator.characteristic_length() };
+        let limit = PoseLimit::none(manipulator.characteristic_length()).with_condition(f64::MAX);
         let mut conditioned = Conditioned::new(manipulator, limit);
         let poses: Vec<f64> = set.numbers().flat_map(|number| set.point(number)).collect();
         let mut indices = vec![0.0; set.count() as usize];

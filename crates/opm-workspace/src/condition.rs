@@ -1,26 +1,30 @@
-//! A limit on the condition number: poses too near to a singularity do not count.
+//! A limit on what a pose is like: its condition number, and indices such as the local transmission index. Poses beyond
+//! it do not count.
 
 use crate::grid::{Grid, Sections};
 use crate::progress::Cancelled;
 use crate::sweep::Modes;
+use opm_analysis::{Index, IndexBounds, IndexError, Indices};
 use opm_core::manipulator::{AllModes, Manipulator, Solution};
 use opm_core::velocity::{ConditionBatch, ConditionQuery, Jacobians};
 
 /// Fewer poses than this are decided one by one: it takes longer to begin a block of them.
 const FEW: usize = 8;
 
-/// The largest condition number at which a pose counts.
+/// What a pose has to be like to count.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ConditionLimit {
-    /// The largest condition number, at least one.
+pub struct PoseLimit {
+    /// The largest condition number, at least one; infinite if it is not limited.
     pub most: f64,
-    /// The characteristic length that condition numbers are computed with, metres; usually
+    /// The characteristic length that condition numbers and indices are computed with, metres; usually
     /// [`Manipulator::characteristic_length`].
     pub length: f64,
+    /// The worst values of indices. A manipulator that lacks one of these indices has no pose that counts.
+    pub indices: IndexBounds,
 }
 
 /// Why a sweep has no condition numbers.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConditionError {
     /// The grid is of one section alone: only the whole mechanism has a condition number.
@@ -37,27 +41,50 @@ pub enum ConditionError {
         /// The length of the limit, metres.
         limit: f64,
     },
+    /// The manipulator does not have a limited index.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// The sweep was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-impl ConditionLimit {
+impl PoseLimit {
     /// A limit that admits every pose, for condition numbers with this characteristic length, metres.
     pub fn none(length: f64) -> Self {
-        Self { most: f64::INFINITY, length }
+        Self { most: f64::INFINITY, length, indices: IndexBounds::default() }
     }
 
-    /// Whether the poses of a grid have condition numbers.
-    pub(crate) fn check(&self, grid: &Grid) -> Result<(), ConditionError> {
+    /// The same with a largest condition number.
+    #[must_use]
+    pub fn with_condition(self, most: f64) -> Self {
+        Self { most, ..self }
+    }
+
+    /// The same with a worst value of an index.
+    #[must_use]
+    pub fn with_index(self, index: Index, bound: f64) -> Self {
+        Self { indices: self.indices.with(index, bound), ..self }
+    }
+
+    /// The largest condition number, if it is limited.
+    pub fn max_condition(&self) -> Option<f64> {
+        self.most.is_finite().then_some(self.most)
+    }
+
+    /// Whether the poses of a grid have condition numbers, and the indices.
+    pub(crate) fn check(
+        &self,
+        manipulator: &Manipulator,
+        grid: &Grid,
+    ) -> Result<(), ConditionError> {
         if grid.sections() != Sections::Whole {
             return Err(ConditionError::Section);
         }
-        if self.length > 0.0 && self.length.is_finite() {
-            Ok(())
-        } else {
-            Err(ConditionError::Length(self.length))
+        if !(self.length > 0.0 && self.length.is_finite()) {
+            return Err(ConditionError::Length(self.length));
         }
+        Ok(self.indices.iter().try_for_each(|(index, _)| index.check(manipulator))?)
     }
 
     /// The condition number of a solution; `None` if it is beyond this limit or any joint limit.
@@ -66,16 +93,25 @@ impl ConditionLimit {
         manipulator: &Manipulator,
         solution: &Solution,
         jacobians: &mut Jacobians,
+        indices: &mut Option<Indices<'_>>,
     ) -> Option<f64> {
         if !solution.within_limits() || manipulator.differentiate(solution, jacobians).is_err() {
             return None;
         }
         let condition = manipulator.conditioning(jacobians, self.length).condition;
-        (condition <= self.most).then_some(condition)
+        let mut good = || {
+            if self.indices.is_empty() {
+                return true;
+            }
+            let Some(indices) = indices else { return false };
+            let values = indices.evaluate(solution);
+            self.indices.iter().zip(values).all(|((index, bound), &v)| index.admits(v, bound))
+        };
+        (condition <= self.most && good()).then_some(condition)
     }
 }
 
-/// Decides poses by a limit on the condition number. It holds the working memory for that, so that nothing is allocated
+/// Decides poses by a limit. It holds the working memory for that, so that nothing is allocated
 /// for a pose.
 ///
 /// A pose has a value for each of [`Manipulator::task_coordinates`], radians or metres. One with another
@@ -85,10 +121,10 @@ impl ConditionLimit {
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # use opm_core::Manipulator;
 /// # let manipulator = Manipulator::example("plano-spherical-5dof")?;
-/// use opm_workspace::{ConditionLimit, Conditioned, Modes};
+/// use opm_workspace::{PoseLimit, Conditioned, Modes};
 ///
 /// let home: Vec<f64> = manipulator.task_coordinates().iter().map(|c| c.home).collect();
-/// let limit = ConditionLimit { most: 100.0, length: manipulator.characteristic_length() };
+/// let limit = PoseLimit::none(manipulator.characteristic_length()).with_condition(100.0);
 /// let mut conditioned = Conditioned::new(&manipulator, limit);
 /// let index = conditioned.local_index(&home, Modes::Any).ok_or("home is singular")?;
 /// assert!(index >= 0.01 && index <= 1.0);
@@ -98,22 +134,27 @@ impl ConditionLimit {
 #[derive(Clone, Debug)]
 pub struct Conditioned<'a> {
     manipulator: &'a Manipulator,
-    limit: ConditionLimit,
+    limit: PoseLimit,
     all: AllModes,
     solution: Solution,
     jacobians: Jacobians,
     /// The condition number of the last solution that was admitted.
     condition: f64,
     batch: ConditionBatch,
+    /// What is held against bounds.
+    indices: Option<Indices<'a>>,
 }
 
 impl<'a> Conditioned<'a> {
     /// Decides poses of a manipulator by a limit.
-    pub fn new(manipulator: &'a Manipulator, limit: ConditionLimit) -> Self {
+    pub fn new(manipulator: &'a Manipulator, limit: PoseLimit) -> Self {
         let (all, solution) = (manipulator.all_modes(), manipulator.solution());
         let jacobians = manipulator.jacobians();
         let batch = manipulator.condition_batch();
-        Self { manipulator, limit, all, solution, jacobians, condition: f64::INFINITY, batch }
+        let bounded = limit.indices.iter().map(|(index, _)| index);
+        let indices = Indices::new(manipulator, limit.length, bounded).ok();
+        let condition = f64::INFINITY;
+        Self { manipulator, limit, all, solution, jacobians, condition, batch, indices }
     }
 
     /// The local conditioning index of a pose: one over its condition number, in the first working mode,
@@ -159,7 +200,7 @@ impl<'a> Conditioned<'a> {
     ) {
         let (manipulator, every) = (self.manipulator, used.is_some());
         let width = manipulator.task_coordinates().len();
-        let ConditionLimit { most, length } = self.limit;
+        let PoseLimit { most, length, indices: bounds } = self.limit;
         let query = ConditionQuery { mode: modes.one(), length, most, every };
         let blocks = poses.chunks(Manipulator::DECIDED * width);
         for (poses, conditions) in blocks.zip(conditions.chunks_mut(Manipulator::DECIDED)) {
@@ -170,6 +211,8 @@ impl<'a> Conditioned<'a> {
             };
             let open = match conditions.len() {
                 ..FEW => u64::MAX,
+                // What is decided together has condition numbers alone.
+                _ if !bounds.is_empty() => u64::MAX,
                 _ => manipulator.condition_many(
                     poses,
                     &query,
@@ -204,22 +247,23 @@ impl<'a> Conditioned<'a> {
         let mut found = false;
         match modes {
             Modes::One(mode) => {
-                let Self { solution, jacobians, limit, condition, .. } = self;
+                let Self { solution, jacobians, limit, condition, indices, .. } = self;
                 if let Ok(Some(solution)) = manipulator.inverse(pose, mode, solution)
-                    && let Some(admitted) = limit.admits(manipulator, solution, jacobians)
+                    && let Some(admitted) = limit.admits(manipulator, solution, jacobians, indices)
                 {
                     (found, *condition) = (true, admitted);
                     go_on(solution);
                 }
             }
             Modes::Any => {
-                let Self { all, solution, jacobians, limit, condition, .. } = self;
+                let Self { all, solution, jacobians, limit, condition, indices, .. } = self;
                 let Ok(Some(all)) = manipulator.inverse_all(pose, all) else {
                     return false;
                 };
                 for mode in all.modes(manipulator) {
                     if let Some(solution) = manipulator.solution_in_mode(all, mode, solution)
-                        && let Some(admitted) = limit.admits(manipulator, solution, jacobians)
+                        && let Some(admitted) =
+                            limit.admits(manipulator, solution, jacobians, indices)
                     {
                         (found, *condition) = (true, admitted);
                         if !go_on(solution) {

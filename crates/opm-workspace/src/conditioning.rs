@@ -2,7 +2,7 @@
 //! and their mean, the global index. C. Gosselin, J. Angeles, *A global performance index for the
 //! kinematic optimization of robotic manipulators*, J. Mech. Des. 113, 1991.
 
-use crate::condition::{ConditionError, ConditionLimit, Conditioned};
+use crate::condition::{ConditionError, Conditioned, PoseLimit};
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::{Hits, Sweep};
 use opm_core::manipulator::Manipulator;
@@ -57,7 +57,7 @@ impl ConditioningIndex {
     /// [`ConditionError`]: a grid of one section alone, a length that is not a positive number or not the
     /// one of the sweep's own limit, or a sweep that was cancelled.
     pub fn of(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, ConditionError> {
-        ConditionLimit::none(length).check(sweep.grid())?;
+        PoseLimit::none(length).check(sweep.manipulator(), sweep.grid())?;
         match sweep.limit() {
             Some(limit) if limit.length != length => {
                 Err(ConditionError::Lengths { index: length, limit: limit.length })
@@ -120,7 +120,7 @@ struct Indexing<'a> {
 
 impl<'a> Indexing<'a> {
     fn new(sweep: &Sweep<'a>, length: f64) -> Self {
-        let limit = sweep.limit().unwrap_or(ConditionLimit::none(length));
+        let limit = sweep.limit().unwrap_or(PoseLimit::none(length));
         let conditioned = Conditioned::new(sweep.manipulator(), limit);
         Self { index: ConditioningIndex::nothing(length), conditioned, poses: Vec::new() }
     }

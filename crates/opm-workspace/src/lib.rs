@@ -37,7 +37,7 @@
 //! | which poses | [`Grid`], [`Axis`], [`Sections`], [`default_grid`] |
 //! | which of them are in reach | [`Sweep`], [`Modes`], [`Count`], [`Hits`], [`Progress`] |
 //! | parts of a sweep, stored and put together | [`Shard`], [`Count::merge`], [`Poses`], [`replay`] |
-//! | which poses are far from singular | [`ConditionLimit`], [`Conditioned`], [`ConditioningIndex`] |
+//! | which poses are far from singular | [`PoseLimit`], [`Conditioned`], [`ConditioningIndex`] |
 //! | the set of reachable poses | [`GridSet`], [`Components`], [`boundary`], [`mask_boundary`] |
 //! | the parts that are free of singularities, and ways in them | [`Aspects`], [`aspect_at`], [`find_path`], [`singular_curves`] |
 //! | places that some or all orientations reach | [`Visits`] |
@@ -75,7 +75,7 @@ pub use aspects::{
 pub use boundary::{MaskError, Outline, Ring, boundary, mask_boundary};
 pub use clearance::{ClearanceError, ClearanceLimit};
 pub use components::Components;
-pub use condition::{ConditionError, ConditionLimit, Conditioned};
+pub use condition::{ConditionError, Conditioned, PoseLimit};
 pub use conditioning::ConditioningIndex;
 pub use extent::{Extent, default_grid};
 pub use grid::{Axis, Coordinate, Grid, GridError, Sections};

@@ -21,7 +21,7 @@ pub use runs::Run;
 pub use shard::{Shard, ShardError};
 
 use crate::clearance::{ClearanceError, ClearanceLimit};
-use crate::condition::{ConditionError, ConditionLimit};
+use crate::condition::{ConditionError, PoseLimit};
 use crate::grid::Grid;
 use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
@@ -166,8 +166,8 @@ pub struct Sweep<'a> {
     manipulator: &'a Manipulator,
     grid: &'a Grid,
     modes: Modes,
-    limit: Option<ConditionLimit>,
     clearance: Option<(ClearanceLimit<'a>, Mode)>,
+    limit: Option<PoseLimit>,
     shard: Shard,
     /// The number of segments in a row.
     segments: u64,
@@ -210,8 +210,8 @@ impl<'a> Sweep<'a> {
         self.modes
     }
 
-    /// The limit on the condition number, if there is one.
-    pub fn limit(&self) -> Option<ConditionLimit> {
+    /// The limit on condition numbers and indices, if there is one.
+    pub fn limit(&self) -> Option<PoseLimit> {
         self.limit
     }
 
@@ -221,8 +221,8 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// [`ConditionError::Section`] on a grid of one section alone: only the whole mechanism has a condition
     /// number. [`ConditionError::Length`] if the limit's characteristic length is not a positive number.
-    pub fn with_limit(self, limit: ConditionLimit) -> Result<Self, ConditionError> {
-        limit.check(self.grid)?;
+    pub fn with_limit(self, limit: PoseLimit) -> Result<Self, ConditionError> {
+        limit.check(self.manipulator, self.grid)?;
         Ok(Self { limit: Some(limit), ..self })
     }
 

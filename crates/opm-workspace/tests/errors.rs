@@ -3,7 +3,7 @@
 use opm_core::manipulator::Manipulator;
 use opm_workspace::measure::{CoordinateRange, Domain, DomainError, Goal, Search, WrongAnswer};
 use opm_workspace::{
-    Axis, ConditionError, ConditionLimit, ConditioningIndex, Grid, MaskError, Modes, OtherGrid,
+    Axis, ConditionError, ConditioningIndex, Grid, MaskError, Modes, OtherGrid, PoseLimit,
     Progress, Sections, Sweep, Visits, mask_boundary,
 };
 
@@ -17,7 +17,7 @@ fn a_section_alone_has_no_condition_numbers() {
     let axes = vec![Axis::new("x", -0.1, 0.1, 3)];
     let lower = Grid::of(Sections::Lower, &manipulator, axes.clone()).unwrap();
     let whole = Grid::new(&manipulator, axes).unwrap();
-    let limit = |length| ConditionLimit { most: 10.0, length };
+    let limit = |length| PoseLimit::none(length).with_condition(10.0);
     let sweep = |grid| Sweep::new(&manipulator, grid, Modes::Any);
     assert_eq!(sweep(&lower).with_limit(limit(0.1)).err(), Some(ConditionError::Section));
     let wrong = sweep(&whole).with_limit(limit(-1.0));

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import examples
 from ._native import (
+    Analysis,
     Aspect,
     Assembly,
     Clearance,
@@ -48,6 +49,7 @@ from ._native import (
 )
 
 __all__ = [
+    "Analysis",
     "Aspect",
     "Assembly",
     "Clearance",

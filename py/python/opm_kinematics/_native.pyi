@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Aspect",
+    "Analysis",
     "Assembly",
     "Clearance",
     "Conditioning",
@@ -213,6 +214,9 @@ class Joint:
     @property
     def max_acceleration(self) -> list[float | None]:
         """The largest acceleration, per second squared, or None."""
+    @property
+    def max_effort(self) -> list[float | None]:
+        """The largest effort of the actuator, N or N m, or None."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -523,8 +527,8 @@ class Manipulator:
         """The geometric parameters of its family by name; empty for a list of joints.
 
         ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
-        of its joints, ``leg1.max_rate.S`` and ``leg1.max_acceleration.S`` those of its motion. Values are in metres, radians
-        and seconds. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None if there are none.
+        of its joints, ``leg1.max_rate.S`` and ``leg1.max_acceleration.S`` those of its motion, ``leg1.max_effort.S`` that of its
+        actuator. Values are in metres, radians, seconds and newtons. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None if there are none.
         """
     def with_parameters(
         self, changes: Mapping[str, _Parameter] | None = None, /, **named: _Parameter
@@ -536,8 +540,8 @@ class Manipulator:
         changes : mapping, optional
             New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
             full name (``leg1.h``) sets it in one leg and takes precedence. In a list of joints, ``S1.limits``,
-            ``S1.max_rate``, ``S1.max_acceleration`` and ``S1.home`` are those of one joint coordinate, and ``limits`` those of
-            all joints that have any.
+            ``S1.max_rate``, ``S1.max_acceleration``, ``S1.max_effort`` and ``S1.home`` are those of one joint coordinate, and
+            ``limits`` those of all joints that have any.
         **named
             New values for names without dots.
 
@@ -976,6 +980,51 @@ class Manipulator:
         Singularity
             One number for each pose and measure, NaN where the pose is out of reach.
         """
+    def analyze(
+        self,
+        poses: ArrayLike,
+        *,
+        wrench: ArrayLike | None = None,
+        at: str | ArrayLike | None = None,
+        frame: str = "base",
+        mode: str = "home",
+        length: float | None = None,
+        threads: int | None = None,
+    ) -> Analysis:
+        """Forces and transmission at many poses: efforts of the actuators, transmission indices, payload.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+            One row for each pose, one column for each task coordinate; metres and radians.
+        wrench : (6,) or (n, 6) array_like, optional
+            The load on the platform, a force and a moment: FX, FY, FZ in N, MX, MY, MZ in N m. No load if not given.
+        at : str or (3,) array_like
+            Where the force acts: ``"platform"``, its reference point; ``"base"``, the base's origin; or a point of the platform,
+            metres from the reference point along the axes of `frame`.
+        frame : str
+            The axes of `wrench` and `at`: ``"base"``, or ``"platform"`` for those that the platform carries.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+        length : float, optional
+            Characteristic length, by which forces and torques are compared, metres. The spread of the joint axes if not given.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. One for each processor if not given.
+
+        Returns
+        -------
+        Analysis
+            Arrays. The effort of a joint is what its actuator exerts along its coordinate so that the mechanism stays at rest
+            under the load.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("planar-3rrr")
+        >>> found = m.analyze([m.home], wrench=[0, 0, 0, 0, 0, 1])
+        >>> found.efforts.round(3).tolist(), found.lti.round(3).tolist()
+        ([[0.515, 0.515, 0.515]], [0.697])
+        """
     def forward(
         self,
         joints: ArrayLike,
@@ -1120,6 +1169,50 @@ class Manipulator:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+
+@final
+class Analysis:
+    """Forces and transmission at many poses; NaN where a pose is out of reach, and where a number is not known."""
+
+    @property
+    def efforts(self) -> NDArray[np.float64]:
+        """(n, a), N and N m: the effort of every actuated joint that balances the load. NaN where the load does not determine it,
+        where it is not balanced, and at a serial singularity."""
+    @property
+    def imaginary_efforts(self) -> NDArray[np.float64]:
+        """(n, j), N and N m: the effort of every imaginary joint, which the lower section exerts on the upper one."""
+    @property
+    def effort_jacobian(self) -> NDArray[np.float64]:
+        """(n, a, 6): the efforts for a unit force along x, y and z of the base, and a unit moment about these axes, at the
+        platform's reference point."""
+    @property
+    def iti(self) -> NDArray[np.float64]:
+        """(n,), no unit: input transmission index, the least of all inputs."""
+    @property
+    def oti(self) -> NDArray[np.float64]:
+        """(n,), no unit: output transmission index, the least of all inputs."""
+    @property
+    def lti(self) -> NDArray[np.float64]:
+        """(n,), no unit: local transmission index, the least of both."""
+    @property
+    def effort_per_force(self) -> NDArray[np.float64]:
+        """(n,), no unit: largest effort of an actuator for a unit force in the worst direction, torques over the characteristic
+        length."""
+    @property
+    def effort_per_moment(self) -> NDArray[np.float64]:
+        """(n,), no unit: largest effort of an actuator for a unit moment in the worst direction, forces times the characteristic
+        length."""
+    @property
+    def payload(self) -> NDArray[np.float64]:
+        """(n,), N: largest force that the actuators bear in every direction, within their ``max_effort``."""
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """(n,): whether the pose is in reach, joint limits not considered."""
+    @property
+    def balanced(self) -> NDArray[np.bool_]:
+        """(n,): whether the actuators balance the load."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Assembly:
@@ -1475,6 +1568,9 @@ class Sweep:
     def max_condition(self) -> float | None:
         """The largest condition number at which a pose counts, if it is limited."""
     @property
+    def limits(self) -> dict[str, float]:
+        """The worst values of indices at which a pose counts, by name."""
+    @property
     def length(self) -> float:
         """Characteristic length of condition numbers, metres."""
     def _repr_html_(self) -> str: ...
@@ -1825,6 +1921,7 @@ def sweep(
     kind: str = "grid",
     mode: str = "home",
     max_condition: float | None = None,
+    limits: Mapping[str, float] | None = None,
     length: float | None = None,
     threads: int | None = None,
     executor: _Executor | None = None,
@@ -1852,6 +1949,9 @@ def sweep(
         ``"home"``, ``"any"``, or a sign for every two-valued choice.
     max_condition : float, optional
         Only poses whose condition number is at most this count, in a mode in which it is.
+    limits : dict of str to float, optional
+        Only poses whose indices are as good as these values, in a mode in which they are: ``{"lti": 0.7}``. The names are
+        those of :class:`Analysis`.
     length : float, optional
         Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
     threads : int, optional
@@ -2027,6 +2127,7 @@ class Trajectory:
         *,
         rates: bool = False,
         accelerations: bool = False,
+        indices: bool = False,
         units: str = "si",
     ) -> None:
         """Write the motion as a table, as ``opm trajectory -o`` does, byte for byte: a row for each sample.
@@ -2043,6 +2144,8 @@ class Trajectory:
             Also the first derivatives by time.
         accelerations : bool, optional
             Also the second derivatives by time.
+        indices : bool, optional
+            Also the indices of :class:`Analysis` that the mechanism has, by their names.
         units : str, optional
             ``"si"``: metres and radians; or ``"file"``: those of the mechanism file, which the header names: ``S1 [mm]``.
 

@@ -10,7 +10,7 @@ use crate::parts::Parts;
 use crate::pickle::pickled;
 use crate::rows::no_memory;
 use numpy::{IntoPyArray, PyArray1};
-use opm_workspace::{ConditionLimit, Conditioned, ConditioningIndex, Progress, Shard};
+use opm_workspace::{Conditioned, ConditioningIndex, PoseLimit, Progress, Shard};
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
@@ -153,7 +153,7 @@ impl Sweep {
         all.try_reserve_exact(poses).map_err(short)?;
         all.resize(poses, f64::NAN);
         let manipulator = self.workspace.manipulator();
-        let limit = self.workspace.limit().unwrap_or(ConditionLimit::none(self.length()));
+        let limit = self.workspace.limit().unwrap_or(PoseLimit::none(self.length()));
         self.visit(
             py,
             shard,

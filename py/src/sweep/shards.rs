@@ -9,6 +9,7 @@ use crate::parts::{Parts, Pickled};
 use opm_study::WorkspaceRequest;
 use opm_workspace::{Axis, Count, Progress, Shard};
 use pyo3::prelude::*;
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 
 /// The least number of poses in a part. Fewer are not worth sending to another process.
@@ -17,9 +18,12 @@ const LEAST_PART: u64 = 1 << 15;
 /// A pickled [`Count`]: the number of poses, the number of reachable ones, ranges of the imaginary joints.
 pub type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
 
-/// A sweep before it is done, as it is pickled: axes, kind, mode, largest condition number,
+/// A sweep before it is done, as it is pickled: axes, kind, mode, largest condition number and limits of indices,
 /// characteristic length, threads.
-type Spec = (Vec<(String, f64, f64, u64)>, String, String, Option<f64>, f64, Option<NonZeroUsize>);
+type Spec = (Vec<(String, f64, f64, u64)>, String, String, Limits, f64, Option<NonZeroUsize>);
+
+/// The largest condition number, and the worst values of indices by name.
+type Limits = (Option<f64>, BTreeMap<String, f64>);
 
 /// The result of `task` for each part of a sweep, in their order; or their combination by `fold`.
 pub fn spread<'py>(
@@ -54,7 +58,8 @@ impl Sweep {
         let axes = axes.map(|a| (a.name.clone(), a.min, a.max, a.count)).collect();
         let Count { poses, reachable, imaginary } = this.count.clone();
         let (kind, mode) = (this.kind().to_owned(), this.mode.clone());
-        let spec = (axes, kind, mode, this.max_condition(), this.length(), this.threads);
+        let limits = (this.max_condition(), this.limits());
+        let spec = (axes, kind, mode, limits, this.length(), this.threads);
         let of = this.of.clone_ref(slf.py());
         Ok((slf.get_type().getattr("_restored")?, (of, spec, (poses, reachable, imaginary))))
     }
@@ -66,11 +71,12 @@ impl Sweep {
         spec: Spec,
         count: Counted,
     ) -> PyResult<Self> {
-        let (axes, kind, mode, most, length, threads) = spec;
+        let (axes, kind, mode, (most, limits), length, threads) = spec;
         let axes = axes.into_iter().map(|(name, min, max, count)| Axis::new(name, min, max, count));
         let mut query = WorkspaceRequest::new(named(&kind)?);
         query.axes = axes.collect();
         (query.max_condition, query.length) = (most, Some(length));
+        query.limits = limits.into_iter().collect();
         let planned = Self::planned(py, manipulator, query, mode, threads)?;
         Ok(Self { count: count_of(count), ..planned })
     }

@@ -108,6 +108,17 @@ impl Solution {
         task.raised(task.rise(pose), task.isometry(v, b))
     }
 
+    /// The displacement of the lower section from home, base coordinates: the frame that the upper section moves in.
+    /// `manipulator` is the one that was solved.
+    pub fn lower_displacement(&self, manipulator: &Manipulator) -> Isometry3<f64> {
+        let SolvedPose { pose, v, .. } = &self.solved;
+        let (task, v) = (&manipulator.task, manipulator.task.lower.isometry(v));
+        match task.height_in(Section::Lower) {
+            Some(_) => task.raised(task.rise(pose), v),
+            None => v,
+        }
+    }
+
     /// Takes a pose, with its dependent coordinates, as the one that was solved.
     pub(crate) fn take_pose(&mut self, manipulator: &Manipulator, all: &[f64]) {
         self.solved.pose.copy_from_slice(all);

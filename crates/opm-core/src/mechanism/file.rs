@@ -21,7 +21,7 @@
 //! | `spherical` | `point` | as revolute; coordinates x, y, z of the rotation vector |
 //!
 //! Every joint may have `max_rate` and `max_acceleration`, in the file's units per second and per second
-//! squared. `home` (default zero) and these two are numbers, and `limits` is a pair `[lowest, highest]`. A
+//! squared, and `max_effort`, in newtons or newton metres. `home` (default zero) and these three are numbers, and `limits` is a pair `[lowest, highest]`. A
 //! joint with several coordinates has an array with one entry per coordinate.
 //!
 //! `[task]` says how the pose is measured, where the [geometry](crate::task) leaves a choice:

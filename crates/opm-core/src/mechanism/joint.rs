@@ -109,6 +109,59 @@ impl MotionLimit {
     }
 }
 
+/// A largest absolute value of a joint coordinate that a mechanism file may give: of its motion, or of the effort that
+/// drives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DriveLimit {
+    /// A limit of its motion.
+    Motion(MotionLimit),
+    /// The limit of its actuator's effort.
+    Effort,
+}
+
+impl DriveLimit {
+    /// All of them.
+    pub const ALL: [Self; 3] =
+        [Self::Motion(MotionLimit::Rate), Self::Motion(MotionLimit::Acceleration), Self::Effort];
+
+    /// The key in mechanism files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Motion(limit) => limit.key(),
+            Self::Effort => "max_effort",
+        }
+    }
+
+    /// Its unit in SI.
+    pub fn unit(self, quantity: Quantity) -> &'static str {
+        match (self, quantity) {
+            (Self::Motion(limit), _) => limit.unit(quantity),
+            (Self::Effort, Quantity::Angle) => "N m",
+            (Self::Effort, Quantity::Length) => "N",
+        }
+    }
+
+    /// Whether files give it in their own units. Efforts are in newtons and newton metres in every file.
+    pub(crate) fn has_units_of_file(self) -> bool {
+        matches!(self, Self::Motion(_))
+    }
+
+    /// Its value.
+    pub fn of(self, coordinate: &JointCoordinate) -> Option<f64> {
+        match self {
+            Self::Motion(limit) => limit.of(&coordinate.motion_limits),
+            Self::Effort => coordinate.max_effort,
+        }
+    }
+
+    pub(crate) fn of_mut(self, coordinate: &mut JointCoordinate) -> &mut Option<f64> {
+        match self {
+            Self::Motion(limit) => limit.of_mut(&mut coordinate.motion_limits),
+            Self::Effort => &mut coordinate.max_effort,
+        }
+    }
+}
+
 /// Everything that limits one joint coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointLimits {
@@ -116,6 +169,8 @@ pub struct JointLimits {
     pub range: Option<[f64; 2]>,
     /// How fast the joint moves.
     pub motion: MotionLimits,
+    /// Largest absolute effort of the joint's actuator, newtons or newton metres; positive.
+    pub max_effort: Option<f64>,
 }
 
 /// One scalar coordinate of a joint: its name, its home value and its limits.
@@ -134,6 +189,9 @@ pub struct JointCoordinate {
     pub limits: Option<[f64; 2]>,
     /// The limits of its rate and of its acceleration.
     pub motion_limits: MotionLimits,
+    /// Largest absolute effort of the coordinate's actuator, newtons for a length and newton metres for an angle; positive.
+    /// The capacity of a pose follows from it; kinematics do not depend on it.
+    pub max_effort: Option<f64>,
 }
 
 impl JointCoordinate {
@@ -228,6 +286,7 @@ impl Joint {
                 home: 0.0,
                 limits: None,
                 motion_limits: MotionLimits::default(),
+                max_effort: None,
             })
             .collect();
         Self { name, kind, axis, point, actuated: false, coordinates }
@@ -258,6 +317,7 @@ impl Joint {
     #[must_use]
     pub fn limited(mut self, limits: JointLimits) -> Self {
         self.coordinates[0].motion_limits = limits.motion;
+        self.coordinates[0].max_effort = limits.max_effort;
         self.within(limits.range)
     }
 

@@ -76,7 +76,8 @@ fn count_above(values: &[f64], tolerance: f64) -> usize {
 }
 
 /// Rotates the columns of a matrix of any scale until they are orthogonal, pair by pair, and those of `right` with them.
-fn orthogonalise(image: &mut DMatrix<f64>, mut right: Option<&mut DMatrix<f64>>) {
+/// Nothing is allocated.
+pub fn orthogonalise(image: &mut DMatrix<f64>, mut right: Option<&mut DMatrix<f64>>) {
     let negligible = (f64::EPSILON * image.norm()).powi(2);
     let [rows, columns] = [image.nrows(), image.ncols()];
     let image = image.as_mut_slice();

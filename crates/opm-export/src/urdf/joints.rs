@@ -21,6 +21,7 @@ pub struct Part {
     home: f64,
     limits: Option<[f64; 2]>,
     max_rate: Option<f64>,
+    max_effort: Option<f64>,
     /// Whether it counts revolutions, because a slide follows it.
     counts: bool,
     /// The joint that it follows, and by how much: its value is `ratio` times what that joint has moved from `from`.
@@ -58,6 +59,7 @@ pub fn parts(joint: &Joint, names: &mut BTreeSet<String>) -> Vec<Part> {
                 home: 0.0,
                 limits: None,
                 max_rate: None,
+                max_effort: None,
                 counts: false,
                 follows: None,
             };
@@ -73,6 +75,7 @@ pub fn parts(joint: &Joint, names: &mut BTreeSet<String>) -> Vec<Part> {
                 home: 0.0,
                 limits: None,
                 max_rate: None,
+                max_effort: None,
                 counts: false,
                 follows: Some(Follows { joint: leader, ratio: pitch, from }),
             };
@@ -91,6 +94,7 @@ impl Part {
             home: coordinate.home,
             limits: coordinate.limits,
             max_rate: coordinate.motion_limits.max_rate,
+            max_effort: coordinate.max_effort,
             counts: false,
             follows: None,
         }
@@ -120,7 +124,7 @@ impl Part {
             limit = limit.numbers("lower", &[lower]).numbers("upper", &[upper]);
         }
         let limit = limit
-            .numbers("effort", &[UNLIMITED])
+            .numbers("effort", &[self.max_effort.unwrap_or(UNLIMITED)])
             .numbers("velocity", &[self.max_rate.unwrap_or(UNLIMITED)]);
         let element = between(&self.name, kind, [parent, child])
             .child(origin(place, &back))

@@ -3,6 +3,7 @@
 use crate::kind::{PosePart, WorkspaceKind};
 use crate::names::{INVERSE_CONDITION, TIP};
 use crate::text::count;
+use opm_analysis::IndexError;
 use opm_core::manipulator::FollowingCoordinate;
 use opm_workspace::{GridError, InscribedError, InscribedShape};
 use std::path::PathBuf;
@@ -21,6 +22,8 @@ pub enum RequestOption {
     MaxCondition,
     /// The least distance of bodies.
     Clearance,
+    /// The worst values of indices.
+    Limit,
     /// The characteristic length of condition numbers.
     Length,
     /// The global conditioning index.
@@ -48,6 +51,7 @@ impl RequestOption {
             Self::Mode => "modes",
             Self::MaxCondition => "max_condition",
             Self::Clearance => "clearance",
+            Self::Limit => "limits",
             Self::Length => "length",
             Self::Conditioning => "conditioning",
             Self::Axes => "axes",
@@ -119,6 +123,34 @@ pub enum RequestError {
     },
     /// A clearance is given for any working mode.
     ClearanceModes,
+    /// A name is not that of an index.
+    UnknownIndex {
+        /// The name.
+        name: String,
+        /// The known names.
+        known: Vec<String>,
+    },
+    /// An index is limited twice.
+    RepeatedLimit {
+        /// Its name.
+        name: String,
+    },
+    /// The worst value of an index is not a finite number.
+    LimitNotFinite {
+        /// Its name.
+        name: String,
+        /// The value.
+        bound: f64,
+    },
+    /// The mechanism does not have an index.
+    Index(IndexError),
+    /// An index is limited, but the kind is of one section alone.
+    SectionIndex {
+        /// The kind.
+        kind: WorkspaceKind,
+        /// The name of the index.
+        name: &'static str,
+    },
     /// The characteristic length is out of range.
     Length(f64),
     /// A characteristic length is given, but no condition number uses it.
@@ -276,6 +308,11 @@ impl RequestError {
             Self::Clearance(_) | Self::SectionClearance { .. } | Self::ClearanceModes => {
                 RequestOption::Clearance
             }
+            Self::UnknownIndex { .. }
+            | Self::RepeatedLimit { .. }
+            | Self::LimitNotFinite { .. }
+            | Self::Index(_)
+            | Self::SectionIndex { .. } => RequestOption::Limit,
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
@@ -314,6 +351,17 @@ impl RequestError {
                 "with {} any: bodies are elsewhere in each mode; give one",
                 spell(RequestOption::Mode)
             ),
+            Self::UnknownIndex { name, known } => {
+                format!("no index {name:?}, expected one of {}", known.join(", "))
+            }
+            Self::RepeatedLimit { name } => format!("{name} is given twice"),
+            Self::LimitNotFinite { name, bound } => {
+                format!("{name} is {bound:?}, expected a finite number")
+            }
+            Self::Index(error) => error.to_string(),
+            Self::SectionIndex { kind, name } => {
+                format!("with {}: a section alone has no {name}", with(kind))
+            }
             Self::Length(length) => {
                 format!("{length:?} m, expected a positive length, 1e-75 to 1e75 m")
             }
@@ -331,9 +379,10 @@ impl RequestError {
                 coordinates.join(", ")
             ),
             Self::UnusedLength => format!(
-                "no condition number uses it; {}, {} or {} {INVERSE_CONDITION} \
-                 asks for one",
+                "nothing uses it; {}, {}, {} or {} {INVERSE_CONDITION} \
+                 does",
                 spell(RequestOption::MaxCondition),
+                spell(RequestOption::Limit),
                 spell(RequestOption::Conditioning),
                 spell(RequestOption::Scalars),
             ),
@@ -454,6 +503,12 @@ impl RequestError {
 fn mcap_only(path: &std::path::Path, content: &str) -> String {
     let path = path.display();
     format!("{path}: {content} is written as MCAP, expected a name that ends in .mcap")
+}
+
+impl From<IndexError> for RequestError {
+    fn from(error: IndexError) -> Self {
+        Self::Index(error)
+    }
 }
 
 impl From<GridError> for RequestError {

@@ -3,11 +3,12 @@
 use super::{Attachment, PROGRAM, record};
 use crate::kind::WorkspaceKind;
 use crate::workspace::{Clearance, Workspace};
+use opm_analysis::Index;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::Metadata;
 use opm_workspace::{
-    Axis, ConditionLimit, ConditioningIndex, Count, Grid, Inscribed, InscribedShape, Modes,
+    Axis, ConditioningIndex, Count, Grid, Inscribed, InscribedShape, Modes, PoseLimit,
 };
 use std::sync::Arc;
 
@@ -19,6 +20,8 @@ const CONDITIONING_PARTS: [&str; 4] = ["poses", "min", "max", "sum"];
 
 /// The key of the least distance of bodies.
 const CLEARANCE: &str = "clearance";
+/// The prefix of the keys of the worst values of indices.
+const LIMIT: &str = "limit.";
 
 /// The key of the largest shape inside the set, and the prefix of the keys of its coordinates.
 const INSCRIBED: &str = "inscribed";
@@ -36,9 +39,14 @@ pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
         ("mode", workspace.mode_name()),
         ("poses", workspace.grid.poses().to_string()),
     ]);
-    if let Some(ConditionLimit { most, length }) = workspace.limit {
-        run.insert("max_condition".to_owned(), most.to_string());
-        run.insert("characteristic_length".to_owned(), length.to_string());
+    if let Some(limit) = workspace.limit {
+        if let Some(most) = limit.max_condition() {
+            run.insert("max_condition".to_owned(), most.to_string());
+        }
+        for (index, bound) in limit.indices.iter() {
+            run.insert(format!("{LIMIT}{index}"), bound.to_string());
+        }
+        run.insert("characteristic_length".to_owned(), limit.length.to_string());
     }
     if let Some(clearance) = &workspace.clearance {
         run.insert(CLEARANCE.to_owned(), clearance.least.to_string());
@@ -75,9 +83,20 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
         signs => Modes::One(manipulator.parse_mode(signs).ok()?),
     };
     let number = |key: &str| run.get(key).map(|text| text.parse().ok());
-    let limit = match (number("max_condition"), number("characteristic_length")) {
-        (None, None) => None,
-        (most, length) => Some(ConditionLimit { most: most??, length: length?? }),
+    let limit = match number("characteristic_length") {
+        None => None,
+        Some(length) => {
+            let mut limit = PoseLimit::none(length?);
+            if let Some(most) = number("max_condition") {
+                limit.most = most?;
+            }
+            for index in Index::ALL {
+                if let Some(bound) = number(&format!("{LIMIT}{index}")) {
+                    limit = limit.with_index(index, bound?);
+                }
+            }
+            Some(limit)
+        }
     };
     let conditioning: Option<f64> = match number(CONDITIONING) {
         None => None,

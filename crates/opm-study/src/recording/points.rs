@@ -5,11 +5,12 @@ use crate::columns::{AxisScale, Column, NamedColumn, PointColumns, is_field};
 use crate::error::StudyError;
 use crate::poses::PoseSource;
 use crate::workspace::Workspace;
+use opm_analysis::{Index, Indices};
 use opm_core::Quantity;
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Solution};
 use opm_core::nalgebra::Point3;
 use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
-use opm_workspace::{Aspects, ConditionLimit, Conditioned, Count, Hits, Modes, Poses, Progress};
+use opm_workspace::{Aspects, Conditioned, Count, Hits, Modes, PoseLimit, Poses, Progress};
 use std::sync::{Mutex, PoisonError};
 
 /// The values of the points in a recording of poses.
@@ -67,7 +68,7 @@ impl<'a> Cloud<'a> {
     pub fn passes(&self) -> u64 {
         match self.shown.color.column {
             Column::Actuated(number) if self.limits(number).is_none() => 3,
-            Column::InverseCondition => 3,
+            Column::InverseCondition | Column::Index(_) => 3,
             Column::Coordinate(_)
             | Column::Imaginary(_)
             | Column::Actuated(_)
@@ -114,6 +115,7 @@ impl<'a> Cloud<'a> {
             | Column::Actuated(_)
             | Column::InverseCondition
             | Column::Aspect
+            | Column::Index(_)
             | Column::Share => unreachable!("axes are task coordinates, or the platform's point"),
         });
         let scale = scale(&self.shown, self.measures());
@@ -136,7 +138,7 @@ impl<'a> Cloud<'a> {
     }
 
     /// The values at the ends of the colour scale. A task coordinate has those of the grid; a joint has its
-    /// limits or the range that occurs; condition numbers have the range that occurs.
+    /// limits or the range that occurs; condition numbers and indices have the range that occurs.
     pub fn color_range(
         &self,
         poses: &PoseSource<'_>,
@@ -153,7 +155,11 @@ impl<'a> Cloud<'a> {
                 let last = self.aspects.map_or(0, |aspects| aspects.list().len());
                 Some([1.0_f64.min(last as f64), last as f64])
             }
-            Column::InverseCondition | Column::Tip(_) | Column::Share | Column::Zero => None,
+            Column::InverseCondition
+            | Column::Index(_)
+            | Column::Tip(_)
+            | Column::Share
+            | Column::Zero => None,
         };
         if let Some(range) = known {
             return Ok(range);
@@ -248,6 +254,8 @@ pub struct Points<'a> {
     /// All columns are task coordinates.
     plain: bool,
     joints: Joints<'a>,
+    /// The indices that are columns.
+    indices: Option<Indices<'a>>,
     pose: Vec<f64>,
     row: Vec<f64>,
     portions: Vec<Portion>,
@@ -261,8 +269,7 @@ enum Joints<'a> {
     Unused,
     One(ActuatedJoints),
     Any(Box<(AllModes, Solution)>),
-    /// There is a limit on the condition number, which selects the mode, or a column that needs
-    /// that number.
+    /// There is a limit on what a pose is like, which selects the mode, or a column that needs all of a solution.
     Limited(Box<(Conditioned<'a>, Solution)>),
 }
 
@@ -270,10 +277,20 @@ impl<'a> Points<'a> {
     pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column], packing: Option<&'a Packing>) -> Self {
         let manipulator = cloud.manipulator();
         let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
-        let condition = columns.contains(&Column::InverseCondition);
+        let of_solution = |c: &Column| matches!(c, Column::InverseCondition | Column::Index(_));
+        let condition = columns.iter().any(of_solution);
+        let asked_indices: Vec<Index> = (columns.iter())
+            .filter_map(
+                |column| if let Column::Index(index) = column { Some(*index) } else { None },
+            )
+            .collect();
+        let indices = match asked_indices.is_empty() {
+            true => None,
+            false => Indices::new(manipulator, cloud.workspace.length, asked_indices).ok(),
+        };
         let joints = match (cloud.workspace.modes, cloud.workspace.limit) {
             _ if condition => {
-                let none = ConditionLimit::none(cloud.workspace.length);
+                let none = PoseLimit::none(cloud.workspace.length);
                 let limit = cloud.workspace.limit.unwrap_or(none);
                 let conditioned = Conditioned::new(manipulator, limit);
                 Joints::Limited(Box::new((conditioned, manipulator.solution())))
@@ -290,7 +307,7 @@ impl<'a> Points<'a> {
         };
         let plain = is_plain(columns);
         let (pose, row, portions) = (Vec::new(), Vec::new(), Vec::new());
-        Self { cloud, columns, packing, plain, joints, pose, row, portions, wrong: None }
+        Self { cloud, columns, packing, plain, joints, indices, pose, row, portions, wrong: None }
     }
 
     pub fn add(&mut self, hits: &Hits<'_>) {
@@ -382,6 +399,9 @@ impl<'a> Points<'a> {
         self.open(slice);
         let Some(Portion { values: row, .. }) = self.portions.last_mut() else { return };
         let mut tip = None;
+        if let (Some(indices), Joints::Limited(buffers)) = (&mut self.indices, &self.joints) {
+            indices.evaluate(&buffers.1);
+        }
         for column in self.columns {
             row.push(match (*column, &self.joints) {
                 (Column::Coordinate(number), _) => pose[number],
@@ -402,8 +422,15 @@ impl<'a> Points<'a> {
                     buffers.1.joints()[manipulator.actuated()[number]]
                 }
                 (Column::InverseCondition, Joints::Limited(buffers)) => buffers.0.index(),
+                (Column::Index(index), Joints::Limited(_)) => {
+                    let found = self.indices.as_ref().and_then(|indices| indices.value(index));
+                    found.unwrap_or(f64::NAN)
+                }
                 (
-                    Column::Imaginary(_) | Column::Actuated(_) | Column::InverseCondition,
+                    Column::Imaginary(_)
+                    | Column::Actuated(_)
+                    | Column::InverseCondition
+                    | Column::Index(_),
                     Joints::Unused | Joints::One(_) | Joints::Any(_),
                 ) => {
                     unreachable!("Points::new has buffers for what columns ask for")

@@ -117,7 +117,8 @@ impl Rejected<'_> {
                 | Column::Imaginary(_)
                 | Column::Actuated(_)
                 | Column::InverseCondition
-                | Column::Aspect => 0.0,
+                | Column::Aspect
+                | Column::Index(_) => 0.0,
             }));
             if !row.iter().all(|value| value.is_finite()) {
                 // Without its dependent coordinates, a pose does not say where the platform is.

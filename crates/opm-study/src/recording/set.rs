@@ -88,7 +88,8 @@ impl<'a> SetCloud<'a> {
             | Column::Actuated(_)
             | Column::Tip(_)
             | Column::InverseCondition
-            | Column::Aspect => [0.0, 0.0],
+            | Column::Aspect
+            | Column::Index(_) => [0.0, 0.0],
         };
         layout(&self.shown, color_range, "task", self.measures())
     }
@@ -140,7 +141,8 @@ impl<'a> SetCloud<'a> {
                     Column::Actuated(_)
                     | Column::Tip(_)
                     | Column::InverseCondition
-                    | Column::Aspect => {
+                    | Column::Aspect
+                    | Column::Index(_) => {
                         unreachable!("points of a set are not poses")
                     }
                 };
@@ -174,7 +176,8 @@ impl<'a> SetCloud<'a> {
                 | Column::Actuated(_)
                 | Column::Tip(_)
                 | Column::InverseCondition
-                | Column::Aspect => None,
+                | Column::Aspect
+                | Column::Index(_) => None,
             })
             .collect();
         let coordinates = coordinates?;

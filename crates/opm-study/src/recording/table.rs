@@ -3,6 +3,7 @@
 use super::{create, refuse_standard_output};
 use crate::error::{RequestError, StudyError};
 use crate::motion::{MotionRequest, MotionSummary};
+use opm_analysis::{Index, Indices};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
@@ -18,6 +19,8 @@ pub struct TableOptions {
     pub rates: bool,
     /// The second derivatives by time, as `dd.NAME`.
     pub accelerations: bool,
+    /// The indices that the mechanism has ([`Index`]), by their names.
+    pub indices: bool,
     /// Units of a file, which the header then names: `S1 [mm]`. If not given, SI and radians without a name.
     pub units: Option<FileUnits>,
 }
@@ -30,22 +33,27 @@ enum Format {
 }
 
 /// The columns of a table: `t`, task coordinates, dependent coordinates, joints, imaginary joints; then the rates of
-/// all of them but `t`, in the same order, and their accelerations.
-struct Columns {
+/// all of them but `t`, in the same order, and their accelerations; then indices.
+struct Columns<'a> {
     options: TableOptions,
+    indices: Option<Indices<'a>>,
     /// Names and quantities, without `t`.
     coordinates: Vec<(String, Quantity)>,
 }
 
-impl Columns {
-    fn new(manipulator: &Manipulator, options: TableOptions) -> Self {
+impl<'a> Columns<'a> {
+    fn new(manipulator: &'a Manipulator, options: TableOptions) -> Self {
+        let known = Index::ALL.into_iter().filter(|index| index.check(manipulator).is_ok());
+        let length = manipulator.characteristic_length();
+        let indices = options.indices.then(|| Indices::new(manipulator, length, known).ok());
+        let indices = indices.flatten();
         let tasks = manipulator.task_coordinates().iter();
         let tasks = tasks.chain(manipulator.dependent_coordinates());
         let joints = manipulator.coordinates().iter().map(|c| (c.name.clone(), c.quantity));
         let imaginary = manipulator.imaginary().iter().map(|j| (j.name.clone(), j.quantity));
         let coordinates =
             tasks.map(|c| (c.name.to_owned(), c.quantity)).chain(joints).chain(imaginary).collect();
-        Self { options, coordinates }
+        Self { options, indices, coordinates }
     }
 
     /// The prefix of the name and the suffix of the unit of each derivative that is asked for.
@@ -65,11 +73,18 @@ impl Columns {
                 None => format!("{prefix}{name}"),
             }));
         }
+        for index in self.indices.iter().flat_map(Indices::indices) {
+            let facts = index.facts();
+            names.push(match (units, facts.unit) {
+                (None, _) | (_, "") => facts.name.to_owned(),
+                (Some(_), unit) => format!("{} [{unit}]", facts.name),
+            });
+        }
         names
     }
 
     /// The numbers of a sample; not a number where there is none.
-    fn write(&self, sample: &Sample, row: &mut Vec<f64>) {
+    fn write(&mut self, sample: &Sample, row: &mut Vec<f64>) {
         let Sample { time, instant, solution, motion, reached, .. } = sample;
         let moving = *reached && sample.regular;
         row.clear();
@@ -102,6 +117,13 @@ impl Columns {
                 value / self.options.units.map_or(1.0, |units| units.factor(*quantity))
             }));
         }
+        if let Some(indices) = &mut self.indices {
+            let blank = indices.indices().len();
+            match *reached {
+                true => row.extend(indices.evaluate(solution)),
+                false => row.extend(std::iter::repeat_n(f64::NAN, blank)),
+            }
+        }
     }
 }
 
@@ -117,7 +139,7 @@ pub fn write_motion_csv(
     (place, output): (&str, &mut dyn Write),
     go_on: impl Fn(u64) -> bool,
 ) -> Result<MotionSummary, StudyError> {
-    let columns = Columns::new(request.manipulator, options);
+    let mut columns = Columns::new(request.manipulator, options);
     let failed = |error: io::Error| StudyError::record(place, RecordError::Io(error));
     let mut output = io::BufWriter::new(output);
     writeln!(output, "{}", columns.header().join(",")).map_err(failed)?;
@@ -166,7 +188,7 @@ pub fn write_motion_table(
             Ok(summary)
         }
         Format::Npy => {
-            let columns = Columns::new(request.manipulator, options);
+            let mut columns = Columns::new(request.manipulator, options);
             let header = columns.header();
             let names: Vec<&str> = header.iter().map(String::as_str).collect();
             let samples = trajectory.samples();

@@ -2,7 +2,7 @@
 
 use super::runs::Run;
 use super::{Count, Sweep};
-use crate::condition::{ConditionLimit, Conditioned};
+use crate::condition::{Conditioned, PoseLimit};
 use opm_core::manipulator::Manipulator;
 
 /// A thread's working memory for poses that are held against a limit.
@@ -19,7 +19,7 @@ pub struct LimitedRows<'a> {
 }
 
 impl<'a> LimitedRows<'a> {
-    pub fn new(manipulator: &'a Manipulator, limit: ConditionLimit) -> Self {
+    pub fn new(manipulator: &'a Manipulator, limit: PoseLimit) -> Self {
         let conditioned = Conditioned::new(manipulator, limit);
         Self { conditioned, poses: Vec::new(), admitted: Vec::new(), taken: 0, ranges: false }
     }

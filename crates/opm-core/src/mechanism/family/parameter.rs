@@ -3,7 +3,7 @@
 
 use super::Family;
 use crate::mechanism::file::{FileUnits, checks, nearest, quoted};
-use crate::mechanism::joint::{JointLimits, MotionLimit, MotionLimits};
+use crate::mechanism::joint::{DriveLimit, JointLimits, MotionLimit, MotionLimits};
 use crate::numeric::Quantity;
 use std::fmt::Write;
 
@@ -27,25 +27,29 @@ pub(in crate::mechanism) enum ParameterRef<'a> {
     /// A point in the plane; both coordinates are lengths.
     Point(&'a mut [f64; 2]),
     Limits(Quantity, &'a mut Option<[f64; 2]>),
-    MotionLimit(MotionLimit, Quantity, &'a mut Option<f64>),
+    DriveLimit(DriveLimit, Quantity, &'a mut Option<f64>),
 }
 
 /// A table of a leg with a value for each of its joints.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::mechanism) enum JointTable {
     Limits,
-    Motion(MotionLimit),
+    Drive(DriveLimit),
 }
 
 impl JointTable {
-    pub const ALL: [Self; 3] =
-        [Self::Limits, Self::Motion(MotionLimit::Rate), Self::Motion(MotionLimit::Acceleration)];
+    pub const ALL: [Self; 4] = [
+        Self::Limits,
+        Self::Drive(DriveLimit::Motion(MotionLimit::Rate)),
+        Self::Drive(DriveLimit::Motion(MotionLimit::Acceleration)),
+        Self::Drive(DriveLimit::Effort),
+    ];
 
     /// The key of the table in files.
     pub fn key(self) -> &'static str {
         match self {
             Self::Limits => "limits",
-            Self::Motion(limit) => limit.key(),
+            Self::Drive(limit) => limit.key(),
         }
     }
 }
@@ -72,7 +76,7 @@ pub(in crate::mechanism) enum TableKey {
 pub enum ParameterValue {
     /// No limits.
     None,
-    /// A length, an angle, a pitch in metres per radian, or the largest rate or acceleration of a joint.
+    /// A length, an angle, a pitch in metres per radian, or the largest rate, acceleration or effort of a joint.
     Number(f64),
     /// A point in the plane, or the lowest and highest value of limits.
     Pair([f64; 2]),
@@ -113,14 +117,15 @@ impl Parameter<'_> {
         }
     }
 
-    /// What it measures.
-    fn quantity(&self) -> Quantity {
+    /// What it measures, in the units of the file; `None` for an effort, which is in newtons or newton metres.
+    fn quantity(&self) -> Option<Quantity> {
         match self.target {
+            ParameterRef::DriveLimit(limit, ..) if !limit.has_units_of_file() => None,
             ParameterRef::Number(quantity, _)
             | ParameterRef::Optional(quantity, _)
             | ParameterRef::Limits(quantity, _)
-            | ParameterRef::MotionLimit(_, quantity, _) => quantity,
-            ParameterRef::Point(_) => Quantity::Length,
+            | ParameterRef::DriveLimit(_, quantity, _) => Some(quantity),
+            ParameterRef::Point(_) => Some(Quantity::Length),
         }
     }
 
@@ -133,7 +138,7 @@ impl Parameter<'_> {
             ParameterRef::Limits(_, limits) => {
                 Some(limits.map_or(ParameterValue::None, ParameterValue::Pair))
             }
-            ParameterRef::MotionLimit(.., limit) => {
+            ParameterRef::DriveLimit(.., limit) => {
                 Some(limit.map_or(ParameterValue::None, ParameterValue::Number))
             }
         }
@@ -158,10 +163,10 @@ impl Parameter<'_> {
                 let limits = [size(low, *quantity)?, size(high, *quantity)?];
                 **target = Some(checks::ordered(limits, *quantity, FileUnits::SI)?);
             }
-            (ParameterRef::MotionLimit(.., target), ParameterValue::None) => **target = None,
-            (ParameterRef::MotionLimit(limit, quantity, target), Number(value)) => {
+            (ParameterRef::DriveLimit(.., target), ParameterValue::None) => **target = None,
+            (ParameterRef::DriveLimit(limit, quantity, target), Number(value)) => {
                 let value = checks::finite(value)?;
-                **target = Some(checks::motion_limit(value, *limit, *quantity, FileUnits::SI)?);
+                **target = Some(checks::drive_limit(value, *limit, *quantity, FileUnits::SI)?);
             }
             (target, value) => {
                 let found = match value {
@@ -173,7 +178,7 @@ impl Parameter<'_> {
                     ParameterRef::Number(..) | ParameterRef::Optional(..) => "a number",
                     ParameterRef::Point(_) => "a point [x, y]",
                     ParameterRef::Limits(..) => "limits [lowest, highest] or none",
-                    ParameterRef::MotionLimit(..) => "a number or none",
+                    ParameterRef::DriveLimit(..) => "a number or none",
                 };
                 return Err(format!("is {found}, expected {expected}"));
             }
@@ -261,7 +266,7 @@ impl Family {
         };
         groups.iter().find_map(|group| {
             let found = group.parameters.iter().find(|parameter| called(group, parameter))?;
-            Some(found.quantity())
+            found.quantity()
         })
     }
 
@@ -284,7 +289,7 @@ impl Family {
         let mut body = String::new();
         for group in family.groups() {
             let entry = |p: &Parameter<'_>| {
-                let factor = units.factor(p.quantity());
+                let factor = p.quantity().map_or(1.0, |quantity| units.factor(quantity));
                 let value = match p.value()? {
                     ParameterValue::None => return None,
                     ParameterValue::Number(value) => format!("{:?}", value / factor),
@@ -372,11 +377,11 @@ fn known(groups: &[Group<'_>]) -> String {
         let mut names = of(None).join(", ");
         let joints = of(Some(JointTable::Limits));
         if let Some(first) = joints.first() {
-            let [limits, rate, acceleration] = JointTable::ALL.map(JointTable::key);
+            let [limits, rate, acceleration, effort] = JointTable::ALL.map(JointTable::key);
             let joints = joints.join(", ");
             let _ = write!(
                 names,
-                ", and {limits}, {rate} and {acceleration} ({limits}.{first}, ...) of {joints}"
+                ", and {limits}, {rate}, {acceleration} and {effort} ({limits}.{first}, ...) of {joints}"
             );
         }
         match kinds.iter_mut().find(|(_, known)| *known == names) {
@@ -416,12 +421,17 @@ impl<'a> Parameter<'a> {
         joints: [(&'static str, Quantity, &'a mut JointLimits); N],
     ) -> Vec<Self> {
         let mut tables = JointTable::ALL.map(|_| Vec::new());
-        for (key, quantity, JointLimits { range, motion }) in joints {
+        for (key, quantity, JointLimits { range, motion, max_effort }) in joints {
             let MotionLimits { max_rate, max_acceleration } = motion;
             let targets = [
                 ParameterRef::Limits(quantity, range),
-                ParameterRef::MotionLimit(MotionLimit::Rate, quantity, max_rate),
-                ParameterRef::MotionLimit(MotionLimit::Acceleration, quantity, max_acceleration),
+                ParameterRef::DriveLimit(DriveLimit::Motion(MotionLimit::Rate), quantity, max_rate),
+                ParameterRef::DriveLimit(
+                    DriveLimit::Motion(MotionLimit::Acceleration),
+                    quantity,
+                    max_acceleration,
+                ),
+                ParameterRef::DriveLimit(DriveLimit::Effort, quantity, max_effort),
             ];
             for ((table, parameters), target) in
                 JointTable::ALL.into_iter().zip(&mut tables).zip(targets)

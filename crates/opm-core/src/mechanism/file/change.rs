@@ -3,29 +3,38 @@
 
 use super::{Digits, FileUnits, MechanismFile, checks, nearest, write, writer};
 use crate::mechanism::family::{Family, ParameterErrors, ParameterValue};
-use crate::mechanism::joint::{JointCoordinate, MotionLimit};
+use crate::mechanism::joint::{DriveLimit, JointCoordinate};
 use crate::mechanism::{Mechanism, TaskHints};
 use crate::numeric::Quantity;
 
 impl MechanismFile {
     /// What a number of the file measures, by the name that [`MechanismFile::with`] takes; `None` if there is no such
-    /// number.
+    /// number, and if it is an effort ([`MechanismFile::is_effort`]).
     pub fn quantity_of(&self, name: &str) -> Option<Quantity> {
         match &self.family {
             Some(family) => family.quantity_of(name),
             None => {
-                let (joint, _) = split(name)?;
+                let (joint, part) = split(name)?;
+                if part == Part::Drive(DriveLimit::Effort) {
+                    return None;
+                }
                 let mut all = self.mechanism.coordinates();
                 all.find(|c| joint.is_none_or(|joint| joint == c.name)).map(|c| c.quantity)
             }
         }
     }
 
+    /// Whether a name that [`MechanismFile::with`] takes is that of the largest effort of actuators, in newtons or newton
+    /// metres.
+    pub fn is_effort(&self, name: &str) -> bool {
+        name.split('.').any(|part| part == DriveLimit::Effort.key())
+    }
+
     /// The same file with some numbers changed, SI.
     ///
     /// The names are those of [`Family::parameters`] (see [`Family::with`]). In a list of joints, `S1.limits` are the
-    /// limits of a joint coordinate, `S1.max_rate` and `S1.max_acceleration` those of its motion, and `S1.home` is its
-    /// value at home; `limits` alone are those of all joints that have any, and so are the limits of motion.
+    /// limits of a joint coordinate, `S1.max_rate`, `S1.max_acceleration` and `S1.max_effort` those of how it is driven, and
+    /// `S1.home` is its value at home; `limits` alone are those of all joints that have any, and so are the other limits.
     ///
     /// # Errors
     /// A name or a value is wrong, or a leg does not reach home.
@@ -89,7 +98,7 @@ pub fn text(mechanism: &Mechanism, family: Option<&Family>, units: FileUnits) ->
 enum Part {
     Home,
     Limits,
-    Motion(MotionLimit),
+    Drive(DriveLimit),
 }
 
 impl Part {
@@ -98,7 +107,7 @@ impl Part {
         match self {
             Self::Home => false,
             Self::Limits => coordinate.limits.is_some(),
-            Self::Motion(limit) => limit.of(&coordinate.motion_limits).is_some(),
+            Self::Drive(limit) => limit.of(coordinate).is_some(),
         }
     }
 }
@@ -112,7 +121,7 @@ fn split(name: &str) -> Option<(Option<&str>, Part)> {
     let part = match part {
         "home" if joint.is_some() => Part::Home,
         "limits" => Part::Limits,
-        part => Part::Motion(MotionLimit::ALL.into_iter().find(|limit| limit.key() == part)?),
+        part => Part::Drive(DriveLimit::ALL.into_iter().find(|limit| limit.key() == part)?),
     };
     Some((joint, part))
 }
@@ -122,13 +131,14 @@ fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Resul
     let names: Vec<String> = mechanism.coordinates().map(|c| c.name.clone()).collect();
     let list = || names.join(", ");
     let Some((joint, part)) = split(name) else {
-        let parts = ["limits", "home", "max_rate", "max_acceleration"];
-        let parts = names.iter().flat_map(|name| parts.map(|part| format!("{name}.{part}")));
+        let parts = ["limits", "home"].into_iter().chain(DriveLimit::ALL.map(DriveLimit::key));
+        let parts =
+            names.iter().flat_map(|name| parts.clone().map(move |part| format!("{name}.{part}")));
         let hint = nearest(name, &parts.collect::<Vec<_>>());
         let hint = hint.map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
         return Err(format!(
-            "is not a number of a list of joints; {hint}expected JOINT.limits, JOINT.home, JOINT.max_rate or \
-             JOINT.max_acceleration, JOINT one of {}",
+            "is not a number of a list of joints; {hint}expected JOINT.limits, JOINT.home, JOINT.max_rate, \
+             JOINT.max_acceleration or JOINT.max_effort, JOINT one of {}",
             list()
         ));
     };
@@ -156,16 +166,16 @@ fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Resul
                 let limits = [size(low, quantity)?, size(high, quantity)?];
                 coordinate.limits = Some(checks::ordered(limits, quantity, FileUnits::SI)?);
             }
-            (Part::Motion(limit), ParameterValue::None) => {
-                *limit.of_mut(&mut coordinate.motion_limits) = None;
+            (Part::Drive(limit), ParameterValue::None) => {
+                *limit.of_mut(coordinate) = None;
             }
-            (Part::Motion(limit), ParameterValue::Number(value)) => {
+            (Part::Drive(limit), ParameterValue::Number(value)) => {
                 let value = checks::finite(value)?;
-                let value = checks::motion_limit(value, limit, quantity, FileUnits::SI)?;
-                *limit.of_mut(&mut coordinate.motion_limits) = Some(value);
+                let value = checks::drive_limit(value, limit, quantity, FileUnits::SI)?;
+                *limit.of_mut(coordinate) = Some(value);
             }
             (Part::Home, _) => return Err("expected a number".into()),
-            (Part::Motion(_), _) => return Err("expected a number, or none".into()),
+            (Part::Drive(_), _) => return Err("expected a number, or none".into()),
             (Part::Limits, _) => return Err("expected limits LOWEST:HIGHEST, or none".into()),
         }
     }

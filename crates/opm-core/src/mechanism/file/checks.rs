@@ -2,7 +2,7 @@
 //! name of the value; it is in the units of the caller.
 
 use super::units::FileUnits;
-use crate::mechanism::joint::MotionLimit;
+use crate::mechanism::joint::DriveLimit;
 use crate::numeric::Quantity;
 
 /// Largest accepted length or angle in metres or radians: larger than any machine. Squares and
@@ -36,16 +36,23 @@ pub(crate) fn ordered(
     Err(format!("are reversed: {low} is above {high}, expected [lowest, highest]"))
 }
 
-/// Checks that the largest rate or acceleration of a joint, SI, is above zero and not larger than [`LARGEST`].
-pub(crate) fn motion_limit(
+/// Checks that the largest rate, acceleration or effort of a joint, SI, is above zero and not larger than [`LARGEST`].
+pub(crate) fn drive_limit(
     value: f64,
-    limit: MotionLimit,
+    limit: DriveLimit,
     quantity: Quantity,
     units: FileUnits,
 ) -> Result<f64, String> {
-    if value > 0.0 {
-        return size(value, quantity, units);
+    let show = |value| match limit {
+        DriveLimit::Motion(limit) => format!("{}{}", units.show(value, quantity), limit.per_time()),
+        DriveLimit::Effort => format!("{value} {}", limit.unit(quantity)),
+    };
+    if value > 0.0 && value <= LARGEST {
+        return Ok(value);
     }
-    let found = units.show(value, quantity);
-    Err(format!("is {found}{}, expected a value above 0", limit.per_time()))
+    let found = show(value);
+    Err(match value > 0.0 {
+        true => format!("is {found}, expected an absolute value of at most {}", show(LARGEST)),
+        false => format!("is {found}, expected a value above 0"),
+    })
 }

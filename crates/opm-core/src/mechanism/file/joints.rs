@@ -3,7 +3,7 @@
 use super::leg_name;
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
-use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
+use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
 use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{
     BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, Shapes, TaskHints,
@@ -67,7 +67,7 @@ impl Type {
     /// The keys that a joint of this type may have.
     pub(super) fn keys(self) -> Vec<&'static str> {
         let mut keys = vec!["name", "type", "point", "actuated", "home", "limits"];
-        keys.extend(MotionLimit::ALL.map(MotionLimit::key));
+        keys.extend(DriveLimit::ALL.map(DriveLimit::key));
         keys.extend(self.directions().iter().chain(self.lengths()));
         keys
     }
@@ -304,12 +304,12 @@ fn read_coordinates(table: &Table<'_>, joint: &mut Joint) {
         Some(value) => value.per_coordinate(&quantities, Value::quantity),
         None => Some(vec![0.0; quantities.len()]),
     };
-    for limit in MotionLimit::ALL {
+    for limit in DriveLimit::ALL {
         let value = table.get(limit.key());
-        let read = |item: &Value<'_>, quantity| item.motion_limit(limit, quantity);
+        let read = |item: &Value<'_>, quantity| item.drive_limit(limit, quantity);
         let given = value.and_then(|value| value.per_coordinate(&quantities, read));
         for (coordinate, given) in joint.coordinates.iter_mut().zip(given.into_iter().flatten()) {
-            *limit.of_mut(&mut coordinate.motion_limits) = Some(given);
+            *limit.of_mut(coordinate) = Some(given);
         }
     }
     let limits = table.get("limits");

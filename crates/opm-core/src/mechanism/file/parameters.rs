@@ -62,8 +62,8 @@ pub(in crate::mechanism) fn read_leg(leg: Option<&Table<'_>>, parameters: Vec<Pa
             ParameterRef::Limits(quantity, target) => {
                 *target = of_joint().and_then(|value| value.limits(quantity));
             }
-            ParameterRef::MotionLimit(limit, quantity, target) => {
-                *target = of_joint().and_then(|value| value.motion_limit(limit, quantity));
+            ParameterRef::DriveLimit(limit, quantity, target) => {
+                *target = of_joint().and_then(|value| value.drive_limit(limit, quantity));
             }
         }
     }

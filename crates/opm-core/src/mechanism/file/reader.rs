@@ -7,7 +7,7 @@ use super::checks;
 use super::hint::expected_one_of;
 use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
-use crate::mechanism::joint::MotionLimit;
+use crate::mechanism::joint::DriveLimit;
 use crate::numeric::Quantity;
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
@@ -271,11 +271,13 @@ impl<'a> Value<'a> {
         ordered.map_err(|problem| self.report(problem)).ok()
     }
 
-    /// Reads the largest rate or acceleration of a joint in the file's units and seconds; returns it in SI.
-    pub(crate) fn motion_limit(&self, limit: MotionLimit, quantity: Quantity) -> Option<f64> {
+    /// Reads the largest rate or acceleration of a joint in the file's units and seconds, or its largest effort in newtons or
+    /// newton metres; returns it in SI.
+    pub(crate) fn drive_limit(&self, limit: DriveLimit, quantity: Quantity) -> Option<f64> {
         let units = self.reader.units();
-        let value = units.si(self.number()?, quantity);
-        let checked = checks::motion_limit(value, limit, quantity, units);
+        let number = self.number()?;
+        let value = if limit.has_units_of_file() { units.si(number, quantity) } else { number };
+        let checked = checks::drive_limit(value, limit, quantity, units);
         checked.map_err(|problem| self.report(problem)).ok()
     }
 

@@ -1,7 +1,7 @@
 //! Writing a mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
-use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
+use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
 use crate::mechanism::{
     HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, OrientationCoordinates, TaskHints,
 };
@@ -195,15 +195,22 @@ impl Writer {
         if let Some(limits) = limits.collect() {
             entries.push(format!("limits = {}", one_or_all(limits)));
         }
-        for limit in MotionLimit::ALL {
-            let largest = coordinates
-                .iter()
-                .map(|c| Some(self.number(limit.of(&c.motion_limits)?, c.quantity)));
+        for limit in DriveLimit::ALL {
+            let largest =
+                coordinates.iter().map(|c| Some(self.drive_limit(limit, limit.of(c)?, c.quantity)));
             if let Some(largest) = largest.collect() {
                 entries.push(format!("{} = {}", limit.key(), one_or_all(largest)));
             }
         }
         entries
+    }
+
+    /// A limit of how a joint is driven, in the file's units.
+    pub fn drive_limit(self, limit: DriveLimit, value: f64, quantity: Quantity) -> String {
+        match limit.has_units_of_file() {
+            true => self.number(value, quantity),
+            false => self.digits.of(value, DECIMALS),
+        }
     }
 
     fn point(self, point: Point3<f64>) -> String {

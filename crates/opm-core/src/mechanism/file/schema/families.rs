@@ -2,7 +2,7 @@
 
 use super::Properties;
 use super::values::{
-    array, described, exactly, form, joined_tables, limits, motion_limit, name, number, object,
+    array, described, drive_limit, exactly, form, joined_tables, limits, name, number, object,
     point, text,
 };
 use crate::mechanism::family::{
@@ -11,7 +11,7 @@ use crate::mechanism::family::{
 use crate::mechanism::file::joints::FAMILY_TASK_KEYS;
 use crate::mechanism::file::parameters::{joint_keys, keys};
 use crate::mechanism::file::read::FAMILY_KEYS;
-use crate::mechanism::joint::MotionLimit;
+use crate::mechanism::joint::{DriveLimit, MotionLimit};
 use serde_json::{Value, json};
 
 /// The keys of each family, with its name.
@@ -95,11 +95,14 @@ fn joint_table(table: JointTable) -> &'static str {
         JointTable::Limits => {
             "Limits of the leg's joints, [lowest, highest]. A joint without limits is free."
         }
-        JointTable::Motion(MotionLimit::Rate) => {
+        JointTable::Drive(DriveLimit::Motion(MotionLimit::Rate)) => {
             "The largest rates of the leg's joints, with which trajectories are compared."
         }
-        JointTable::Motion(MotionLimit::Acceleration) => {
+        JointTable::Drive(DriveLimit::Motion(MotionLimit::Acceleration)) => {
             "The largest accelerations of the leg's joints, with which trajectories are compared."
+        }
+        JointTable::Drive(DriveLimit::Effort) => {
+            "The largest efforts of the leg's actuators, from which the capacity of a pose follows."
         }
     }
 }
@@ -111,8 +114,8 @@ fn joint(Parameter { key, target, .. }: &Parameter<'_>) -> Option<Value> {
             let what = format!("The lowest and the highest value of the joint {key}.");
             Some(limits(&what, *quantity))
         }
-        ParameterRef::MotionLimit(limit, quantity, _) => {
-            Some(motion_limit(&format!("Of the joint {key}."), *limit, *quantity))
+        ParameterRef::DriveLimit(limit, quantity, _) => {
+            Some(drive_limit(&format!("Of the joint {key}."), *limit, *quantity))
         }
         ParameterRef::Number(..) | ParameterRef::Optional(..) | ParameterRef::Point(_) => None,
     }
@@ -127,7 +130,7 @@ fn meanings(group: &Group<'_>) -> Properties {
                 number(&format!("{expected}; only for legs that have one"), *quantity)
             }
             ParameterRef::Point(_) => point(expected, 2),
-            ParameterRef::Limits(..) | ParameterRef::MotionLimit(..) => return None,
+            ParameterRef::Limits(..) | ParameterRef::DriveLimit(..) => return None,
         };
         Some(((*key).to_owned(), value))
     };
@@ -176,7 +179,7 @@ fn form_of(family: &FamilyForm) -> Value {
 fn is_required(parameter: &Parameter<'_>) -> bool {
     match parameter.target {
         ParameterRef::Number(..) | ParameterRef::Point(_) => true,
-        ParameterRef::Optional(..) | ParameterRef::Limits(..) | ParameterRef::MotionLimit(..) => {
+        ParameterRef::Optional(..) | ParameterRef::Limits(..) | ParameterRef::DriveLimit(..) => {
             false
         }
     }

@@ -7,7 +7,7 @@ use super::values::{
 use crate::mechanism::file::joints::{
     FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
 };
-use crate::mechanism::joint::{Joint, JointKind, MotionLimit};
+use crate::mechanism::joint::{DriveLimit, Joint, JointKind, MotionLimit};
 use crate::mechanism::{HOME_COORDINATES, OrientationCoordinates};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
@@ -114,8 +114,12 @@ fn joint() -> Value {
         ),
         ("home", json!({ "description": AT_HOME })),
         ("limits", json!({ "description": LIMITS })),
-        (MotionLimit::Rate.key(), json!({ "description": MAX_RATE })),
-        (MotionLimit::Acceleration.key(), json!({ "description": MAX_ACCELERATION })),
+        (DriveLimit::Motion(MotionLimit::Rate).key(), json!({ "description": MAX_RATE })),
+        (
+            DriveLimit::Motion(MotionLimit::Acceleration).key(),
+            json!({ "description": MAX_ACCELERATION }),
+        ),
+        (DriveLimit::Effort.key(), json!({ "description": MAX_EFFORT })),
     ];
     let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
     let mut joint = described("A joint, at home.", object(properties));
@@ -140,6 +144,9 @@ const MAX_RATE: &str = "The largest absolute rate, above 0, with which trajector
 const MAX_ACCELERATION: &str = "The largest absolute acceleration, above 0, with which trajectories are compared. A \
                                 number, or for a joint of several coordinates an array with one for each. In \
                                 units.angle/s^2 or units.length/s^2.";
+const MAX_EFFORT: &str = "The largest absolute effort of the actuator, above 0, from which the capacity of a pose \
+                          follows. A number, or for a joint of several coordinates an array with one for each. In N m \
+                          for an angle, in N for a length, whatever the units.";
 
 /// The keys of a joint of one type.
 fn joint_form(kind: Type) -> Value {
@@ -162,7 +169,7 @@ fn joint_form(kind: Type) -> Value {
             1 => item,
             count => several(&item, count),
         });
-    let [rate, acceleration] = MotionLimit::ALL.map(|limit| (limit.key(), largest.clone()));
-    let narrower = [("home", home), ("limits", limits), rate, acceleration];
+    let [rate, acceleration, effort] = DriveLimit::ALL.map(|limit| (limit.key(), largest.clone()));
+    let narrower = [("home", home), ("limits", limits), rate, acceleration, effort];
     form(&kind.keys(), &kind.needs(), &narrower)
 }

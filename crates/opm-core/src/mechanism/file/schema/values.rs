@@ -1,7 +1,7 @@
 //! The parts that schemas consist of.
 
 use super::Properties;
-use crate::mechanism::joint::MotionLimit;
+use crate::mechanism::joint::DriveLimit;
 use crate::numeric::Quantity;
 use serde_json::{Value, json};
 
@@ -52,13 +52,16 @@ pub fn limits(description: &str, quantity: Quantity) -> Value {
     numbers(&in_units(description, quantity), 2)
 }
 
-/// The largest rate or acceleration of a joint.
-pub fn motion_limit(description: &str, limit: MotionLimit, quantity: Quantity) -> Value {
-    let unit = match quantity {
-        Quantity::Angle => "units.angle",
-        Quantity::Length => "units.length",
+/// The largest rate, acceleration or effort of a joint.
+pub fn drive_limit(description: &str, limit: DriveLimit, quantity: Quantity) -> Value {
+    let unit = match (limit, quantity) {
+        (DriveLimit::Motion(limit), Quantity::Angle) => format!("units.angle{}", limit.per_time()),
+        (DriveLimit::Motion(limit), Quantity::Length) => {
+            format!("units.length{}", limit.per_time())
+        }
+        (DriveLimit::Effort, _) => limit.unit(quantity).to_owned(),
     };
-    let description = format!("{description} In {unit}{}, above 0.", limit.per_time());
+    let description = format!("{description} In {unit}, above 0.");
     json!({ "description": description, "type": "number", "exclusiveMinimum": 0 })
 }
 

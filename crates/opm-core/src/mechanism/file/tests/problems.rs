@@ -389,6 +389,7 @@ fn limits_of_motion() {
     for (from, to, message) in [
         ("max_rate = 500", "max_rate = ^-500", "`max_rate` is -500 mm/s, expected a value above 0"),
         ("max_rate = 500", "max_rate = ^0", "`max_rate` is 0 mm/s, expected a value above 0"),
+        ("max_rate = 500", "max_effort = ^-5", "`max_effort` is -5 N, expected a value above 0"),
         ("max_rate = 500", "max_rate = ^nan", "`max_rate` is nan, expected a finite number"),
         ("max_rate = 500", "max_rate = ^1e20", "expected an absolute value of at most"),
         ("max_rate = 500", "max_rate = ^[1]", "`max_rate` is an array, expected a number"),

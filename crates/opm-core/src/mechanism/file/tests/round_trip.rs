@@ -40,7 +40,10 @@ prop_compose! {
         kind in kind(), axis in direction(), point in point(), actuated in any::<bool>(),
         home in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64],
         room in proptest::option::of([0.0..1.0, 0.0..1.0_f64]),
-        largest in [proptest::option::of(0.1..3.0_f64), proptest::option::of(0.1..3.0_f64)],
+        largest in [
+            proptest::option::of(0.1..3.0_f64), proptest::option::of(0.1..3.0_f64),
+            proptest::option::of(0.1..300.0_f64),
+        ],
     ) -> Joint {
         let axis = match kind {
             JointKind::Spherical => Vector3::z_axis(),
@@ -55,8 +58,9 @@ prop_compose! {
         for (coordinate, home) in joint.coordinates.iter_mut().zip(home) {
             coordinate.home = home;
             coordinate.limits = room.map(|[below, above]| [home - below, home + above]);
-            let [max_rate, max_acceleration] = largest;
+            let [max_rate, max_acceleration, max_effort] = largest;
             coordinate.motion_limits = MotionLimits { max_rate, max_acceleration };
+            coordinate.max_effort = max_effort;
         }
         joint
     }

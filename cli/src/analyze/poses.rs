@@ -1,0 +1,128 @@
+//! `opm analyze --poses`: a CSV file of poses in, one of efforts and indices out, row by row.
+
+use super::{Analyser, word};
+use crate::args::{AnalyzeArgs, Format, Output};
+use crate::failure::Failure;
+use crate::load::Loaded;
+use crate::pose::find;
+use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
+use crate::text::{count, short};
+use crate::unitless::Plausible;
+use opm_analysis::{Index, Indices};
+use opm_core::manipulator::Mode;
+use serde::Serialize;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// The totals of a batch.
+#[derive(Debug, Serialize)]
+struct Summary {
+    poses: u64,
+    reachable: u64,
+    within_limits: u64,
+    balanced: u64,
+    seconds: f64,
+    poses_per_second: f64,
+}
+
+pub fn run(
+    args: &AnalyzeArgs,
+    input: &Path,
+    output: &Output,
+    loaded: &Loaded,
+    (analyser, mode): (&mut Analyser<'_>, Mode),
+) -> Result<(), Failure> {
+    let streams = Streams { input, output: args.output.as_deref() };
+    let solve = |stream: Stream<'_>| solve(stream, loaded, analyser, mode);
+    let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
+    output.note(format_args!(
+        "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
+        args.output.as_deref().unwrap_or(input).display(),
+        count(summary.poses),
+        count(summary.reachable),
+        count(summary.within_limits),
+        short(summary.seconds),
+        count(summary.poses_per_second as u64),
+    ));
+    if output.format == Format::Json { output.print(&summary, "") } else { Ok(()) }
+}
+
+fn solve(
+    mut stream: Stream<'_>,
+    loaded: &Loaded,
+    analyser: &mut Analyser<'_>,
+    mode: Mode,
+) -> Result<Summary, Stop> {
+    let start = Instant::now();
+    let manipulator = analyser.manipulator;
+    let length = analyser.statics.length();
+    // Those that the mechanism has.
+    let has = |index: &Index| Indices::new(manipulator, length, [*index]).is_ok();
+    let known: Vec<Index> = Index::ALL.into_iter().filter(has).collect();
+    let mut indices = Indices::new(manipulator, length, known.iter().copied())
+        .map_err(|error| Failure::work(error.to_string()))?;
+    let coordinates = manipulator.task_coordinates();
+    let values = coordinates.iter().map(|c| Wanted {
+        name: c.name,
+        quantity: c.quantity,
+        plausible: Plausible::new(c.quantity, c.home, (loaded, manipulator)),
+    });
+    let others = other_columns(manipulator);
+    let mut columns = stream.columns(values.collect(), |name| {
+        if others.iter().any(|other| other == name) {
+            return Ok(None);
+        }
+        manipulator.refuse_following(name).map_err(|error| error.to_string())?;
+        find(name, coordinates).map(Some).map_err(|error| error.to_string())
+    })?;
+    let loaded_with = analyser.load.is_some();
+    let imaginary = manipulator.imaginary().iter().map(|joint| &*joint.name);
+    let actuated = manipulator.actuated().iter().map(|&i| &*manipulator.coordinates()[i].name);
+    let carried: Vec<String> = actuated.chain(imaginary).map(|n| format!("effort.{n}")).collect();
+    let efforts: &[String] = if loaded_with { &carried } else { &[] };
+    let header = (columns.timed().then_some("t").into_iter())
+        .chain(coordinates.iter().map(|c| c.name))
+        .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
+        .chain(["reachable", "within_limits", "mode"])
+        .chain(loaded_with.then_some("balance"))
+        .chain(efforts.iter().map(String::as_str))
+        .chain(known.iter().map(|index| index.name()));
+    stream.writer.write_record(header)?;
+    let (mut at, mut pose) = (manipulator.solution(), manipulator.home_pose());
+    let (mut reachable, mut within_limits, mut balanced) = (0, 0, 0);
+    let mode_text = manipulator.format_mode(mode);
+    stream.each(&mut columns, &mut pose, |stream, line, time, pose| {
+        let label = stream.label;
+        let found = manipulator.inverse(pose, mode, &mut at);
+        let reached = found.map_err(|error| stream::at(label, line, error))?.is_some();
+        let within = reached && at.within_limits();
+        let blank = |count: usize| vec![None::<f64>; count];
+        let mut dependent = blank(manipulator.dependent_coordinates().len());
+        let mut cells = blank(efforts.len());
+        let mut numbers = blank(known.len());
+        let mut balance = String::new();
+        if reached {
+            analyser.update(&at)?;
+            dependent = at.dependent().iter().map(|&value| Some(value)).collect();
+            let finite = |&value: &f64| value.is_finite().then_some(value);
+            numbers = indices.evaluate(&at).iter().map(finite).collect();
+            if let Some(wrench) = analyser.wrench(&at) {
+                let found = analyser.statics.efforts(&wrench);
+                word(found.balance).clone_into(&mut balance);
+                balanced += u64::from(found.balance == opm_analysis::Balance::Balanced);
+                cells = found.actuated.into_iter().chain(found.imaginary).collect();
+            }
+        }
+        reachable += u64::from(reached);
+        within_limits += u64::from(within);
+        let balance = if loaded_with { std::slice::from_ref(&balance) } else { &[] };
+        let answers = (u8::from(reached), u8::from(within), &mode_text);
+        let row = (time.as_slice(), pose, dependent, answers, balance, cells, numbers);
+        Ok(stream.writer.serialize(row)?)
+    })?;
+    let seconds = start.elapsed().as_secs_f64().max(1e-9);
+    let poses = stream.rows.load(Ordering::Relaxed);
+    let poses_per_second = poses as f64 / seconds;
+    Ok(Summary { poses, reachable, within_limits, balanced, seconds, poses_per_second })
+}

@@ -1,0 +1,101 @@
+//! Arguments of `opm analyze`.
+
+use super::MechanismArgs;
+use crate::analyze::load::{At, LinkStiffness, WrenchComponents};
+use crate::pose::{Number, Pose};
+use clap::ValueHint;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use opm_analysis::LoadAxes;
+use std::path::PathBuf;
+
+/// Forces and transmission at a pose: efforts of the actuators, payload, transmission indices
+///
+/// --wrench is a load on the platform: force and moment, in newtons and newton metres. Its effort is what each
+/// actuator exerts along its coordinate so that the mechanism stays at rest, in N or N m. A slider that points up
+/// and carries a weight has a positive effort. The efforts of imaginary joints are what the lower section does to
+/// the upper one.
+///
+/// An effort that the load does not determine is null: redundant actuators can work against each other. If the
+/// load drives a motion that the actuators do not hold, no effort is known, and `balance` is "driven". At a serial
+/// singularity it is "singular". A pose out of reach is an answer (exit status 0).
+///
+/// Without a load: the largest effort for a unit force and a unit moment, with its direction; the transmission
+/// indices of every input, of both sections, and of the whole (`lti` is the least of all); and, if joints have a
+/// `max_effort`, the largest force and moment that the actuators bear in every direction. With a load, these are
+/// on top of it. docs/analysis.md has the definitions.
+///
+/// Statics do not tell what the legs of an overconstrained mechanism, or redundant actuators, carry: --link-stiffness
+/// and --joint-stiffness do, by the virtual joint method.
+///
+/// CSV in: as for `opm ik`. CSV out: the pose, `reachable`, `within_limits`, `mode`, `balance`, the efforts
+/// (`effort.NAME`), and the indices that the mechanism has.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm analyze plano-spherical-5dof --pose x=10mm,xi=15deg
+  opm analyze plano-spherical-5dof --pose xi=15deg --wrench 10,0,0,0,0,0.5 --format json
+  opm analyze plano-spherical-5dof --wrench 0,0,-100,0,0,0 --link-stiffness 1e7,1e4
+  opm analyze planar-3rrr --wrench 0,-20,0,0,0,0 --at 50mm,0,0 --frame platform
+  opm analyze planar-3rrr --poses poses.csv --wrench 0,-20,0,0,0,0 -o efforts.csv")]
+pub struct AnalyzeArgs {
+    /// The mechanism.
+    #[command(flatten)]
+    pub mechanism: MechanismArgs,
+    /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
+    #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
+    pub pose: Pose,
+    /// A CSV file of poses; - reads standard input
+    #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
+    pub poses: Option<PathBuf>,
+    /// Force and moment on the platform, N and N m
+    #[arg(long, value_name = "FX,FY,FZ,MX,MY,MZ", allow_hyphen_values = true)]
+    pub wrench: Option<WrenchComponents>,
+    /// Where the force acts: `platform`, its reference point; `base`, the base's origin; or a point of the platform, from
+    /// the reference point along the axes of --frame
+    #[arg(
+        long,
+        value_name = "POINT",
+        default_value = "platform",
+        requires = "wrench",
+        allow_hyphen_values = true
+    )]
+    pub at: At,
+    /// The axes of --wrench and --at: those of the base, or those that the platform carries
+    #[arg(
+        long,
+        value_name = "base|platform",
+        value_parser = axes(),
+        default_value = "base",
+        requires = "wrench"
+    )]
+    pub frame: LoadAxes,
+    /// Stiffness of each link against translations of its end, N/m, and against rotations, N m/rad: adds the platform's
+    /// stiffness, and with --wrench the reactions in the legs
+    #[arg(long, value_name = "KT,KR", conflicts_with = "poses", allow_hyphen_values = true)]
+    pub link_stiffness: Option<LinkStiffness>,
+    /// Stiffness of actuators, N/m or N m/rad; one that is not given is rigid
+    #[arg(long, value_name = "NAME=K,...", requires = "link_stiffness")]
+    pub joint_stiffness: Option<Pose>,
+    /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
+    #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
+    pub mode: String,
+    /// Characteristic length, by which forces and moments are compared, instead of the spread of the joint axes
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub length: Option<Number>,
+    /// Output file for the CSV; standard output if it is - or not given
+    #[arg(
+        short,
+        long,
+        value_name = "OUT.csv",
+        requires = "poses",
+        conflicts_with = "pose",
+        value_hint = ValueHint::FilePath
+    )]
+    pub output: Option<PathBuf>,
+}
+
+/// Parses which axes a load is along.
+fn axes() -> impl TypedValueParser<Value = LoadAxes> {
+    let names = PossibleValuesParser::new(LoadAxes::NAMED.map(|(name, _)| name));
+    names.map(|name| LoadAxes::from_name(&name).unwrap_or_default())
+}
