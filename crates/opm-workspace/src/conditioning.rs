@@ -68,7 +68,8 @@ impl ConditioningIndex {
 
     fn of_checked(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
         let mut all = Self::nothing(length);
-        sweep.points(
+        // What the sweep's limit admits is decided with the indices, once.
+        sweep.without_limit().points(
             progress,
             |hits, made: &mut Option<Indexing<'_>>| {
                 made.get_or_insert_with(|| Indexing::new(sweep, length)).take(sweep, hits);

@@ -215,6 +215,11 @@ impl<'a> Sweep<'a> {
         self.limit
     }
 
+    /// The same sweep without a limit on condition numbers and indices.
+    pub(crate) fn without_limit(self) -> Self {
+        Self { limit: None, ..self }
+    }
+
     /// The same sweep, but a pose counts only in a working mode in which its condition number is within
     /// `limit`. That is decided for each reachable pose, in a fraction of a microsecond for each mode.
     ///

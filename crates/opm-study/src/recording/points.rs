@@ -254,6 +254,7 @@ pub struct Points<'a> {
     /// All columns are task coordinates.
     plain: bool,
     joints: Joints<'a>,
+    conditions: Option<Box<Conditions<'a>>>,
     /// The indices that are columns.
     indices: Option<Indices<'a>>,
     pose: Vec<f64>,
@@ -261,6 +262,26 @@ pub struct Points<'a> {
     portions: Vec<Portion>,
     /// A pose that the sweep found and inverse kinematics did not, or a value that is not a number.
     wrong: Option<StudyError>,
+}
+
+/// The local conditioning indices of points that differ in the first coordinate, which are found together.
+struct Conditions<'a> {
+    conditioned: Conditioned<'a>,
+    /// The poses, row after row.
+    poses: Vec<f64>,
+    indices: Vec<f64>,
+}
+
+impl Conditions<'_> {
+    fn find(&mut self, modes: Modes, first: &[f64], others: &[f64]) {
+        self.poses.clear();
+        for &value in first {
+            self.poses.push(value);
+            self.poses.extend_from_slice(others);
+        }
+        self.indices.resize(first.len(), f64::NAN);
+        self.conditioned.local_indices(&self.poses, modes, &mut self.indices);
+    }
 }
 
 /// Buffers for the results of inverse kinematics.
@@ -277,8 +298,7 @@ impl<'a> Points<'a> {
     pub fn new(cloud: &'a Cloud<'a>, columns: &'a [Column], packing: Option<&'a Packing>) -> Self {
         let manipulator = cloud.manipulator();
         let asked = |c: &Column| matches!(c, Column::Imaginary(_) | Column::Actuated(_));
-        let of_solution = |c: &Column| matches!(c, Column::InverseCondition | Column::Index(_));
-        let condition = columns.iter().any(of_solution);
+        let condition = columns.contains(&Column::InverseCondition);
         let asked_indices: Vec<Index> = (columns.iter())
             .filter_map(
                 |column| if let Column::Index(index) = column { Some(*index) } else { None },
@@ -288,26 +308,36 @@ impl<'a> Points<'a> {
             true => None,
             false => Indices::new(manipulator, cloud.workspace.length, asked_indices).ok(),
         };
-        let joints = match (cloud.workspace.modes, cloud.workspace.limit) {
-            _ if condition => {
-                let none = PoseLimit::none(cloud.workspace.length);
-                let limit = cloud.workspace.limit.unwrap_or(none);
-                let conditioned = Conditioned::new(manipulator, limit);
-                Joints::Limited(Box::new((conditioned, manipulator.solution())))
-            }
-            _ if !columns.iter().any(asked) => Joints::Unused,
-            (Modes::One(_), _) => Joints::One(manipulator.actuated_joints()),
-            (Modes::Any, Some(limit)) => {
-                let conditioned = Conditioned::new(manipulator, limit);
-                Joints::Limited(Box::new((conditioned, manipulator.solution())))
-            }
-            (Modes::Any, None) => {
-                Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution())))
-            }
+        let given = cloud.workspace.limit;
+        let limit = given.unwrap_or(PoseLimit::none(cloud.workspace.length));
+        let limited = || {
+            let conditioned = Conditioned::new(manipulator, limit);
+            Joints::Limited(Box::new((conditioned, manipulator.solution())))
         };
-        let plain = is_plain(columns);
-        let (pose, row, portions) = (Vec::new(), Vec::new(), Vec::new());
-        Self { cloud, columns, packing, plain, joints, indices, pose, row, portions, wrong: None }
+        let joints = match cloud.workspace.modes {
+            _ if indices.is_some() => limited(),
+            _ if !columns.iter().any(asked) => Joints::Unused,
+            Modes::One(_) => Joints::One(manipulator.actuated_joints()),
+            Modes::Any if given.is_some() || condition => limited(),
+            Modes::Any => Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution()))),
+        };
+        let conditions = condition.then(|| {
+            let conditioned = Conditioned::new(manipulator, limit);
+            Box::new(Conditions { conditioned, poses: Vec::new(), indices: Vec::new() })
+        });
+        Self {
+            cloud,
+            columns,
+            packing,
+            plain: is_plain(columns),
+            joints,
+            conditions,
+            indices,
+            pose: Vec::new(),
+            row: Vec::new(),
+            portions: Vec::new(),
+            wrong: None,
+        }
     }
 
     pub fn add(&mut self, hits: &Hits<'_>) {
@@ -323,9 +353,12 @@ impl<'a> Points<'a> {
         match self.packing {
             Some(packing) if self.plain => self.plain_line(&packing.packer, slice, first, &pose),
             _ => {
-                for &value in first {
+                if let Some(conditions) = &mut self.conditions {
+                    conditions.find(self.cloud.workspace.modes, first, others);
+                }
+                for (number, &value) in first.iter().enumerate() {
                     pose[0] = value;
-                    self.point(slice, &pose);
+                    self.point(slice, &pose, number);
                 }
                 self.pack();
             }
@@ -371,8 +404,10 @@ impl<'a> Points<'a> {
         }
     }
 
-    fn point(&mut self, slice: u64, pose: &[f64]) {
+    /// A point, by its number among those that were found together.
+    fn point(&mut self, slice: u64, pose: &[f64], number: usize) {
         let manipulator = self.cloud.manipulator();
+        let condition = self.conditions.as_ref().map_or(0.0, |found| found.indices[number]);
         let found = match (&mut self.joints, self.cloud.workspace.modes) {
             (Joints::One(drives), Modes::One(mode)) => {
                 matches!(manipulator.inverse_actuated(pose, mode, drives), Ok(Some(_)))
@@ -392,7 +427,7 @@ impl<'a> Points<'a> {
             }
             _ => true,
         };
-        if !found {
+        if !found || condition.is_nan() {
             self.wrong.get_or_insert_with(|| StudyError::LostPose { pose: pose.to_vec() });
             return;
         }
@@ -421,16 +456,13 @@ impl<'a> Points<'a> {
                 (Column::Actuated(number), Joints::Limited(buffers)) => {
                     buffers.1.joints()[manipulator.actuated()[number]]
                 }
-                (Column::InverseCondition, Joints::Limited(buffers)) => buffers.0.index(),
+                (Column::InverseCondition, _) => condition,
                 (Column::Index(index), Joints::Limited(_)) => {
                     let found = self.indices.as_ref().and_then(|indices| indices.value(index));
                     found.unwrap_or(f64::NAN)
                 }
                 (
-                    Column::Imaginary(_)
-                    | Column::Actuated(_)
-                    | Column::InverseCondition
-                    | Column::Index(_),
+                    Column::Imaginary(_) | Column::Actuated(_) | Column::Index(_),
                     Joints::Unused | Joints::One(_) | Joints::Any(_),
                 ) => {
                     unreachable!("Points::new has buffers for what columns ask for")
