@@ -66,7 +66,7 @@ impl Elastic {
         let Some(found) = &self.reactions else { return text };
         let mut table = Table::new(["load on", ">FX", ">FY", ">FZ", ">MX", ">MY", ">MZ"]);
         for (leg, wrench) in manipulator.mechanism().legs.iter().zip(&found.legs) {
-            let cells = wrench.components().map(short);
+            let cells = wrench.components().map(|part| self::part(part, report.scale()));
             table.row(std::iter::once(leg.name.clone()).chain(cells));
         }
         let _ = writeln!(text, "{table}");
@@ -130,6 +130,13 @@ impl Report<'_> {
     fn load(&self) -> Option<(Wrench, Efforts)> {
         let wrench = self.analyser.wrench(self.at)?;
         Some((wrench, self.statics().efforts(&wrench)))
+    }
+
+    /// The size of the load, or a unit.
+    fn scale(&self) -> f64 {
+        let wrench = self.analyser.wrench(self.at);
+        let size = wrench.map(|w| w.components().iter().map(|part| part.abs()).sum::<f64>());
+        size.unwrap_or(1.0)
     }
 
     fn capacity(&self) -> Option<Capacity> {
@@ -272,7 +279,8 @@ impl Report<'_> {
         }
         let load = self.load();
         let mut table = Table::new(["joint", ">effort", "unit", ">per N", ">per N m"]);
-        let cell = |value: Option<f64>| value.map_or("-".to_owned(), short);
+        let scale = self.scale();
+        let cell = |value: Option<f64>| value.map_or("-".to_owned(), |value| part(value, scale));
         for (row, (name, quantity)) in self.joints().enumerate() {
             let worst = statics.worst(row);
             table.row([
@@ -345,6 +353,12 @@ const KEYS: [&str; 12] = [
     "length",
     "transform",
 ];
+
+/// A number of a table for people: what is only rounding beside the load is zero.
+fn part(value: f64, scale: f64) -> String {
+    const ROUNDING: f64 = 1e-12;
+    short(if value.abs() < ROUNDING * scale { 0.0 } else { value })
+}
 
 /// The unit of an effort.
 pub fn unit(quantity: Quantity) -> &'static str {

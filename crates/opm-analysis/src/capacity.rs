@@ -205,8 +205,9 @@ impl Statics<'_> {
                     continue;
                 }
                 let factor = rows[row][order[step]] / pivot;
-                for k in 0..f {
-                    rows[row][k] -= factor * rows[step][k];
+                let pivot_row = rows[step];
+                for (entry, pivot) in rows[row].iter_mut().zip(pivot_row).take(f) {
+                    *entry -= factor * pivot;
                 }
             }
         }
