@@ -83,7 +83,7 @@ fn matlab_solves_shipped_mechanisms_as_opm() {
         shipped().into_iter().filter(|m| names.contains(&&*m.mechanism().name)).collect();
     let Some(program) = Packages::new(&all) else { return };
     compare_all(&program, &all, 40, 41);
-    reach_ends_where_it_does_for_opm(&program, &all, 6);
+    reach_ends_where_it_does_for_opm(&program, &all, 30);
 }
 
 #[test]
