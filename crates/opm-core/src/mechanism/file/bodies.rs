@@ -1,20 +1,24 @@
 //! Reading `[bodies]`: what the bodies of a mechanism weigh, and how thick they are.
 
-use super::checks::LARGEST;
 use super::hint::expected_one_of;
 use super::reader::{Table, Value};
 use crate::mechanism::{BodyMasses, Mechanism, Shapes};
 
 pub(super) const KEYS: &[&str] = &["density", "masses", "radius", "radii"];
 
+/// The densities that bodies may have, kilograms per cubic metre: from less than air to more than any metal.
+pub(super) const DENSITIES: [f64; 2] = [1e-3, 1e6];
+/// The masses that bodies may have, kilograms: from a microgram to a thousand tons.
+pub(super) const MASSES: [f64; 2] = [1e-9, 1e6];
+
 /// Reads the table, if there is one, into a mechanism.
 pub(super) fn read(root: &Table<'_>, mechanism: &mut Mechanism) {
     let Some(table) = root.get("bodies").and_then(|value| value.table(KEYS)) else { return };
-    let density = table.get("density").and_then(|value| positive(&value, "kg/m^3"));
+    let density = table.get("density").and_then(|value| within(&value, DENSITIES, "kg/m^3"));
     let moving: Vec<&str> = mechanism.body_names().collect();
     let masses = table.get("masses").and_then(|value| value.open_table());
-    let masses =
-        masses.map(|masses| by_name(&masses, mechanism, &moving, |mass| positive(mass, "kg")));
+    let masses = masses
+        .map(|masses| by_name(&masses, mechanism, &moving, |mass| within(mass, MASSES, "kg")));
     let radius = table.get("radius").and_then(|value| value.positive_length());
     let all = [&moving[..], &[Shapes::BASE]].concat();
     let radii = table.get("radii").and_then(|value| value.open_table());
@@ -48,12 +52,12 @@ fn by_name(
     known
 }
 
-/// Reads a number that is above zero.
-fn positive(value: &Value<'_>, unit: &str) -> Option<f64> {
+/// Reads a number in a range.
+fn within(value: &Value<'_>, [least, most]: [f64; 2], unit: &str) -> Option<f64> {
     let number = value.number()?;
-    if number > 0.0 && number <= LARGEST {
+    if (least..=most).contains(&number) {
         return Some(number);
     }
-    value.report(format!("is {number} {unit}, expected a value above 0 and at most {LARGEST:e}"));
+    value.report(format!("is {number} {unit}, expected {least:?} to {most:?} {unit}"));
     None
 }

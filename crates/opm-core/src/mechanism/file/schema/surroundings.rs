@@ -3,13 +3,13 @@
 use super::values::{
     array, cases, closed, described, direction, form, in_units, name, numbers, object, point,
 };
-use crate::mechanism::file::LARGEST;
+use crate::mechanism::file::bodies::{DENSITIES, MASSES};
 use crate::mechanism::file::obstacles::TYPES;
 use crate::numeric::Quantity;
 use serde_json::{Value, json};
 
-fn above_zero(what: &str) -> Value {
-    json!({ "description": what, "type": "number", "exclusiveMinimum": 0, "maximum": LARGEST })
+fn within(what: &str, [least, most]: [f64; 2]) -> Value {
+    json!({ "description": what, "type": "number", "minimum": least, "maximum": most })
 }
 
 fn length(what: &str) -> Value {
@@ -27,8 +27,8 @@ pub fn bodies() -> Value {
     let radii =
         "Radii of rods, by the names of bodies: base, platform, or the joint that carries a link.";
     let properties = [
-        ("density", above_zero(density)),
-        ("masses", by_name(masses, above_zero("The mass of this body, kilograms."))),
+        ("density", within(density, DENSITIES)),
+        ("masses", by_name(masses, within("The mass of this body, kilograms.", MASSES))),
         ("radius", length(radius)),
         ("radii", by_name(radii, length("the radius of this body's rods"))),
     ];
