@@ -222,7 +222,7 @@ fn what_a_kind_cannot_do_is_refused() {
         (&["--kind", "lower", "--max-condition", "9"], &["--max-condition", "--kind lower"]),
         (&["--kind", "reachable", "--conditioning"], &["--conditioning", "--kind reachable"]),
         (&["--kind", "imaginary", "--mode", "any"], &["--mode", "--kind imaginary"]),
-        (&["--kind", "upper", "--length", "1"], &["--length", "condition number"]),
+        (&["--kind", "upper", "--length", "1"], &["--length", "nothing uses it"]),
         (&["--kind", "dexterous", "-o", "a.mcap", "--color", "S1"], &["--color", "S1", "share"]),
         (&["--kind", "upper", "-o", "a.mcap", "--axes", "tip"], &["--axes", "tip"]),
     ];

@@ -78,9 +78,9 @@ fn a_change_by_name_is_the_change_in_the_file() {
 #[test]
 fn every_parameter_is_listed_and_can_be_set() {
     for (name, count) in FAMILIES.into_iter().zip([
-        5 + 3 * (8 + 3 * 5) + 3 + 3 * 2,
-        3 + 3 * (3 + 3 * 3) + 1,
-        4 + 3 * (7 + 3 * 5) + 8 + 3 * 5,
+        5 + 3 * (8 + 4 * 5) + 3 + 4 * 2,
+        3 + 3 * (3 + 4 * 3) + 1,
+        4 + 3 * (7 + 4 * 5) + 8 + 4 * 5,
     ]) {
         let family = family(name);
         let parameters = family.parameters();
