@@ -611,7 +611,7 @@ impl Trajectory {
             Attachment { name: file_name, text },
         ];
         let request = MotionRequest::new(&manipulator.inner, motion, file_name);
-        let request = request.mode(*mode).rate(*rate);
+        let request = request.mode(*mode).rate(*rate).clearance(0.0);
         let stop = AtomicBool::new(false);
         let work = || {
             let trajectory = request.trajectory()?;

@@ -284,7 +284,7 @@ def test_parts_of_a_grid_that_share_slices_add_up(manipulator):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"kind": "none"}, 'kind is "none", expected one of grid, constant-orientation, orientation, reachable, dexterous, imag'),
+        ({"kind": "none"}, 'kind is "none", expected one of grid, constant-orientation, orientation, aspects, reachable, dexterous, imag'),
         ({"kind": "orientation", "x": (0.0, 0.1, 2)}, "^grid: x has 2 values; kind orientation holds the place's coord"),
         ({"kind": "imaginary", "mode": "any", "xi": 0.1}, "^mode: with kind imaginary: the imaginary joints have other values"),
         ({"kind": "upper", "xi": 0.1, "max_condition": 9}, "^max_condition: with kind upper: a section alone has no condition"),

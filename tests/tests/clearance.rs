@@ -139,32 +139,35 @@ fn counts_are_those_of_a_distance_at_every_pose() {
 
 #[test]
 fn a_clearance_and_a_condition_number_hold_together() {
-    let manipulator = with_obstacles(examples::find("plano-spherical-5dof").unwrap().text);
-    let interference = Interference::new(manipulator.mechanism());
-    let grid = &grids(&manipulator)[0];
-    let mode = Modes::One(manipulator.home_mode());
-    let clearance = ClearanceLimit { interference: &interference, least: 0.003 };
-    let length = manipulator.characteristic_length();
-    let of = |most: Option<f64>, clear: bool| {
-        let mut sweep = Sweep::new(&manipulator, grid, mode);
-        if let Some(most) = most {
-            sweep = sweep.with_limit(PoseLimit::none(length).with_condition(most)).unwrap();
-        }
-        if clear {
-            sweep = sweep.with_clearance(clearance).unwrap();
-        }
-        points(&sweep, grid)
-    };
-    let clear = of(None, true);
     let mut told = 0;
-    for most in [2.0, 3.0, 5.0, 8.0, 13.0, 21.0] {
-        let conditioned = of(Some(most), false);
-        let both: Vec<u64> =
-            conditioned.iter().copied().filter(|n| clear.binary_search(n).is_ok()).collect();
-        assert_eq!(of(Some(most), true), both);
-        told += usize::from(both.len() < conditioned.len() && both.len() < clear.len());
+    for name in ["plano-spherical-5dof", "planar-3rrr", "five-bar", "planar-planar-5dof"] {
+        let manipulator = with_obstacles(examples::find(name).unwrap().text);
+        let interference = Interference::new(manipulator.mechanism());
+        let mode = Modes::One(manipulator.home_mode());
+        let clearance = ClearanceLimit { interference: &interference, least: 0.0 };
+        let length = manipulator.characteristic_length();
+        for grid in &grids(&manipulator) {
+            let of = |most: Option<f64>, clear: bool| {
+                let mut sweep = Sweep::new(&manipulator, grid, mode);
+                if let Some(most) = most {
+                    sweep = sweep.with_limit(PoseLimit::none(length).with_condition(most)).unwrap();
+                }
+                if clear {
+                    sweep = sweep.with_clearance(clearance).unwrap();
+                }
+                points(&sweep, grid)
+            };
+            let clear = of(None, true);
+            for most in [2.0, 3.0, 5.0, 8.0, 13.0, 21.0] {
+                let conditioned = of(Some(most), false);
+                let both = conditioned.iter().copied().filter(|n| clear.binary_search(n).is_ok());
+                let both: Vec<u64> = both.collect();
+                assert_eq!(of(Some(most), true), both, "{name}, {most}");
+                told += usize::from(both.len() < conditioned.len() && both.len() < clear.len());
+            }
+        }
     }
-    assert!(told > 0, "{} poses keep the clearance", clear.len());
+    assert!(told > 0, "each limit alone must reject poses that the other one admits");
 }
 
 #[test]
