@@ -9,5 +9,6 @@ export function unbounded(fitted: Fitted | null): string[] {
 
 /** Says so of a number that is counted on the grid; nothing where the grid holds all. */
 export function beyond(names: string[]): string {
-  return names.length ? `The workspace continues beyond this grid along ${names.join(" and ")}: this is a part of it. Limit a joint to measure all.` : "";
+  const list = [names.slice(0, -1).join(", "), ...names.slice(-1)].filter(Boolean).join(" and ");
+  return list && `The workspace continues beyond this grid along ${list}: this is a part of it. Limit a joint to measure all.`;
 }

@@ -26,8 +26,8 @@ import type { Assembly, Counted, Description, Example, Kind, Posture, Problem, S
 import { Undo } from "./undo";
 import { View } from "./view";
 
-/** Milliseconds after which a dimension that has not changed is taken to stay, though the pointer still holds it. */
-const REST = 400;
+/** Milliseconds after which a dimension is taken to stay: where it was let go, and where a pointer may still hold it. */
+const REST = { final: 120, held: 400 };
 
 type Pose = Record<string, number>;
 
@@ -138,8 +138,8 @@ export class Page {
 
   /** Sets a part of the state. A final one is a step that the browser goes back to. */
   private set(patch: Partial<State>, final: boolean): void {
+    if (patch.changes && !same(patch.changes, this.state.changes)) this.moved(final);
     this.state = { ...this.state, ...patch };
-    if (final) this.rest();
     if (final) void this.remember();
     this.follow();
   }
@@ -150,20 +150,16 @@ export class Page {
 
   private change(changes: State["changes"], final: boolean): void {
     if (final) this.undo.step(changes);
-    this.rest();
-    if (!final) {
-      this.moving = window.setTimeout(() => {
-        this.rest();
-        this.follow();
-      }, REST);
-    }
     this.set({ changes }, final);
   }
 
-  /** No dimension is moving. */
-  private rest(): void {
+  /** A dimension moves, and after a pause it does not any more: grids are fitted then. */
+  private moved(final: boolean): void {
     clearTimeout(this.moving);
-    this.moving = 0;
+    this.moving = window.setTimeout(() => {
+      this.moving = 0;
+      this.follow();
+    }, final ? REST.final : REST.held);
   }
 
   private go(back: boolean): void {
@@ -195,7 +191,6 @@ export class Page {
     const hash = location.hash.replace(/^#/, "");
     if (hash === this.address) return;
     this.address = hash;
-    this.rest();
     await this.take(hash);
     this.undo.settled = this.state.changes;
     this.follow();

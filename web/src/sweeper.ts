@@ -69,7 +69,9 @@ export class Sweeper {
     if (!moving || !this.fitted) {
       await this.once("fit", mechanism, async () => {
         const first = this.fitted === null;
-        this.fitted = (await follower.engine.ask<Fitted>({ do: "fit", mode })).value;
+        const { value, milliseconds } = await follower.engine.ask<Fitted>({ do: "fit", mode });
+        document.body.dataset["fitMs"] = milliseconds.toFixed(1);
+        this.fitted = value;
         this.fits++;
         events.fitted(this.fitted, first);
       });
