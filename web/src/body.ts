@@ -1,6 +1,6 @@
 // The workspace as a body in three coordinates, in the space of the mechanism.
 
-import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Matrix4, Mesh, Vector3, type ShaderMaterial } from "three";
 import { beyond } from "./beyond";
 import { byId, element, grouped } from "./dom";
 import { lit } from "./materials";
@@ -15,7 +15,7 @@ const HEIGHT = 0.9;
 const FREE = [new Vector3(0, 0, 1), new Vector3(1, 0, 0), new Vector3(0, 1, 0)];
 
 export class BodyMesh {
-  readonly mesh: Mesh<BufferGeometry>;
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private ranges: [number, number][] = [];
 
   constructor() {
@@ -41,6 +41,11 @@ export class BodyMesh {
     if (!index || index.count < numbers.length) geometry.setIndex(index = new BufferAttribute(new Uint32Array(Math.ceil(1.5 * numbers.length)), 1));
     put(index, numbers);
     geometry.setDrawRange(0, numbers.length);
+  }
+
+  /** Draws its far side too, or its near side alone: where the processor draws, that is what a frame of it takes. */
+  still(still: boolean): void {
+    this.mesh.material.side = still ? DoubleSide : FrontSide;
   }
 
   /** Draws nothing until the next surface. */

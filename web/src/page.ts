@@ -140,6 +140,7 @@ export class Page {
   private set(patch: Partial<State>, final: boolean): void {
     if (patch.changes && !same(patch.changes, this.state.changes)) this.moved(final);
     this.state = { ...this.state, ...patch };
+    this.body.still(final);
     if (final) void this.remember();
     this.follow();
   }
@@ -158,6 +159,7 @@ export class Page {
     clearTimeout(this.moving);
     this.moving = window.setTimeout(() => {
       this.moving = 0;
+      this.body.still(true);
       this.follow();
     }, final ? REST.final : REST.held);
   }

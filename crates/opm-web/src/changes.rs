@@ -167,8 +167,7 @@ pub fn apply(original: &MechanismFile, changes: &Changes) -> Result<MechanismFil
             numbers.push((&**name, value(original, name, given)?));
             Ok(())
         });
-        let problem =
-            |what| Problem { message: format!("`{name}` {what}"), ..Problem::default() };
+        let problem = |what| Problem { message: format!("`{name}` {what}"), ..Problem::default() };
         problems.extend(done.err().map(problem));
     }
     if !problems.is_empty() {

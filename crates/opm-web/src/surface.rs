@@ -140,7 +140,8 @@ mod tests {
         for (corner, normal) in made.corners.iter().zip(&found) {
             let radius = corner.map(|c| c - 20.0);
             let dot = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
-            let cosine = dot(&radius, normal) / (dot(&radius, &radius) * dot(normal, normal)).sqrt();
+            let cosine =
+                dot(&radius, normal) / (dot(&radius, &radius) * dot(normal, normal)).sqrt();
             assert!(cosine > 0.8, "{corner:?} {normal:?}");
         }
     }

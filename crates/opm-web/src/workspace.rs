@@ -209,9 +209,8 @@ impl Plane {
         let coordinates = explorer.manipulator().task_coordinates();
         let number = |axis: &AxisRequest| coordinates.iter().position(|c| c.name == axis.name);
         let units = explorer.units();
-        let unit = |axis| {
-            number(axis).map_or("", |number| units.symbol(coordinates[number].quantity))
-        };
+        let unit =
+            |axis| number(axis).map_or("", |number| units.symbol(coordinates[number].quantity));
         let wrong = axes.iter().filter_map(|axis| refusal(axis, unit(axis)));
         let wrong: Vec<Problem> = wrong.collect();
         if !wrong.is_empty() {

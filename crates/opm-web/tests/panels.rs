@@ -172,7 +172,8 @@ fn problems_have_the_file_and_the_kind_that_the_page_needs() {
     let open = session.answer(&request.to_string()).value();
     assert_eq!(open["problems"][0]["file"], "a.toml");
     let (mut session, _) = opened("plano-spherical-5dof");
-    let mut first = |request: Value| session.answer(&request.to_string()).value()["problems"][0].clone();
+    let mut first =
+        |request: Value| session.answer(&request.to_string()).value()["problems"][0].clone();
     let motion = first(json!({ "do": "motion", "name": "away.csv", "text": "t,y\n0,zero\n1,0\n" }));
     assert_eq!((&motion["file"], &motion["place"]), (&json!("away.csv"), &json!([2, 3])));
     let mode = first(json!({ "do": "pose", "mode": "zzz" }));
