@@ -276,6 +276,152 @@ def test_a_link_shares_what_is_shown(explore):
     assert explorer.count() == other.count()
 
 
+# What is measured on fitted grids.
+MEASURED = ["whole-count", "whole-share", "kind-count", "kind-measure", "body-count"]
+RANGE = ["slice-xmin", "slice-xmax", "slice-ymin", "slice-ymax"]
+
+
+def measured(explorer):
+    return [explorer.text(name) for name in MEASURED] + [explorer.value(name) for name in RANGE]
+
+
+def test_a_link_measures_what_its_sender_saw(explore, workspace):
+    explorer = explore("#example=planar-3rpr&kind=reachable&body=any&set.S1.limits=5:52.5&set.S2.limits=5:52.5")
+    before = measured(explorer)
+    # As a slider that a pointer still holds.
+    explorer.page.evaluate("""() => {
+        const field = document.getElementById("param-S3.limits.max");
+        for (const value of [40, 52.5]) {
+            field.value = String(value);
+            field.dispatchEvent(new Event("input", { bubbles: true }));
+        }
+    }""")
+    explorer.page.wait_for_function("document.body.dataset.ready === 'true'")
+    after = measured(explorer)
+    changes = [part for leg in (1, 2, 3) for part in ("--set", f"S{leg}.limits=5mm:52.5mm")]
+    answer = workspace("planar-3rpr", *changes)
+    assert explorer.text("whole-count") == f"{answer['reachable']:,} of {answer['poses']:,}"
+    explorer.page.evaluate("navigator.clipboard.writeText = async () => {}")
+    explorer.page.click("#share")
+    explorer.page.wait_for_function("location.hash.includes('S3.limits')")
+    other = explore(explorer.page.evaluate("location.hash"))
+    assert measured(other) == after != before
+
+    # The grids of a mode are those of this mode.
+    mode = "+ + + +"
+    for page, address in [(explorer, ""), (other, f"&mode={mode}".replace("+", "%2B"))]:
+        address = f"example=translational-planar-4dof&kind=reachable&body=any{address}"
+        page.page.evaluate("(hash) => { location.hash = hash; }", address)
+        page.page.wait_for_function("document.querySelector('#title').textContent.startsWith('translational')")
+        page.ready()
+    assert explorer.value("mode") != other.value("mode") == mode
+    explorer.choose("mode", mode)
+    answer = workspace("translational-planar-4dof", "--mode", mode)
+    assert explorer.text("whole-count") == f"{answer['reachable']:,} of {answer['poses']:,}"
+    assert measured(other) == measured(explorer)
+
+
+def test_what_a_link_asks_for_and_is_not_there_is_told(explore):
+    explorer = explore("#mode=zzz")
+    count = explorer.text("whole-count")
+    assert "mode=zzz" in explorer.text("problems") and explorer.value("mode") == "++ ++ ++ +"
+    assert re.fullmatch(r"[\d,]+ of [\d,]+", count)
+    explorer.enter("pose-x", 12)
+    assert "mode=zzz" in explorer.text("problems")
+    for address, told in [
+        ("example=nosuch&pose.x=5", "example=nosuch: opm ships no mechanism of this name. The page shows its own"),
+        ("name=a.toml&file=damaged", "file=…: the mechanism in the link is damaged"),
+        ("example=bennett-plano-spherical-6r", "bennett-plano-spherical-6r.toml:"),
+        ("motion=nosuch", "motion=nosuch"),
+        ("pose.w=1&pose.x=far", "pose.w: this mechanism has no such coordinate"),
+        ("slice.x=w&kind=round&slice.nx=-3&colour=red", "slice.x=w: this mechanism has no such coordinate"),
+    ]:
+        explorer.page.evaluate("(hash) => { location.hash = hash; }", address)
+        explorer.page.wait_for_function("(told) => document.querySelector('#problems').textContent.includes(told)", arg=told)
+        explorer.ready()
+        assert (explorer.text("title"), explorer.text("whole-count"), explorer.value("motion")) == (PLANO, count, "")
+    problems = explorer.text("problems")
+    assert "kind=round" in problems and "slice.nx=-3" in problems and "colour: not known" in problems
+    explorer.page.select_option("#examples", PLANO)
+    explorer.ready()
+    assert explorer.page.locator("#problems").is_hidden()
+
+
+def test_a_problem_is_told_while_there_is_one(explore):
+    explorer = explore()
+    before = explorer.count()
+    explorer.fill(slice_xmin=500, slice_xmax=270)
+    assert "slice along x: 201 values from 500 to 270 mm, expected the smaller end first" in explorer.text("problems")
+    assert explorer.count() == "–"
+    explorer.fill(slice_xmin="", slice_xmax="")
+    assert explorer.page.locator("#problems").is_hidden()
+    assert explorer.count() == before
+
+    # A joint that cannot have a value has the one that is shown.
+    s1 = explorer.value("joint-S1")
+    explorer.page.locator("#joint-S1").fill("5000")
+    explorer.page.keyboard.press("Enter")
+    explorer.ready()
+    assert "No pose of the platform has S1 = 5000" in explorer.text("status")
+    assert explorer.value("joint-S1") == s1
+
+
+def test_saved_tables_are_read_by_the_command(explore, opm):
+    explorer = explore("#slice.x=xi&slice.y=x&slice.nx=7&slice.ny=5&pose.y=12.5&pose.zeta=-8&pose.xi=15&slice.colour=S1")
+
+    def saved(what):
+        with explorer.page.expect_download() as download:
+            explorer.page.select_option("#save", what)
+        return download.value.path().read_text()
+
+    def solved(table):
+        done = subprocess.run([opm, "ik", PLANO, "--poses", "-"], input=table, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return [dict(zip(done.stdout.split("\n")[0].split(","), row.split(","))) for row in done.stdout.splitlines()[1:]]
+
+    def columns(table):
+        head, *rows = table.splitlines()
+        return [dict(zip(head.split(","), row.split(","))) for row in rows]
+
+    slice_table, count = saved("slice-csv"), int(explorer.count().split()[0])
+    explorer.fill(pose_y=900)
+    assert "Out of reach" in explorer.text("status")
+    # The pose that is shown, and not the one that is out of reach.
+    table = saved("pose")
+    [row], [found] = columns(table), solved(table)
+    assert (row["y [mm]"], row["xi [deg]"], row["mode"]) == ("12.5", "15", "++ ++ ++ +")
+    assert float(row["S1 [mm]"]) == pytest.approx(1000 * float(found["S1"]), abs=1e-6)
+    assert float(row["theta11 [deg]"]) == pytest.approx(57.29577951308232 * float(found["theta11"]), abs=1e-6)
+
+    rows, found = columns(slice_table), solved(slice_table)
+    assert len(rows) == len(found) == count > 5
+    assert all(row["y [mm]"] == "12.5" and row["zeta [deg]"] == "-8" for row in rows)
+    for row, pose in zip(rows, found):
+        assert pose["within_limits"] == "1"
+        assert float(row["S1 [mm]"]) == pytest.approx(1000 * float(pose["S1"]), abs=1e-3)
+
+    # Of a five-bar, the angle of the platform follows.
+    explorer.page.select_option("#examples", "five-bar")
+    explorer.ready()
+    [row] = columns(saved("pose"))
+    assert float(row["theta [deg]"]) == pytest.approx(float(explorer.text("dependent-theta")), abs=1e-3)
+
+
+def test_a_workspace_without_bounds_is_not_shown_as_measured(explore, opm):
+    name = "translational-helical-3dof"
+    explorer = explore(f"#example={name}&kind=reachable&body=any")
+    assert explorer.text("whole-beyond") == explorer.text("kind-beyond") == explorer.text("body-beyond") == ""
+    changes = "".join(f"&set.leg{leg}.limits.S=" for leg in (1, 2, 3))
+    explorer.page.evaluate("(more) => { location.hash += more; }", changes)
+    explorer.page.wait_for_function("document.querySelector('#whole-beyond').textContent !== ''")
+    explorer.ready()
+    done = subprocess.run([opm, "workspace", name, "--set", "limits.S=none"], capture_output=True, text=True)
+    told = re.findall(r"continues beyond this grid along (\w+)", done.stderr)
+    assert told == ["x", "y", "phi"]
+    expected = "continues beyond this grid along x, y and phi"
+    assert all(expected in explorer.text(f"{what}-beyond") for what in ("whole", "kind", "body"))
+
+
 def test_a_link_with_a_wrong_change_says_so_and_shows_the_file(explore):
     explorer = explore("#set.leg1.h=1&set.leg9.h=3&pose.x=10")
     assert "`leg9.h` is not a parameter" in explorer.text("problems")
@@ -330,7 +476,7 @@ def test_files_are_opened_and_saved(explore, tmp_path, opm, workspace):
     with explorer.page.expect_download() as download:
         explorer.page.select_option("#save", "slice-csv")
     lines = download.value.path().read_text().splitlines()
-    assert lines[0] == "x,y"
+    assert lines[0] == "x [mm],y [mm],zeta [deg],xi [deg],psi [deg]"
     assert len(lines) - 1 == int(explorer.count().split()[0])
 
 
@@ -431,8 +577,20 @@ def test_a_motion_is_played_and_its_violations_are_those_of_the_command_line(exp
     explorer.page.set_input_files("#file", table)
     explorer.page.wait_for_selector("#problems:not([hidden])")
     [place] = re.findall(r"away\.csv(:\d+:\d+): ", told)
-    assert place in explorer.text("problems")
-    explorer.page.click("#problems button")
+    assert f"away.csv{place}" in explorer.text("problems")
+    # Without the motion, nothing is wrong any more.
+    explorer.choose("motion", "")
+    assert explorer.page.locator("#problems").is_hidden()
+
+    # A wrong mode of the motion is no mode of the page.
+    explorer.choose("mode", "-+ ++ +- -")
+    wrong = tmp_path / "mode.toml"
+    wrong.write_text('format = 1\nname = "a"\nmode = "zzz"\nduration = 1\n\n[coordinates]\nx = 0\n')
+    explorer.page.set_input_files("#file", wrong)
+    explorer.page.wait_for_selector("#problems:not([hidden])")
+    explorer.ready()
+    assert "mode.toml:3:" in explorer.text("problems") and "zzz" in explorer.text("problems")
+    assert explorer.value("mode") == "-+ ++ +- -"
 
 
 def test_a_link_has_the_motion(explore, tmp_path):

@@ -1,6 +1,7 @@
 // The workspace as a body in three coordinates, in the space of the mechanism.
 
-import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Matrix4, Mesh, Vector3, type ShaderMaterial } from "three";
+import { beyond } from "./beyond";
 import { byId, element, grouped } from "./dom";
 import { lit } from "./materials";
 import type { BodyState } from "./state";
@@ -14,7 +15,7 @@ const HEIGHT = 0.9;
 const FREE = [new Vector3(0, 0, 1), new Vector3(1, 0, 0), new Vector3(0, 1, 0)];
 
 export class BodyMesh {
-  readonly mesh: Mesh<BufferGeometry>;
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private ranges: [number, number][] = [];
 
   constructor() {
@@ -28,19 +29,28 @@ export class BodyMesh {
     this.mesh.visible = false;
   }
 
-  /** Takes a surface; the buffers stay the same where they are large enough. */
+  /** Takes a surface; the buffers stay the same where they are large enough, and the part that is used is sent. */
   set({ corners, triangles, ranges }: WorkspaceBody, bytes: Uint8Array<ArrayBuffer>): void {
     this.ranges = ranges;
-    const positions = new Float32Array(bytes.buffer, bytes.byteOffset, 3 * corners);
-    const numbers = new Uint32Array(bytes.buffer, bytes.byteOffset + 12 * corners, 3 * triangles);
     const { geometry } = this.mesh;
-    this.room("position", corners).set(positions);
-    normals(positions, numbers, this.room("normal", corners));
-    let index = geometry.index;
+    const vectors = (place: number) => new Float32Array(bytes.buffer, bytes.byteOffset + 12 * corners * place, 3 * corners);
+    this.send("position", vectors(0));
+    this.send("normal", vectors(1));
+    const numbers = new Uint32Array(bytes.buffer, bytes.byteOffset + 24 * corners, 3 * triangles);
+    let { index } = geometry;
     if (!index || index.count < numbers.length) geometry.setIndex(index = new BufferAttribute(new Uint32Array(Math.ceil(1.5 * numbers.length)), 1));
-    (index.array as Uint32Array).set(numbers);
-    index.needsUpdate = true;
+    put(index, numbers);
     geometry.setDrawRange(0, numbers.length);
+  }
+
+  /** Draws its far side too, or its near side alone: where the processor draws, that is what a frame of it takes. */
+  still(still: boolean): void {
+    this.mesh.material.side = still ? DoubleSide : FrontSide;
+  }
+
+  /** Draws nothing until the next surface. */
+  clear(): void {
+    this.mesh.geometry.setDrawRange(0, 0);
   }
 
   /** Puts the body where its coordinates are positions, and tells how the others are drawn. */
@@ -77,33 +87,23 @@ export class BodyMesh {
     return `${where}${notes.join(", ")}: no position, so that it has no place of its own there. The platform is at the present values.`;
   }
 
-  /** The array of an attribute with room for this many vectors. */
-  private room(name: string, count: number): Float32Array {
+  /** Puts vectors into an attribute, which has room for them. */
+  private send(name: string, vectors: Float32Array): void {
     const { geometry } = this.mesh;
     let attribute = geometry.getAttribute(name) as BufferAttribute | undefined;
-    if (!attribute || attribute.count < count) {
-      attribute = new BufferAttribute(new Float32Array(Math.ceil(4.5 * count) + 3 - (Math.ceil(4.5 * count) % 3)), 3);
+    if (!attribute || attribute.array.length < vectors.length) {
+      attribute = new BufferAttribute(new Float32Array(3 * Math.ceil(0.5 * vectors.length)), 3);
       geometry.setAttribute(name, attribute);
     }
-    attribute.needsUpdate = true;
-    return attribute.array as Float32Array;
+    put(attribute, vectors);
   }
 }
 
-/** The normals at the corners, as long as the triangles around them are large. */
-function normals(positions: Float32Array, triangles: Uint32Array, out: Float32Array): void {
-  out.fill(0);
-  for (let i = 0; i < triangles.length; i += 3) {
-    const [a, b, c] = [3 * triangles[i]!, 3 * triangles[i + 1]!, 3 * triangles[i + 2]!];
-    const u0 = positions[b]! - positions[a]!, u1 = positions[b + 1]! - positions[a + 1]!, u2 = positions[b + 2]! - positions[a + 2]!;
-    const v0 = positions[c]! - positions[a]!, v1 = positions[c + 1]! - positions[a + 1]!, v2 = positions[c + 2]! - positions[a + 2]!;
-    const n0 = u1 * v2 - u2 * v1, n1 = u2 * v0 - u0 * v2, n2 = u0 * v1 - u1 * v0;
-    for (const corner of [a, b, c]) {
-      out[corner]! += n0;
-      out[corner + 1]! += n1;
-      out[corner + 2]! += n2;
-    }
-  }
+function put(attribute: BufferAttribute, numbers: Float32Array | Uint32Array): void {
+  attribute.array.set(numbers);
+  attribute.clearUpdateRanges();
+  attribute.addUpdateRange(0, numbers.length);
+  attribute.needsUpdate = true;
 }
 
 /** The controls of the body. */
@@ -146,10 +146,6 @@ export class BodyPanel {
     return this.state.show && this.names.length >= 3;
   }
 
-  get over(): BodyState["others"] {
-    return this.state.others;
-  }
-
   update(state: BodyState): void {
     this.state = state;
     this.show.checked = state.show;
@@ -158,7 +154,14 @@ export class BodyPanel {
     byId("body-facts").hidden = !this.wanted;
   }
 
-  setBody({ inside, points, poses }: WorkspaceBody): void {
+  /** Takes a body, with the coordinates along which the workspace goes beyond the grid; nothing where it was refused. */
+  setBody(body: WorkspaceBody | null, past: string[]): void {
+    byId("body-beyond").textContent = body ? beyond(past) : "";
+    if (!body) {
+      byId("body-count").textContent = "–";
+      return;
+    }
+    const { inside, points, poses } = body;
     byId("body-count").textContent = `${inside} of ${points} points, from ${grouped(poses)} poses`;
   }
 

@@ -3,6 +3,12 @@
 import { Engine } from "./engine";
 import type { Description } from "./types";
 
+/** A mechanism file: the one that the page carries, or another one. */
+export interface PageFile {
+  name: string;
+  text: string;
+}
+
 export class Follower {
   readonly engine: Engine;
   /** The text that is open there, and its changes. */
@@ -14,11 +20,11 @@ export class Follower {
   }
 
   /** Opens a mechanism there, or changes the one that is open; nothing if it is there already. */
-  async agree(text: string, asked: Record<string, number[]>): Promise<Description | null> {
+  async agree({ name, text }: PageFile, asked: Record<string, number[]>): Promise<Description | null> {
     const changes = JSON.stringify(asked);
     if (this.text === text && this.changes === changes) return null;
     if (this.text !== text) {
-      const { value } = await this.engine.ask<Description>({ do: "open", text, changes: asked });
+      const { value } = await this.engine.ask<Description>({ do: "open", name, text, changes: asked });
       [this.text, this.changes] = [text, changes];
       return value;
     }

@@ -58,6 +58,13 @@ export class JointTable {
     return row;
   }
 
+  /** Puts the value of a posture back into the field of a joint that cannot have what was entered. */
+  restore(name: string, posture: Posture | null): void {
+    const number = this.joints.findIndex((joint) => joint.name === name);
+    const [row, now] = [this.rows.find(({ joint }) => joint.name === name), posture?.values[number]];
+    if (row?.value instanceof HTMLInputElement && now !== undefined) row.value.value = field(Number(short(now)));
+  }
+
   /** The values of a posture, and the ranges of the imaginary joints over the workspace. */
   update(posture: Posture | null, counted: Counted | null): void {
     const first = this.joints.findIndex((joint) => joint.kind === "imaginary");

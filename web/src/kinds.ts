@@ -1,5 +1,6 @@
 // Kinds of workspace: how many points each has, and how large it is.
 
+import { beyond } from "./beyond";
 import { byId, element, grouped, numberIn, short, show } from "./dom";
 import type { KindState } from "./state";
 import type { Kind, KindCount } from "./types";
@@ -39,8 +40,10 @@ export class KindPanel {
     show(this.turn, state.turn ?? undefined);
   }
 
+  /** Takes a count; nothing where it was refused. */
   setCount(count: KindCount | null): void {
-    byId("kind-count").textContent = count ? `${grouped(count.members)} of ${grouped(count.points)} ${count.point_name}` : "counting…";
+    byId("kind-beyond").textContent = beyond(count?.unbounded ?? []);
+    byId("kind-count").textContent = count ? `${grouped(count.members)} of ${grouped(count.points)} ${count.point_name}` : "–";
     byId("kind-measure").textContent = count && count.measure !== null ? `${short(count.measure)} ${count.unit}` : "–";
     const options = count?.options ?? [];
     byId("kind-command").textContent = options.map((option) => (/[ +]/.test(option) ? `"${option}"` : option)).join(" ");

@@ -1,7 +1,8 @@
 // The start of the page.
 
 import { byId } from "./dom";
-import { Page, type PageFile } from "./page";
+import type { PageFile } from "./follower";
+import { Page } from "./page";
 import { setTheme } from "./toolbar";
 import { unpack } from "./unpack";
 

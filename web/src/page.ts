@@ -2,32 +2,32 @@
 // that a long count never holds up the view.
 
 import { Assemblies } from "./assemblies";
+import { unbounded } from "./beyond";
 import { BodyMesh, BodyPanel } from "./body";
 import { Calm } from "./calm";
 import { DimensionPanel } from "./dimensions";
 import { byId, element, save, short } from "./dom";
 import { Refused } from "./engine";
-import { Follower, Loop } from "./follower";
+import { Follower, Loop, type PageFile } from "./follower";
 import { HandleSet } from "./handles";
 import { JointTable } from "./joints";
 import { KindPanel } from "./kinds";
+import { fitting, fromAddress, toAddress } from "./link";
 import { Player } from "./play";
 import { PosePanel } from "./pose";
-import { showProblems } from "./problems";
+import { ProblemBox, type Source } from "./problems";
 import { SlicePanel } from "./slice";
-import { fromAddress, initial, toAddress, type State } from "./state";
+import { initial, type State } from "./state";
 import { showModes, showStatus } from "./status";
 import { known, sliceAxes, Sweeper } from "./sweeper";
+import { poseTable, sliceTable } from "./tables";
 import { connectToolbar, connectView } from "./toolbar";
 import type { Assembly, Counted, Description, Example, Kind, Posture, Problem, ShippedMotion } from "./types";
 import { Undo } from "./undo";
 import { View } from "./view";
 
-/** The mechanism file that the page carries. */
-export interface PageFile {
-  name: string;
-  text: string;
-}
+/** Milliseconds after which a dimension is taken to stay: where it was let go, and where a pointer may still hold it. */
+const REST = { final: 120, held: 400 };
 
 type Pose = Record<string, number>;
 
@@ -36,7 +36,9 @@ export class Page {
   private description: Description | null = null;
   /** The text of the file that is described. */
   private described: string | null = null;
+  /** The last posture that was reached, which is shown, and its pose. */
   private posture: Posture | null = null;
+  private reached: Pose = {};
   private counted: Counted | null = null;
   private examples: Example[] = [];
   private shippedMotions: ShippedMotion[] = [];
@@ -60,34 +62,43 @@ export class Page {
   private readonly player = new Player({
     chosen: (motion) => this.set({ motion }, true),
     placed: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
+    unknown: (name) => {
+      this.state = { ...this.state, motion: null };
+      this.problems.add("link", [{ message: `In the link, motion=${name}: opm ships no such motion for this mechanism.` }]);
+    },
     pose: () => this.fullPose(),
   });
   private readonly assemblies = new Assemblies((assembly) => this.assemble(assembly));
   private readonly table = new Calm(() => this.joints.update(this.posture, this.counted));
   private readonly undo = new Undo();
-  private readonly posing = new Loop(() => this.stepPose(), (error) => this.fail(error), () => this.settle());
-  private readonly sweeping = new Loop(() => this.stepSweep(), (error) => this.fail(error), () => this.settle());
+  private readonly posing = new Loop(() => this.stepPose(), (error) => this.fail("page", error), () => this.settle());
+  private readonly sweeping = new Loop(() => this.stepSweep(), (error) => this.fail("page", error), () => this.settle());
   /** The number of joints that are being driven. */
   private driving = 0;
   private address = "";
   /** The pose that was solved last, as a key. */
   private solved = "";
-  private problems: Problem[] = [];
-  /** Problems that are still to be shown after the next mechanism is. */
-  private kept: Problem[] = [];
-  /** The name of the file that could not be opened. */
-  private name = "";
+  private readonly problems = new ProblemBox(() => this.refused(), (refused) => {
+    if (refused && !same(this.state.changes, this.undo.settled)) this.set({ changes: this.undo.settled }, true);
+    else if (refused) this.go(true);
+  });
+  private knownKinds: Kind[] = [];
+  /** Whether the state is that of a link, in which there may be what the mechanism does not have. */
+  private linked = false;
+  /** The clock that runs while a dimension moves. */
+  private moving = 0;
   /** The state with which the mechanism that is shown was opened or changed. */
   private good: State | null = null;
 
   constructor(private readonly carried: PageFile | null, worker: string, library: ArrayBuffer) {
     this.poser = new Follower(worker, library);
     this.sweeper = new Sweeper(new Follower(worker, library), {
-      fitted: (fitted) => {
-        if (fitted) {
-          this.pose.setRanges(fitted.axes);
-          this.player.setRanges(fitted.axes);
-        } else this.slice.setWhole(this.counted = null);
+      fitted: (fitted, first) => {
+        if (fitted) this.pose.setRanges(fitted.axes);
+        else this.slice.setWhole(this.counted = null);
+        // Sinusoids that somebody has typed stay.
+        if (fitted && first) this.player.setRanges(fitted.axes);
+        this.slice.setBeyond(unbounded(fitted));
         this.show();
       },
       sliced: (shown) => this.slice.setSlice(shown),
@@ -96,9 +107,10 @@ export class Page {
         this.slice.setWhole(counted);
         this.table.ask();
       },
-      embodied: (body, bytes) => {
-        this.body.set(body, bytes);
-        this.bodyPanel.setBody(body);
+      embodied: (body, bytes, past) => {
+        if (body) this.body.set(body, bytes);
+        else this.body.clear();
+        this.bodyPanel.setBody(body, past);
         this.placeBody();
       },
       kindCounted: (count) => {
@@ -106,7 +118,7 @@ export class Page {
         this.slice.setKind(count);
       },
       followed: (about, bytes) => this.player.set(about, bytes),
-      refused: (error) => this.fail(error),
+      told: (source, problems) => this.tell(source, problems),
     });
   }
 
@@ -117,7 +129,7 @@ export class Page {
     this.examples = (await engine.ask<Example[]>({ do: "examples" })).value;
     this.shippedMotions = (await engine.ask<ShippedMotion[]>({ do: "motions" })).value;
     byId("examples").append(...this.examples.map(({ name, description }) => element("option", { value: name, title: description }, name)));
-    this.state = await fromAddress(location.hash);
+    await this.take(location.hash);
     this.undo.reset(this.state.changes);
     this.follow();
   }
@@ -126,7 +138,9 @@ export class Page {
 
   /** Sets a part of the state. A final one is a step that the browser goes back to. */
   private set(patch: Partial<State>, final: boolean): void {
+    if (patch.changes && !same(patch.changes, this.state.changes)) this.moved(final);
     this.state = { ...this.state, ...patch };
+    this.body.still(final);
     if (final) void this.remember();
     this.follow();
   }
@@ -140,6 +154,16 @@ export class Page {
     this.set({ changes }, final);
   }
 
+  /** A dimension moves, and after a pause it does not any more: grids are fitted then. */
+  private moved(final: boolean): void {
+    clearTimeout(this.moving);
+    this.moving = window.setTimeout(() => {
+      this.moving = 0;
+      this.body.still(true);
+      this.follow();
+    }, final ? REST.final : REST.held);
+  }
+
   private go(back: boolean): void {
     const changes = this.undo.go(back);
     if (changes) this.set({ changes }, true);
@@ -148,6 +172,8 @@ export class Page {
   private open(source: State["source"]): void {
     this.undo.reset({});
     this.player.stop();
+    this.problems.clear();
+    this.linked = false;
     this.set({ ...initial(), source }, true);
   }
 
@@ -167,9 +193,18 @@ export class Page {
     const hash = location.hash.replace(/^#/, "");
     if (hash === this.address) return;
     this.address = hash;
-    this.state = await fromAddress(hash);
+    await this.take(hash);
     this.undo.settled = this.state.changes;
     this.follow();
+  }
+
+  /** Takes the state of a link, and says what is not understood in it. */
+  private async take(hash: string): Promise<void> {
+    const { state, problems } = await fromAddress(hash, { examples: this.examples.map(({ name }) => name) });
+    this.state = state;
+    this.linked = true;
+    this.problems.clear();
+    this.problems.set("link", problems);
   }
 
   /** Every coordinate of the pose. */
@@ -195,7 +230,7 @@ export class Page {
 
   /** Says that all that was asked for has been computed, where this is so. */
   private settle(): void {
-    const ready = !this.posing.running && !this.sweeping.running && !this.driving;
+    const ready = !this.posing.running && !this.sweeping.running && !this.driving && !this.moving;
     if (ready) this.table.flush();
     document.body.dataset["ready"] = String(ready);
   }
@@ -213,63 +248,82 @@ export class Page {
   private async stepPose(): Promise<void> {
     const before = this.poser.text;
     const asked = this.state;
-    const description = await this.poser.agree(this.file().text, asked.changes).catch((error: unknown) => {
-      if (!(error instanceof Refused) || this.poser.text === this.file().text) throw error;
-      this.stay(error.problems);
-      return null;
+    const file = this.file();
+    const description = await this.poser.agree(file, asked.changes).catch((error: unknown) => {
+      if (!(error instanceof Refused)) throw error;
+      if (this.poser.text === file.text) this.tell("mechanism", error.problems);
+      else this.stay(error.problems);
+      return undefined;
     });
+    // Another state follows, or what is shown stays.
+    if (description === undefined) return;
     const another = before !== this.poser.text;
     if (description) {
       this.good = asked;
-      this.problems = this.kept;
-      this.kept = [];
-      if (!this.problems.length) this.name = "";
+      this.tell("mechanism", []);
       const kinds = another ? (await this.poser.engine.ask<Kind[]>({ do: "kinds" })).value : null;
+      this.knownKinds = kinds ?? this.knownKinds;
       this.described = this.poser.text;
-      this.take(description, kinds);
+      this.check(description);
+      this.showMechanism(description, kinds);
       // The other worker may have come to it before its coordinates were known here.
       void this.sweeping.start();
     }
     if (!this.description) return;
+    this.check(this.description);
     const pose = known(this.state.pose, this.description);
     const key = JSON.stringify([this.poser.text, this.poser.changes, pose, this.state.mode]);
     if (key === this.solved) return;
     this.solved = key;
-    const { value, bytes } = await this.poser.engine.ask<Posture>({ do: "pose", pose, mode: this.state.mode });
-    if (value.reached) {
-      this.posture = value;
-      this.view.place(bytes);
+    try {
+      const { value, bytes } = await this.poser.engine.ask<Posture>({ do: "pose", pose, mode: this.state.mode });
+      if (value.reached) {
+        [this.posture, this.reached] = [value, pose];
+        this.view.place(bytes);
+      }
+      if (description && another) this.view.fit(false);
+      this.showPosture(value);
+      this.tell("pose", []);
+    } catch (error) {
+      this.fail("pose", error);
     }
-    if (description && another) this.view.fit(false);
-    this.showPosture(value);
-    this.showProblems();
+  }
+
+  /** Leaves out what a link asks for and the mechanism does not have, and says so. */
+  private check(description: Description): void {
+    if (!this.linked || this.described !== this.file().text) return;
+    this.linked = false;
+    const { state, problems } = fitting(this.state, description, this.knownKinds);
+    this.state = state;
+    this.problems.add("link", problems);
+    if (problems.length) this.show();
   }
 
   private async stepSweep(): Promise<void> {
     const { state, description } = this;
-    const { text } = this.file();
+    const file = this.file();
     // Its coordinates have to be known; the other worker is told when they are.
-    if (!description || this.described !== text) return;
+    if (!description || this.described !== file.text) return;
     const body = this.bodyPanel.wanted ? this.bodyPanel.chosen() : null;
-    const wanted = { state, description, text, body, kind: this.kinds.wanted, motion: this.player.file };
+    const wanted = { state, moving: this.moving > 0, description, file, body, kind: this.kinds.wanted, motion: this.player.file };
     await this.sweeper.step(wanted, () => this.sweeping.again);
   }
 
   // What is shown.
 
   /** Takes a mechanism: another one, with its kinds of workspace, or the same one with other dimensions. */
-  private take(description: Description, kinds: Kind[] | null): void {
+  private showMechanism(description: Description, kinds: Kind[] | null): void {
     const names = ({ coordinates, joints, dimensions }: Description) =>
       JSON.stringify([coordinates, dimensions.map(({ name, values }) => [name, values.length]), joints.map(({ name, limits }) => [name, limits])]);
     const rebuilt = kinds || !this.description || names(this.description) !== names(description);
     this.description = description;
-    const { name, lower, upper, intersection, mobility, imaginary_joints: imaginary } = description;
+    const { name, lower, upper, intersection, lambda, mobility, imaginary_joints: imaginary } = description;
     const motions = upper.dimension ? `${lower.name} and ${upper.name}, sharing a ${intersection.name}` : lower.name;
-    byId("summary").textContent = `Mobility ${mobility}: ${motions}; ${imaginary} imaginary joint${imaginary === 1 ? "" : "s"}`;
+    byId("summary").textContent = `Mobility ${mobility}, joint screws of rank ${lambda}: ${motions}; ${imaginary} imaginary joint${imaginary === 1 ? "" : "s"}`;
     if (kinds) {
       document.title = `${name} – opm explorer`;
       byId("title").textContent = name;
-      this.posture = null;
+      [this.posture, this.reached] = [null, {}];
       this.assemblies.set([]);
       this.pose.build(description);
       this.dimensions.build(description);
@@ -288,6 +342,7 @@ export class Page {
   }
 
   private show(): void {
+    this.problems.show();
     if (!this.description) return;
     const { pose, changes, slice, body, kind, mode, motion } = this.state;
     this.pose.update(pose);
@@ -332,42 +387,45 @@ export class Page {
     this.view.draw();
   }
 
-  private fail(error: unknown): void {
-    const problems = error instanceof Refused ? error.problems : [{ message: `The computation failed: ${String(error)}` }];
-    // Both workers refuse the same change.
-    if (same(problems, this.problems)) return;
-    this.problems = problems;
-    this.showProblems();
-    // An unknown mode is that of home.
-    if (this.state.mode !== null && problems.some(({ message }) => message.includes("mode"))) this.set({ mode: null }, false);
-    if (!this.description) byId("status").textContent = "No mechanism is shown.";
+  private fail(source: Source, error: unknown): void {
+    this.tell(source, error instanceof Refused ? error.problems : [{ message: `The computation failed: ${String(error)}` }]);
+  }
+
+  /** Says what is wrong with something; nothing where it has succeeded. */
+  private tell(source: Source, problems: Problem[]): void {
+    if (problems.some(({ kind }) => kind === "mode")) {
+      // Both workers refuse it. Only a link has such a mode, and the mechanism is shown in that of home.
+      if (this.state.mode === null) return;
+      this.problems.add("link", problems.map(({ message }) => ({ message: `In the link, mode=${this.state.mode}: ${message}` })));
+      this.set({ mode: null }, false);
+      return;
+    }
+    this.problems.set(source, problems);
+    if (!this.description && problems.length) byId("status").textContent = "No mechanism is shown.";
+  }
+
+  /** Whether what is shown is not the mechanism that was asked for. */
+  private refused(): boolean {
+    return this.good !== null && !same(this.good.changes, this.state.changes);
   }
 
   /** Stays at the mechanism that is shown, where another one cannot be opened. */
   private stay(problems: Problem[]): void {
-    this.name = this.file().name;
     if (this.good) {
       this.state = this.good;
+      this.tell("mechanism", problems);
       void this.remember(true);
+      this.follow();
     } else if (Object.keys(this.state.changes).length) {
       // A mechanism that a link cannot change is shown as its file has it.
-      this.kept = problems;
+      this.problems.add("link", problems);
+      this.undo.reset({});
       this.set({ changes: {} }, false);
-    } else byId("status").textContent = "No mechanism is shown.";
-    this.problems = problems;
-    this.showProblems();
-    this.show();
-  }
-
-  private showProblems(): void {
-    const refused = this.good !== null && !same(this.good.changes, this.state.changes);
-    showProblems(this.problems, this.name || this.file().name, refused, () => {
-      this.problems = [];
-      this.name = "";
-      if (refused && !same(this.state.changes, this.undo.settled)) this.set({ changes: this.undo.settled }, true);
-      else if (refused) this.go(true);
-      this.showProblems();
-    });
+    } else if (this.state.source.kind !== "page") {
+      // One of a link that cannot be computed: the page has its own.
+      this.problems.add("link", problems);
+      this.set(initial(), false);
+    } else this.tell("mechanism", problems);
   }
 
   /** Moves an actuated joint, and the platform to the nearest pose that this allows. */
@@ -382,12 +440,15 @@ export class Page {
     try {
       const request = { do: "forward", joints, pose: known(this.state.pose, this.description) };
       const { assemblies } = (await this.poser.engine.ask<{ assemblies: Assembly[] }>(request)).value;
+      this.tell("joint", []);
       if (!this.assemblies.set(assemblies)) {
+        this.joints.restore(name, this.posture);
         byId("status").classList.add("wrong");
         byId("status").textContent = `No pose of the platform has ${name} = ${short(value)}.`;
       }
     } catch (error) {
-      this.fail(error);
+      this.joints.restore(name, this.posture);
+      this.fail("joint", error);
     }
     this.driving--;
     this.settle();
@@ -447,20 +508,19 @@ export class Page {
 
   private async save(what: string): Promise<void> {
     if (!this.description) return;
-    const { name, coordinates, joints } = this.description;
+    const { name } = this.description;
     if (what === "mechanism") {
       const { value } = await this.poser.engine.ask<string>({ do: "file" });
       save(`${name}.toml`, value, "application/toml");
-    } else if (what === "slice-csv") save(`${name}-slice.csv`, this.slice.csv(), "text/csv");
-    else if (what === "slice-svg") save(`${name}-slice.svg`, this.slice.svg(), "image/svg+xml");
+    } else if (what === "slice-csv" && this.slice.shown) {
+      save(`${name}-slice.csv`, sliceTable(this.description, this.slice.shown), "text/csv");
+    } else if (what === "slice-svg") save(`${name}-slice.svg`, this.slice.svg(), "image/svg+xml");
     else if (what === "picture") {
       const picture = await this.view.picture();
       if (picture) save(`${name}.png`, picture, "image/png");
     } else if (what === "pose" && this.posture) {
-      const pose = this.fullPose();
-      const values = [...coordinates.map(({ name }) => pose[name]), ...this.posture.values];
-      const head = [...coordinates, ...joints].map(({ name, unit }) => `${name} (${unit})`).join(",");
-      save(`${name}-pose.csv`, `${head}\n${values.join(",")}\n`, "text/csv");
+      // The pose that is shown: one out of reach has no joints.
+      save(`${name}-pose.csv`, poseTable(this.description, this.reached, this.posture), "text/csv");
     }
   }
 }

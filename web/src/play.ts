@@ -17,6 +17,8 @@ export interface PlayEvents {
   chosen(motion: MotionState | null): void;
   /** The platform is to be at this pose, in the mode of the motion. */
   placed(pose: Record<string, number>, mode: string, final: boolean): void;
+  /** There is no motion of this name for the mechanism. */
+  unknown(name: string): void;
   pose(): Record<string, number>;
 }
 
@@ -78,11 +80,12 @@ export class Player {
     this.dropped = motion && motion.text !== null ? { name: motion.name, text: motion.text } : null;
     this.list();
     this.select.value = motion?.name ?? "";
-    // A name that is not known is none.
-    if (this.select.selectedIndex < 0) this.select.value = "";
-    if (motion) byId<HTMLDetailsElement>("motions").open = true;
+    const found = this.select.selectedIndex >= 0;
+    if (!found) this.select.value = "";
+    if (motion && found) byId<HTMLDetailsElement>("motions").open = true;
     this.start();
-    this.chosen = motion;
+    this.chosen = found ? motion : null;
+    if (motion && !found) this.events.unknown(motion.name);
   }
 
   setRanges(axes: FittedAxis[]): void {

@@ -1,5 +1,6 @@
 // The workspace: a plane slice through it, drawn, counted, and clicked to move the platform.
 
+import { beyond } from "./beyond";
 import { byId, element, grouped, numberIn, short, show } from "./dom";
 import { POINTS, type SliceState } from "./state";
 import type { AxisRequest, Colours, Counted, Description, KindCount, Slice } from "./types";
@@ -15,6 +16,8 @@ export interface SliceEvents {
 export interface Shown {
   x: AxisRequest;
   y: AxisRequest;
+  /** The other coordinates, where they are not at home. */
+  pose: Record<string, number>;
   slice: Slice;
   mask: Uint8Array;
   /** What colours it, with a number for each pose. */
@@ -36,10 +39,12 @@ export class SlicePanel {
   private readonly area = element("output", { id: "slice-measure" });
   private readonly whole = element("output", { id: "whole-count" });
   private readonly wholeShare = element("output", { id: "whole-share" });
+  private readonly beyond = element("p", { className: "unit", id: "whole-beyond" });
   private readonly scale = element("p", { className: "unit", id: "slice-scale" });
   private state!: SliceState;
   private description!: Description;
-  private shown: Shown | null = null;
+  /** What is drawn; nothing where it cannot be computed. */
+  shown: Shown | null = null;
   /** A kind of workspace whose boundary is drawn too, where it has the coordinates of the slice. */
   private kind: KindCount | null = null;
   private pose: Record<string, number> = {};
@@ -108,6 +113,7 @@ export class SlicePanel {
       this.scale,
       element("dl", { className: "facts" }, ...fact("Poses of the slice", this.count), ...fact("Share", this.share),
         ...fact("Measure", this.area), ...fact("Poses of the whole", this.whole), ...fact("Measure of the whole", this.wholeShare)),
+      this.beyond,
     );
     this.whole.textContent = "counting…";
     this.wholeShare.textContent = "";
@@ -127,8 +133,15 @@ export class SlicePanel {
     this.draw();
   }
 
-  setSlice(shown: Shown): void {
+  /** Takes a slice; nothing where it was refused. */
+  setSlice(shown: Shown | null): void {
     this.shown = shown;
+    if (!shown) {
+      for (const one of [this.count, this.share, this.area]) one.textContent = "–";
+      this.scale.textContent = "";
+      this.draw();
+      return;
+    }
     const { poses, reachable, measure, unit } = shown.slice;
     this.count.textContent = `${reachable} of ${poses}`;
     this.share.textContent = `${((100 * reachable) / poses).toPrecision(4)} %`;
@@ -144,23 +157,15 @@ export class SlicePanel {
     this.wholeShare.textContent = counted ? `${short(counted.measure)} ${counted.unit}` : "";
   }
 
+  /** The coordinates along which the workspace goes beyond the grid. */
+  setBeyond(names: string[]): void {
+    this.beyond.textContent = beyond(names);
+  }
+
   setKind(kind: KindCount | null): void {
     if (kind === this.kind) return;
     this.kind = kind;
     this.draw();
-  }
-
-  /** The slice as a table with a row for each of its reachable poses. */
-  csv(): string {
-    if (!this.shown) return "";
-    const { x, y, mask, colours } = this.shown;
-    const rows = [[x.name, y.name, ...(colours ? [colours.by] : [])].join(",")];
-    mask.forEach((inside, number) => {
-      if (!inside) return;
-      const values = [valueOf(x, number % x.count), valueOf(y, Math.floor(number / x.count))];
-      rows.push([...values, ...(colours ? [colours.numbers[number]] : [])].join(","));
-    });
-    return `${rows.join("\n")}\n`;
   }
 
   /** The boundary of the slice as a picture. */
@@ -366,11 +371,6 @@ function same(one: string[], other: string[]): boolean {
 /** Red, green and blue as the pixel of a canvas. */
 function pixel([red = 0, green = 0, blue = 0]: number[]): number {
   return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
-}
-
-function valueOf(axis: AxisRequest, number: number): number {
-  if (axis.count === 1) return axis.min;
-  return Number((axis.min + ((axis.max - axis.min) * number) / (axis.count - 1)).toPrecision(12));
 }
 
 /** Round numbers between two ends, about five of them. */

@@ -2,6 +2,10 @@
 // for bodies and subspaces, which are in metres.
 
 export interface Problem {
+  /** What the page has to do something about: the mechanism has no working mode of the name. */
+  kind?: "mode";
+  /** The name of the file with the place. */
+  file?: string;
   place?: [line: number, column: number];
   message: string;
 }
@@ -10,7 +14,6 @@ export interface Coordinate {
   name: string;
   unit: string;
   home: number;
-  place: boolean;
 }
 
 export interface Joint {
@@ -58,7 +61,6 @@ export interface Body {
 
 export interface Description {
   name: string;
-  family: string | null;
   length: string;
   angle: string;
   coordinates: Coordinate[];
@@ -182,6 +184,7 @@ export interface KindCount {
   measure: number | null;
   unit: string;
   varying: string[];
+  unbounded: string[];
   rings: number[][];
   options: string[];
 }

@@ -4,7 +4,7 @@ use crate::explorer::Explorer;
 use crate::problem::Problems;
 use crate::request::{Coordinates, Others};
 use crate::session::Reply;
-use crate::surface::surface;
+use crate::surface::{normals, surface};
 use crate::workspace;
 use opm_workspace::{Axis, Poses, Progress, Run};
 use serde::Serialize;
@@ -12,8 +12,8 @@ use serde::Serialize;
 /// Values along each coordinate where the others are those of the pose.
 const VALUES: u64 = 61;
 
-/// The answer to a body. The bytes are its surface: three 32-bit numbers for each corner, SI, and then three numbers of
-/// corners for each triangle.
+/// The answer to a body. The bytes are its surface: three 32-bit numbers for each corner, SI, then the normals at the
+/// corners, outwards and of any length, and then three numbers of corners for each triangle.
 #[derive(Serialize)]
 struct Body {
     /// The points of the three coordinates that are inside, and all of them.
@@ -94,15 +94,17 @@ pub fn body(
             (min + step * f64::from(corner[i])) as f32
         })
     };
-    let corners = made.corners.iter().flat_map(si).flat_map(f32::to_le_bytes);
+    let corners: Vec<[f32; 3]> = made.corners.iter().map(si).collect();
+    let normals = normals(&corners, &made.triangles);
+    let vectors = corners.iter().chain(&normals).flatten().flat_map(|number| number.to_le_bytes());
     let triangles = made.triangles.iter().flatten().flat_map(|number| number.to_le_bytes());
     let body = Body {
         inside: inside.iter().filter(|&&inside| inside).count() as u64,
         points: inside.len() as u64,
         poses: grid.poses(),
-        corners: made.corners.len(),
+        corners: corners.len(),
         triangles: made.triangles.len(),
         ranges: chosen.map(|axis| [axis.min, axis.max]),
     };
-    Ok(Reply::with_bytes(&body, corners.chain(triangles).collect()))
+    Ok(Reply::with_bytes(&body, vectors.chain(triangles).collect()))
 }

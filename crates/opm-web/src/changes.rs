@@ -168,7 +168,7 @@ pub fn apply(original: &MechanismFile, changes: &Changes) -> Result<MechanismFil
             numbers.push((&**name, value(original, name, given)?));
             Ok(())
         });
-        let problem = |what| Problem { place: None, message: format!("`{name}` {what}") };
+        let problem = |what| Problem { message: format!("`{name}` {what}"), ..Problem::default() };
         problems.extend(done.err().map(problem));
     }
     if !problems.is_empty() {

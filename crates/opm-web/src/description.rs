@@ -7,7 +7,6 @@ use crate::session::Reply;
 use crate::units::{shown, shown_range};
 use opm_core::TaskCoordinate;
 use opm_core::group::subspace::SubspaceClass;
-use opm_core::mechanism::family::Family;
 use opm_core::nalgebra::{Point3, Unit, Vector3};
 use serde::Serialize;
 
@@ -17,13 +16,13 @@ const MOST_CHOICES: u32 = 8;
 #[derive(Serialize)]
 struct Description<'a> {
     name: &'a str,
-    family: Option<&'static str>,
     length: &'static str,
     angle: &'static str,
     coordinates: Vec<Coordinate>,
     dependent: Vec<Coordinate>,
     home_mode: String,
     modes: Vec<String>,
+    /// The rank of all joint screws.
     lambda: usize,
     mobility: usize,
     lower: Subspace,
@@ -43,7 +42,6 @@ struct Coordinate {
     name: &'static str,
     unit: &'static str,
     home: f64,
-    place: bool,
 }
 
 /// A subgroup of SE(3): where it is, metres.
@@ -76,7 +74,6 @@ pub fn describe(explorer: &Explorer) -> Reply {
         name: c.name,
         unit: units.symbol(c.quantity),
         home: shown(c.home, c.quantity, units),
-        place: manipulator.is_of_place(c),
     };
     let format = |mode| manipulator.format_mode(mode);
     let modes = match manipulator.choices() {
@@ -85,7 +82,6 @@ pub fn describe(explorer: &Explorer) -> Reply {
     };
     Reply::new(&Description {
         name: &manipulator.mechanism().name,
-        family: explorer.file().family.as_ref().map(Family::word),
         length: units.length.symbol(),
         angle: units.angle.symbol(),
         coordinates: manipulator.task_coordinates().iter().map(coordinate).collect(),

@@ -1,7 +1,7 @@
 //! The mechanism that is open: its file, its changes, and what is compiled from them.
 
 use crate::changes;
-use crate::problem::Problems;
+use crate::problem::{ProblemKind, Problems};
 use crate::request::{Changes, Coordinates};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::file::{self, FileUnits, MechanismFile};
@@ -11,6 +11,8 @@ use std::sync::Arc;
 /// A mechanism file, its changes, and the manipulator that it describes.
 #[derive(Clone, Debug)]
 pub struct Explorer {
+    /// The name of the file.
+    name: Arc<str>,
     /// The file as it was opened: changes are changes of it, so that they can be undone in any order.
     original: Arc<MechanismFile>,
     file: MechanismFile,
@@ -19,26 +21,31 @@ pub struct Explorer {
 }
 
 impl Explorer {
-    /// Reads the text of a mechanism file, changes it and compiles it.
-    pub fn open(text: &str, changes: &Changes) -> Result<Self, Problems> {
-        Self::new(Arc::new(file::read(text)?), changes)
+    /// Reads the text of a mechanism file of this name, changes it and compiles it.
+    pub fn open(name: &str, text: &str, changes: &Changes) -> Result<Self, Problems> {
+        let file = file::read(text).map_err(|errors| Problems::from(errors).in_file(name))?;
+        Self::new(name.into(), Arc::new(file), changes)
     }
 
     /// The same file with these changes in place of all others.
     pub fn changed(&self, changes: &Changes) -> Result<Self, Problems> {
-        Self::new(Arc::clone(&self.original), changes)
+        Self::new(Arc::clone(&self.name), Arc::clone(&self.original), changes)
     }
 
-    fn new(original: Arc<MechanismFile>, changes: &Changes) -> Result<Self, Problems> {
-        let file = changes::apply(&original, changes)?;
+    fn new(
+        name: Arc<str>,
+        original: Arc<MechanismFile>,
+        changes: &Changes,
+    ) -> Result<Self, Problems> {
+        let file = changes::apply(&original, changes).map_err(|wrong| wrong.in_file(&name))?;
         let manipulator = Manipulator::new(file.mechanism.clone())
-            .map_err(|error| Problems::of_compile(&error, &original))?;
+            .map_err(|error| Problems::of_compile(&error, &original).in_file(&name))?;
         let joints = ImaginaryJoints {
             decomposition: manipulator.decomposition(),
             imaginary: manipulator.imaginary(),
         };
         let skeleton = Skeleton::new(manipulator.mechanism(), Some(joints));
-        Ok(Self { original, file, manipulator: Arc::new(manipulator), skeleton })
+        Ok(Self { name, original, file, manipulator: Arc::new(manipulator), skeleton })
     }
 
     /// The file with its changes.
@@ -65,7 +72,10 @@ impl Explorer {
     pub fn mode(&self, given: Option<&str>) -> Result<Mode, Problems> {
         match given {
             None => Ok(self.manipulator.home_mode()),
-            Some(signs) => self.manipulator.parse_mode(signs).map_err(|error| Problems::of(&error)),
+            Some(signs) => {
+                let mode = self.manipulator.parse_mode(signs);
+                mode.map_err(|error| Problems::of(&error).of_kind(ProblemKind::Mode))
+            }
         }
     }
 

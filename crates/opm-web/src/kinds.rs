@@ -37,14 +37,24 @@ struct Counted {
     unit: String,
     /// The coordinates of the points that have several values.
     varying: Vec<String>,
+    /// The coordinates along which it goes beyond the grid.
+    unbounded: Vec<String>,
     /// The boundary where two coordinates vary, as closed polylines of both values.
     rings: Vec<Vec<f64>>,
     /// What the command counts in the same way.
     options: Vec<String>,
 }
 
-/// The grids that were fitted to each kind.
-pub type Grids = BTreeMap<&'static str, Vec<Axis>>;
+/// The grids that were fitted, by kind and working mode.
+pub type Grids = BTreeMap<(&'static str, String), Fitted>;
+
+/// A fitted grid.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    axes: Vec<Axis>,
+    /// The coordinates along which the workspace goes beyond it.
+    unbounded: Vec<String>,
+}
 
 /// All kinds.
 pub fn kinds(explorer: &Explorer) -> Reply {
@@ -73,19 +83,22 @@ pub fn count(
     turn: Option<f64>,
 ) -> Result<Reply, Problems> {
     let kind: WorkspaceKind = name.parse().map_err(|error| Problems::of(&error))?;
-    let modes = Modes::One(explorer.mode(mode)?);
+    let mode = explorer.mode(mode)?;
     let resolve = |axes: Vec<Axis>| {
-        let mut request = WorkspaceRequest::new(kind).modes(modes);
+        let mut request = WorkspaceRequest::new(kind).modes(Modes::One(mode));
         request.axes = axes;
         let resolved = request.resolve(explorer.manipulator().clone(), &Progress::default());
         resolved.map_err(|error| Problems::of(&error))
     };
-    let axes = match grids.get(kind.name()) {
-        Some(axes) => axes.clone(),
+    let key = (kind.name(), explorer.manipulator().format_mode(mode));
+    let Fitted { axes, unbounded } = match grids.get(&key) {
+        Some(fitted) => fitted.clone(),
         None => {
-            let axes = resolve(vec![])?.grid().axes().to_vec();
-            grids.insert(kind.name(), axes.clone());
-            axes
+            let found = resolve(vec![])?;
+            let unbounded = found.unbounded().unwrap_or_default().to_vec();
+            let fitted = Fitted { axes: found.grid().axes().to_vec(), unbounded };
+            grids.insert(key, fitted.clone());
+            fitted
         }
     };
     let workspace = resolve(about(explorer, &resolve(axes)?, pose, turn)?)?;
@@ -101,6 +114,8 @@ pub fn count(
         ring.points.iter().flat_map(|&[a, b]| [a / factor(0), b / factor(1)]).collect()
     });
     let rings = rings.collect();
+    let varying: Vec<String> = several.iter().map(|&i| grid.axes()[i].name.clone()).collect();
+    let swept = |name: &String| grid.axes().iter().any(|a| a.name == *name && a.count > 1);
     let measure = workspace.measure(kind, &analysis.count, units);
     let counted = Counted {
         points,
@@ -109,7 +124,8 @@ pub fn count(
         member_name: kind.member_name(),
         unit: measure.as_ref().map_or_else(String::new, |measure| measure.unit.clone()),
         measure: measure.map(|measure| measure.value),
-        varying: several.iter().map(|&i| grid.axes()[i].name.clone()).collect(),
+        varying,
+        unbounded: unbounded.into_iter().filter(swept).collect(),
         rings,
         options: options(explorer, &workspace),
     };

@@ -41,6 +41,6 @@ mod surface;
 mod units;
 mod workspace;
 
-pub use problem::{Problem, Problems};
+pub use problem::{Problem, ProblemKind, Problems};
 pub use request::{AxisRequest, Others, Request};
 pub use session::{Reply, Session};

@@ -73,7 +73,8 @@ pub fn follow(
     let motion = match ending.eq_ignore_ascii_case("csv") {
         true => table::read(text, stem, manipulator, Ends::default()),
         false => file::read(text, manipulator),
-    }?;
+    }
+    .map_err(|errors| Problems::from(errors).in_file(name))?;
     let mode = motion.mode.map_or_else(|| explorer.mode(mode), Ok)?;
     let request = MotionRequest::new(manipulator, &motion, name).mode(mode);
     let trajectory = request.trajectory().map_err(|error| Problems::of(&error))?;

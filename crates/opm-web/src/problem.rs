@@ -7,10 +7,24 @@ use opm_study::text::chain;
 use serde::Serialize;
 use std::error::Error;
 
+/// What a page has to tell apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ProblemKind {
+    /// The mechanism has no working mode of this name.
+    Mode,
+}
+
 /// One problem.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Problem {
-    /// Line and column in the mechanism file, from 1, if the problem has a place there.
+    /// What the page has to do something about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kind: Option<ProblemKind>,
+    /// The name of the file with the place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Line and column in that file, from 1, if the problem has a place there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<(usize, usize)>,
     /// What was found, and what was expected.
@@ -27,7 +41,20 @@ pub struct Problems {
 impl Problems {
     /// A single problem.
     pub fn one(message: impl Into<String>) -> Self {
-        Self { problems: vec![Problem { place: None, message: message.into() }] }
+        Self { problems: vec![Problem { message: message.into(), ..Problem::default() }] }
+    }
+
+    /// The same, of one kind.
+    pub fn of_kind(mut self, kind: ProblemKind) -> Self {
+        self.problems.iter_mut().for_each(|problem| problem.kind = Some(kind));
+        self
+    }
+
+    /// The same, in the file of this name where they have a place.
+    pub fn in_file(mut self, name: &str) -> Self {
+        let placed = self.problems.iter_mut().filter(|problem| problem.place.is_some());
+        placed.for_each(|problem| problem.file = Some(name.to_owned()));
+        self
     }
 
     /// An error and its causes.
@@ -38,7 +65,7 @@ impl Problems {
     /// Why a mechanism cannot be compiled, at the place of its file.
     pub fn of_compile(error: &CompileError, file: &MechanismFile) -> Self {
         let place = error.location(file);
-        Self { problems: vec![Problem { place, message: chain(error) }] }
+        Self { problems: vec![Problem { place, message: chain(error), ..Problem::default() }] }
     }
 }
 
@@ -47,6 +74,7 @@ impl From<FileErrors> for Problems {
         let problem = |p: opm_core::mechanism::file::Problem| Problem {
             place: Some((p.line, p.column)),
             message: p.message,
+            ..Problem::default()
         };
         Self { problems: errors.problems.into_iter().map(problem).collect() }
     }
@@ -54,7 +82,7 @@ impl From<FileErrors> for Problems {
 
 impl From<ParameterErrors> for Problems {
     fn from(errors: ParameterErrors) -> Self {
-        let problem = |message| Problem { place: None, message };
+        let problem = |message| Problem { message, ..Problem::default() };
         Self { problems: errors.problems.into_iter().map(problem).collect() }
     }
 }

@@ -20,13 +20,17 @@ pub enum Request {
     Examples {},
     /// Opens a mechanism and describes it.
     Open {
+        /// The name of the mechanism file, for problems in it.
+        #[serde(default)]
+        name: String,
         /// The text of the mechanism file.
         text: String,
         /// What is changed of it.
         #[serde(default)]
         changes: Changes,
     },
-    /// Changes the open mechanism and describes it. Numbers that are not named are those of the file.
+    /// Changes the open mechanism and describes it. Numbers that are not named are those of the file. Fitted grids stay, so
+    /// that counts can be compared while a number changes: the next fit is for the mechanism as it is then.
     Change {
         /// All that is changed of the file.
         changes: Changes,
@@ -49,7 +53,8 @@ pub enum Request {
         #[serde(default)]
         pose: Coordinates,
     },
-    /// Fits a grid to the whole workspace. The session keeps it until the next fit.
+    /// Fits a grid to the whole workspace. The session keeps it, and those that it fits to kinds from then on, until the
+    /// next fit.
     Fit {
         /// The working mode.
         mode: Option<String>,
@@ -99,7 +104,8 @@ pub enum Request {
     },
     /// The kinds of workspace, and which of them the mechanism has.
     Kinds {},
-    /// Counts and measures a workspace of one kind. The session fits a grid to it once.
+    /// Counts and measures a workspace of one kind. The session fits a grid to it in each mode, and keeps it until the
+    /// next fit.
     Kind {
         /// The name of the kind.
         kind: String,

@@ -46,7 +46,7 @@ pub struct Session {
     explorer: Option<Explorer>,
     /// The grid that was fitted last, for the mechanism as it was then.
     fitted: Vec<Axis>,
-    /// The grids that were fitted to kinds of workspace.
+    /// The grids that were fitted to kinds of workspace since then.
     kinds: kinds::Grids,
 }
 
@@ -63,8 +63,8 @@ impl Session {
     fn serve(&mut self, request: Request) -> Result<Reply, Problems> {
         match request {
             Request::Examples {} => Ok(examples()),
-            Request::Open { text, changes } => {
-                let explorer = self.explorer.insert(Explorer::open(&text, &changes)?);
+            Request::Open { name, text, changes } => {
+                let explorer = self.explorer.insert(Explorer::open(&name, &text, &changes)?);
                 self.fitted.clear();
                 self.kinds.clear();
                 Ok(description::describe(explorer))
@@ -81,6 +81,7 @@ impl Session {
             Request::Fit { mode } => {
                 let (reply, fitted) = workspace::fit(self.explorer()?, mode.as_deref())?;
                 self.fitted = fitted;
+                self.kinds.clear();
                 Ok(reply)
             }
             Request::Whole { mode } => {

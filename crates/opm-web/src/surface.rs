@@ -63,6 +63,24 @@ pub fn surface(counts: [usize; 3], inside: &[bool]) -> Surface {
     surface
 }
 
+/// The normals at corners that lie at these places: the sum of those of the triangles around, each as long as its triangle
+/// is large.
+pub fn normals(corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
+    let mut normals = vec![[0.0; 3]; corners.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|number| corners[number as usize]);
+        let [u, v]: [[f32; 3]; 2] = [b, c].map(|end| std::array::from_fn(|i| end[i] - a[i]));
+        for number in triangle {
+            let sum = &mut normals[*number as usize];
+            for (i, sum) in sum.iter_mut().enumerate() {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                *sum += u[j] * v[k] - u[k] * v[j];
+            }
+        }
+    }
+    normals
+}
+
 /// The corner between the eight points from this one on; `None` if all are inside or all outside.
 fn corner(point: [usize; 3], at: impl Fn([usize; 3]) -> bool) -> Option<[f32; 3]> {
     let corners: [bool; 8] = std::array::from_fn(|i| {
@@ -112,6 +130,20 @@ mod tests {
         let made = surface([41; 3], &ball(41, 17.0));
         let expected = 4.0 / 3.0 * std::f64::consts::PI * 17.0_f64.powi(3);
         assert!((volume(&made) / expected - 1.0).abs() < 0.03, "{}", volume(&made) / expected);
+    }
+
+    /// Those of a ball are along its radius.
+    #[test]
+    fn normals_look_outwards() {
+        let made = surface([41; 3], &ball(41, 17.0));
+        let found = normals(&made.corners, &made.triangles);
+        for (corner, normal) in made.corners.iter().zip(&found) {
+            let radius = corner.map(|c| c - 20.0);
+            let dot = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
+            let cosine =
+                dot(&radius, normal) / (dot(&radius, &radius) * dot(normal, normal)).sqrt();
+            assert!(cosine > 0.8, "{corner:?} {normal:?}");
+        }
     }
 
     /// Each side of a triangle is that of another one, in the other direction: there is no hole.

@@ -2,7 +2,7 @@
 
 use crate::explorer::Explorer;
 use crate::pose::quantities;
-use crate::problem::Problems;
+use crate::problem::{Problem, Problems};
 use crate::request::{AxisRequest, Coordinates};
 use crate::session::Reply;
 use crate::units::{shown, shown_range};
@@ -209,6 +209,13 @@ impl Plane {
         let coordinates = explorer.manipulator().task_coordinates();
         let number = |axis: &AxisRequest| coordinates.iter().position(|c| c.name == axis.name);
         let units = explorer.units();
+        let unit =
+            |axis| number(axis).map_or("", |number| units.symbol(coordinates[number].quantity));
+        let wrong = axes.iter().filter_map(|axis| refusal(axis, unit(axis)));
+        let wrong: Vec<Problem> = wrong.collect();
+        if !wrong.is_empty() {
+            return Err(Problems { problems: wrong });
+        }
         let given = axes.map(|axis| {
             // An unknown name is for the grid to report.
             let si = |value| match number(axis) {
@@ -249,6 +256,20 @@ impl Plane {
     fn quantities(&self) -> [Quantity; 2] {
         self.coordinates.map(|number| self.workspace.grid().coordinates()[number].quantity)
     }
+}
+
+/// What is wrong with the numbers of an axis, as they are given.
+fn refusal(axis: &AxisRequest, unit: &str) -> Option<Problem> {
+    let AxisRequest { name, min, max, count } = axis;
+    let expected = match count {
+        0 => "expected at least one",
+        1 if min != max => "expected at least two, or equal ends",
+        2.. if min >= max => "expected the smaller end first",
+        _ => return None,
+    };
+    let values = if *count == 1 { "value" } else { "values" };
+    let range = format!("slice along {name}: {count} {values} from {min} to {max} {unit}");
+    Some(Problem { message: format!("{}, {expected}", range.trim_end()), ..Problem::default() })
 }
 
 /// The workspace over some axes in one mode.

@@ -86,7 +86,7 @@ fn a_body_at_any_other_values_is_the_projection() {
             assert_eq!(body["inside"], expected, "{name}: {axes:?}");
             let [corners, triangles] =
                 ["corners", "triangles"].map(|key| body[key].as_u64().unwrap() as usize);
-            assert_eq!(reply.bytes.len(), 12 * (corners + triangles));
+            assert_eq!(reply.bytes.len(), 12 * (2 * corners + triangles));
         }
         let twice =
             json!({ "do": "body", "axes": [places[0], places[1], places[0]], "others": "any" });
@@ -144,6 +144,44 @@ fn kinds_of_places_are_what_their_names_say() {
         assert_eq!((&found["unit"], &found["varying"]), (&json!("mm^2"), &json!(["x", "y"])));
     }
     assert!(problem(&mut session, &json!({ "do": "kind", "kind": "round" })).contains("round"));
+}
+
+/// A kind is measured on the grid of the mechanism as it was at the last fit, and in a mode of its own.
+#[test]
+fn grids_of_kinds_are_those_of_the_last_fit_and_of_the_mode() {
+    let (mut session, _) = opened("plano-spherical-5dof");
+    let other = "-+ ++ +- -";
+    let kind = |mode: Option<&str>| json!({ "do": "kind", "kind": "reachable", "mode": mode });
+    let change = json!({ "do": "change", "changes": { "leg4.b1": [70] } });
+    for mode in [None, Some(other)] {
+        ask(&mut session, &kind(mode));
+    }
+    ask(&mut session, &change);
+    ask(&mut session, &json!({ "do": "fit" }));
+    for mode in [None, Some(other)] {
+        let (mut fresh, _) = opened("plano-spherical-5dof");
+        ask(&mut fresh, &change);
+        assert_eq!(ask(&mut session, &kind(mode)), ask(&mut fresh, &kind(mode)));
+    }
+}
+
+#[test]
+fn problems_have_the_file_and_the_kind_that_the_page_needs() {
+    let mut session = Session::default();
+    let request = json!({ "do": "open", "name": "a.toml", "text": "legs = 3\n" });
+    let open = session.answer(&request.to_string()).value();
+    assert_eq!(open["problems"][0]["file"], "a.toml");
+    let (mut session, _) = opened("plano-spherical-5dof");
+    let mut first =
+        |request: Value| session.answer(&request.to_string()).value()["problems"][0].clone();
+    let motion = first(json!({ "do": "motion", "name": "away.csv", "text": "t,y\n0,zero\n1,0\n" }));
+    assert_eq!((&motion["file"], &motion["place"]), (&json!("away.csv"), &json!([2, 3])));
+    let mode = first(json!({ "do": "pose", "mode": "zzz" }));
+    assert_eq!((&mode["kind"], &mode["file"]), (&json!("mode"), &Value::Null));
+    let axis = |name: &str, min: f64| json!({ "name": name, "min": min, "max": 270, "count": 3 });
+    let slice = first(json!({ "do": "slice", "x": axis("x", 500.0), "y": axis("y", -10.0) }));
+    let expected = "slice along x: 3 values from 500 to 270 mm, expected the smaller end first";
+    assert_eq!(slice["message"], expected);
 }
 
 #[test]
