@@ -51,7 +51,8 @@ impl Budget {
         let coordinate = |i: usize| {
             let parts = response.coordinates.row(i).into_owned();
             let parts = parts.iter().zip(errors).map(|(by, error)| by * error);
-            let add = |(sum, squares): (f64, f64), part: f64| (sum + part.abs(), squares + part * part);
+            let add =
+                |(sum, squares): (f64, f64), part: f64| (sum + part.abs(), squares + part * part);
             let (worst, squares) = parts.fold((0.0, 0.0), add);
             Spread { worst, root_sum_square: squares.sqrt() }
         };

@@ -22,8 +22,6 @@ pub struct Chain {
 pub struct PlacedJoint {
     /// Its point, metres.
     pub point: Point3<f64>,
-    /// The number of its first axis in [`Chain::carried`].
-    pub first: usize,
     /// The twist of its outer link for a unit rate of each coordinate, base coordinates.
     pub screws: Vec<Screw>,
 }
@@ -46,7 +44,7 @@ impl Chain {
             let (own, rest) = values.split_at(joint.freedoms());
             values = rest;
             let from_home = |i: usize| own[i] - joint.coordinates[i].home;
-            let (point, first) = (at * joint.point, carried.len());
+            let point = at * joint.point;
             let home = joint.screws();
             let screws = match joint.kind {
                 JointKind::Spherical => {
@@ -69,7 +67,7 @@ impl Chain {
                     home.iter().map(|screw| screw.transformed(&at)).collect()
                 }
             };
-            placed.push(PlacedJoint { point, first, screws });
+            placed.push(PlacedJoint { point, screws });
             at *= joint.displacement(own).expect("a value for each coordinate");
         }
         carried.push(at);

@@ -267,7 +267,8 @@ fn across(axis: &Unit<Vector3<f64>>) -> [Named; 2] {
 /// The step of a parameter in shares of the mechanism's size: the error of a central difference is its square.
 const STEP: f64 = 1e-5;
 
-/// The parameters of a family that are geometry: those of legs, without limits.
+/// The parameters of a family that are geometry: those of legs, without limits. One that cannot change alone in the family
+/// is none: errors of axes have its part.
 fn parameters(family: &Family, mechanism: &Mechanism, length: f64, all: &mut Vec<Source>) {
     for (name, value) in family.parameters() {
         let own = |leg: &Leg| Some(name.strip_prefix(&*leg.name)?.strip_prefix('.')?.to_owned());
@@ -278,20 +279,23 @@ fn parameters(family: &Family, mechanism: &Mechanism, length: f64, all: &mut Vec
         let quantity = family.quantity_of(&name).unwrap_or(Quantity::Length);
         let step = STEP * unit(quantity, length);
         let mut push = |suffix: &str, changed: &dyn Fn(f64) -> ParameterValue| {
-            let assembled = |step: f64| {
-                family.with([(&*name, changed(step))]).ok()?.assemble().ok()
+            let assembled =
+                |step: f64| family.with([(&*name, changed(step))]).ok()?.assemble().ok();
+            let ends = match (assembled(step), assembled(-step)) {
+                (Some(more), Some(less)) => Some(([more, less], 2.0 * step)),
+                // At an end of its range the difference is to one side.
+                (Some(more), None) => assembled(0.0).map(|less| ([more, less], step)),
+                (None, Some(less)) => assembled(0.0).map(|more| ([more, less], step)),
+                // Other parameters decide it.
+                (None, None) => None,
             };
-            // At an end of a parameter's range the difference is to one side.
-            let (more, less) = (assembled(step), assembled(-step));
-            let apart = step * if more.is_some() && less.is_some() { 2.0 } else { 1.0 };
-            let ends = (more.or_else(|| assembled(0.0)), less.or_else(|| assembled(0.0)));
-            let (Some(more), Some(less)) = ends else { return };
+            let Some((mechanisms, apart)) = ends else { return };
             all.push(Source {
                 name: format!("{name}{suffix}"),
                 quantity,
                 joint: None,
                 direction: None,
-                origin: Origin::Parameter { mechanisms: Box::new([more, less]), apart },
+                origin: Origin::Parameter { mechanisms: Box::new(mechanisms), apart },
             });
         };
         match value {

@@ -42,7 +42,8 @@ pub fn farthest(generators: &[Vector3<f64>]) -> Vector3<f64> {
             // Opposite vertices are equally far.
             for line in [edge, other] {
                 let beside = normal.cross(line);
-                for order in [[beside, *line], [beside, -line], [-beside, *line], [-beside, -line]] {
+                for order in [[beside, *line], [beside, -line], [-beside, *line], [-beside, -line]]
+                {
                     consider([normal, order[0], order[1]]);
                 }
             }

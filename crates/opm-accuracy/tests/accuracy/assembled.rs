@@ -2,7 +2,9 @@
 //!
 //! Nothing here uses screws at the pose: derivatives are differences of products of displacements.
 
-use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{
+    DMatrix, DVector, Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6,
+};
 use opm_accuracy::{ErrorModel, Model, Source};
 use opm_core::Quantity;
 use opm_core::mechanism::Mechanism;
@@ -83,7 +85,8 @@ impl Assembly<'_> {
     }
 
     fn prefix(&self, joint: &Joint) -> String {
-        let of = |leg: &&opm_core::mechanism::leg::Leg| leg.joints.iter().any(|j| j.name == joint.name);
+        let of =
+            |leg: &&opm_core::mechanism::leg::Leg| leg.joints.iter().any(|j| j.name == joint.name);
         let leg = self.mechanism().legs.iter().find(of).unwrap();
         format!("{}.{}.", leg.name, joint.name)
     }
@@ -94,7 +97,9 @@ impl Assembly<'_> {
         for (what, direction, error) in self.own(&self.prefix(joint), errors) {
             let rotation = UnitQuaternion::from_scaled_axis(direction * error);
             match (what, &mut changed.kind) {
-                ("angle.3" | "angle.4", JointKind::Universal { second }) => *second = rotation * *second,
+                ("angle.3" | "angle.4", JointKind::Universal { second }) => {
+                    *second = rotation * *second
+                }
                 ("angle.1" | "angle.2", _) => changed.axis = rotation * changed.axis,
                 ("pitch", JointKind::Helical { pitch }) => *pitch += error,
                 _ => {
@@ -136,7 +141,8 @@ impl Assembly<'_> {
         if let JointKind::Universal { second: axis } = joint.kind {
             let [a, b] = [0, 1].map(|i| values[i] - joint.coordinates[i].home);
             let cross = self.errors_of(&prefix, errors, point, second);
-            let about = |axis: Vector3<f64>, angle: f64| displaced(axis * angle, point, Vector3::zeros());
+            let about =
+                |axis: Vector3<f64>, angle: f64| displaced(axis * angle, point, Vector3::zeros());
             return placed * about(*joint.axis, a) * cross * about(*axis, b);
         }
         placed * joint.displacement(values).unwrap()
@@ -188,10 +194,11 @@ impl Assembly<'_> {
         let coordinates = self.model.manipulator().coordinates();
         let mut joints = DVector::from_column_slice(self.joints);
         for (&number, value) in passive.iter().zip(z.iter().skip(6)) {
-            joints[number] += value * match coordinates[number].quantity {
-                Quantity::Angle => 1.0,
-                Quantity::Length => length,
-            };
+            joints[number] += value
+                * match coordinates[number].quantity {
+                    Quantity::Angle => 1.0,
+                    Quantity::Length => length,
+                };
         }
         let w = z.fixed_rows::<3>(0).into_owned();
         let moved = displaced(w, reference, z.fixed_rows::<3>(3) * length) * plays.nominal;
@@ -272,6 +279,9 @@ impl Assembly<'_> {
         let all = count + plays.joints.iter().map(|joint| joint.2.ncols()).sum::<usize>();
         let jacobian = self.jacobian(&self.none(), &DVector::zeros(all), &plays);
         let rank = |matrix: DMatrix<f64>| {
+            if matrix.is_empty() {
+                return Some(0);
+            }
             let values = matrix.svd(false, false).singular_values;
             let largest = values.max();
             let unclear = values.iter().any(|v| (1e-8 * largest..1e-2 * largest).contains(v));

@@ -91,10 +91,12 @@ fn near_home(rng: &mut Rng, manipulator: &Manipulator) -> Option<Solution> {
     for _ in 0..20 {
         let mut pose = manipulator.home_pose();
         for (value, c) in pose.iter_mut().zip(manipulator.task_coordinates()) {
-            *value += 0.6 * (rng.f64() - 0.5) * match c.quantity {
-                opm_core::Quantity::Angle => 1.0,
-                opm_core::Quantity::Length => length,
-            };
+            *value += 0.6
+                * (rng.f64() - 0.5)
+                * match c.quantity {
+                    opm_core::Quantity::Angle => 1.0,
+                    opm_core::Quantity::Length => length,
+                };
         }
         if manipulator.inverse(&pose, manipulator.home_mode(), &mut at).unwrap().is_some() {
             return Some(at);
@@ -230,5 +232,8 @@ fn samples_have_the_deviation_of_the_root_of_squares() {
         // Six standard errors of a standard deviation of 20000 samples.
         assert!((deviation / expected - 1.0).abs() < 6.0 / (2.0_f64 * 20_000.0).sqrt());
     }
-    assert!(samples.length < budget.length.worst && samples.length > budget.length.root_sum_square / 2.0);
+    assert!(
+        samples.length < budget.length.worst
+            && samples.length > budget.length.root_sum_square / 2.0
+    );
 }
