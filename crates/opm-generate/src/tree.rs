@@ -284,7 +284,7 @@ impl Expr {
     }
 
     /// The expression as one that is true or false.
-    pub fn as_test(self) -> Self {
+    pub fn into_test(self) -> Self {
         if self.kind == Type::Bool {
             return self;
         }

@@ -36,7 +36,7 @@ impl Parser {
         let b = self.expression()?;
         let kind = wider(&a.kind, &b.kind);
         let [a, b] = [a, b].map(|part| Box::new(part.converted(&kind)));
-        Ok(Expr::new(Node::Choice(Box::new(test.as_test()), a, b), kind))
+        Ok(Expr::new(Node::Choice(Box::new(test.into_test()), a, b), kind))
     }
 
     /// Operators that bind at least as closely as a strength.
@@ -59,7 +59,7 @@ impl Parser {
             return Ok(Expr::new(Node::Negative(Box::new(of)), kind));
         }
         if self.take("!") {
-            return Ok(negated(self.unary()?.as_test()));
+            return Ok(negated(self.unary()?.into_test()));
         }
         // What a pointer points to, and a pointer to a thing, are the thing.
         if self.take("*") || self.take("&") {
@@ -185,7 +185,7 @@ fn wider(a: &Type, b: &Type) -> Type {
 
 fn joined(op: Op, left: Expr, right: Expr) -> Expr {
     let (left, right, kind) = match op {
-        Op::Or | Op::And => (left.as_test(), right.as_test(), Type::Bool),
+        Op::Or | Op::And => (left.into_test(), right.into_test(), Type::Bool),
         Op::ShiftLeft | Op::ShiftRight => {
             let kind = left.kind.clone();
             let right = right.converted(&Type::Bits);

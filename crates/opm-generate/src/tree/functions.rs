@@ -130,7 +130,7 @@ impl Parser {
 
     fn branch(&mut self, result: &Type) -> Result<Statement, String> {
         self.expect("(")?;
-        let test = self.expression()?.as_test();
+        let test = self.expression()?.into_test();
         self.expect(")")?;
         self.expect("{")?;
         let then = self.block(result)?;
@@ -195,7 +195,7 @@ fn bound(name: &str, whole: Expr) -> Option<(Expr, Option<Expr>)> {
         Node::Binary(Op::Less, counter, to) if counter.root() == Some(name) => Some((*to, None)),
         Node::Binary(Op::And, first, more) => {
             let (to, test) = bound(name, *first)?;
-            let more = more.as_test();
+            let more = more.into_test();
             let both = match test {
                 None => more,
                 Some(test) => {
