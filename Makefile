@@ -14,7 +14,7 @@ FEATURES := --features opm-core/serde
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help test lint test-rust test-python bench guard guard-store figures web python
+.PHONY: help test lint test-rust test-python bench guard guard-store figures web gallery python
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -56,6 +56,15 @@ figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
 
 web: ## Build the explorer's page; needs node, and a compiler for WebAssembly
 	web/build.sh
+
+# Bennett's linkages have no inverse kinematics in closed form, and no page.
+gallery: ## Write a page of the explorer for every shipped manipulator, to target/gallery
+	mkdir -p target/gallery
+	for file in data/mechanisms/*.toml; do \
+	  name=$$(basename "$$file" .toml); \
+	  case $$name in bennett-*) continue;; esac; \
+	  $(CARGO) run --quiet --release -- --quiet explore "$$name" -o "target/gallery/$$name.html" || exit 1; \
+	done
 
 # Before anything that takes minutes.
 python:
