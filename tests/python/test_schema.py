@@ -331,6 +331,7 @@ def with_all_limits(document):
             leg["max_rate"] = dict.fromkeys(joints.split(), 500)
             leg["max_acceleration"] = dict.fromkeys(joints.split(), 2000)
             leg["max_effort"] = dict.fromkeys(joints.split(), 80)
+            leg["offset"] = dict.fromkeys(joints.split(), 0.5)
     return document
 
 

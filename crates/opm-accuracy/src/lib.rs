@@ -42,7 +42,7 @@ mod tolerance;
 mod zonotope;
 
 pub use budget::{Budget, Play, Spread};
-pub use response::{Model, Response};
+pub use response::{Closure, Model, Response};
 pub use sample::{Samples, sample};
 pub use source::{ErrorModel, Source};
 pub use tolerance::{Both, ToleranceErrors, Tolerances};

@@ -18,6 +18,17 @@ pub struct Model<'a> {
     sources: Vec<Source>,
 }
 
+/// The closure of the legs at one pose, to first order: with the platform's twist `t`, each leg closes if the rates of its
+/// joints and its errors give `t`, too. Six rows for each leg: the rotation, and the displacement of the platform's reference
+/// point over the characteristic length, along the axes of the base.
+#[derive(Clone, Debug)]
+pub struct Closure {
+    /// The twists for unit rates of the joint coordinates, a column for each, radians and metres.
+    pub joints: DMatrix<f64>,
+    /// The twists for units of the errors, a column for each source, radians and metres.
+    pub errors: DMatrix<f64>,
+}
+
 /// What a unit of each error does at one pose: one radian or one metre, extrapolated from small errors.
 #[derive(Clone, Debug)]
 pub struct Response {
@@ -70,6 +81,40 @@ impl<'a> Model<'a> {
         self.manipulator
     }
 
+    /// The closure of the legs at a solved pose.
+    pub fn closure(&self, at: &Solution) -> Closure {
+        let chains = Chain::all(self.manipulator.mechanism(), at.joints());
+        let weight = self.weight(at);
+        let mut joints = DMatrix::zeros(6 * chains.len(), self.manipulator.coordinates().len());
+        let mut number = 0;
+        for (leg, chain) in chains.iter().enumerate() {
+            for screw in chain.joints.iter().flat_map(|joint| &joint.screws) {
+                let rates = weight * screw.to_vector();
+                joints.fixed_view_mut::<6, 1>(6 * leg, number).copy_from(&rates);
+                number += 1;
+            }
+        }
+        Closure { joints, errors: self.errors(&chains, at, &weight) }
+    }
+
+    /// What takes twists to the platform's reference point, with lengths over the characteristic length.
+    fn weight(&self, at: &Solution) -> Matrix6<f64> {
+        let reference = at.displacement(self.manipulator) * self.manipulator.mechanism().platform;
+        at_point(&reference, self.length)
+    }
+
+    /// The twists of the errors through each leg.
+    fn errors(&self, chains: &[Chain], at: &Solution, weight: &Matrix6<f64>) -> DMatrix<f64> {
+        let mut errors = DMatrix::zeros(6 * chains.len(), self.sources.len());
+        for (column, source) in self.sources.iter().enumerate() {
+            let twists = source.twists(self.errors, chains, at.joints());
+            for (leg, twist) in twists.iter().enumerate() {
+                errors.fixed_view_mut::<6, 1>(6 * leg, column).copy_from(&(weight * twist));
+            }
+        }
+        errors
+    }
+
     /// The responses at a solved pose.
     ///
     /// # Errors
@@ -82,15 +127,8 @@ impl<'a> Model<'a> {
 
         let mechanism = self.manipulator.mechanism();
         let chains = Chain::all(mechanism, at.joints());
-        let reference = at.displacement(self.manipulator) * mechanism.platform;
-        let weight = at_point(&reference, self.length);
-        let mut errors = DMatrix::zeros(6 * chains.len(), self.sources.len());
-        for (column, source) in self.sources.iter().enumerate() {
-            let twists = source.twists(self.errors, &chains, at.joints());
-            for (leg, twist) in twists.iter().enumerate() {
-                errors.fixed_view_mut::<6, 1>(6 * leg, column).copy_from(&(weight * twist));
-            }
-        }
+        let weight = self.weight(at);
+        let errors = self.errors(&chains, at, &weight);
         let moving = PseudoInverse::new(&self.moving(&chains, &weight));
         let play = self.play(&chains, &weight);
         let unmoved = moving.left_null_space();

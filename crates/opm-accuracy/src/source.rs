@@ -8,6 +8,7 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::{Mechanism, leg::Leg};
+use std::ops::Range;
 
 /// What is assembled at home when parts have errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,6 +68,15 @@ impl Source {
     /// Whether it is a parameter of a family.
     pub fn is_parameter(&self) -> bool {
         matches!(self.origin, Origin::Parameter { .. })
+    }
+
+    /// The axes that an error of axes displaces, and their twist at home for a unit of it, base coordinates. The axes are
+    /// counted in their leg from its base on; a universal joint has two.
+    pub fn axes(&self) -> Option<(usize, Range<usize>, Screw)> {
+        match &self.origin {
+            Origin::Axis { leg, first, end, twist } => Some((*leg, *first..*end, *twist)),
+            Origin::Actuator(_) | Origin::Pitch { .. } | Origin::Parameter { .. } => None,
+        }
     }
 
     /// The twists that a unit of the error gives the platform through each leg, if all joints keep their values; `(ω; v)` in

@@ -47,10 +47,12 @@ pub fn dimensions(file: &MechanismFile) -> Vec<Dimension> {
     }
 }
 
-/// The parameters of a family, but for the limits of how joints are driven: nothing that is shown depends on these.
+/// The parameters of a family, but for the limits of how joints are driven, on which nothing that is shown depends, and the
+/// offsets of encoders.
 fn of_family(family: &Family, units: FileUnits) -> Vec<Dimension> {
     let drives = DriveLimit::ALL.map(|limit| format!(".{}.", limit.key()));
-    let moves = |name: &str| drives.iter().any(|drive| name.contains(drive));
+    let moves =
+        |name: &str| name.contains(".offset.") || drives.iter().any(|drive| name.contains(drive));
     let dimension = |(name, value): (String, ParameterValue)| {
         let quantity = family.quantity_of(&name)?;
         let (group, label) = name.split_once('.')?;

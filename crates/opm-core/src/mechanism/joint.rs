@@ -162,7 +162,7 @@ impl DriveLimit {
     }
 }
 
-/// Everything that limits one joint coordinate.
+/// What a family's file says of one joint coordinate: everything that limits it, and where its values start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointLimits {
     /// Lowest and highest value, radians or metres.
@@ -171,6 +171,9 @@ pub struct JointLimits {
     pub motion: MotionLimits,
     /// Largest absolute effort of the joint's actuator, newtons or newton metres; positive.
     pub max_effort: Option<f64>,
+    /// The joint's value where the family's formulas have its zero, radians or metres: the offset of its encoder. Without it,
+    /// zero.
+    pub offset: Option<f64>,
 }
 
 /// One scalar coordinate of a joint: its name, its home value and its limits.
@@ -313,9 +316,10 @@ impl Joint {
         self
     }
 
-    /// Sets the limits of the joint's first coordinate and of its motion.
+    /// Sets the limits of the joint's first coordinate and of its motion, and its home value to the offset.
     #[must_use]
     pub fn limited(mut self, limits: JointLimits) -> Self {
+        self.coordinates[0].home = limits.offset.unwrap_or(0.0);
         self.coordinates[0].motion_limits = limits.motion;
         self.coordinates[0].max_effort = limits.max_effort;
         self.within(limits.range)

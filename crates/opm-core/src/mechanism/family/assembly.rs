@@ -266,7 +266,8 @@ pub(super) fn all_legs<'a>(
 
 /// Carries one-degree-of-freedom joints, from base to platform, from the layout where every joint
 /// is zero to the given values. Each joint moves with the joints before it (product of
-/// exponentials). An angle is reported in `(-π, π]`, or within the joint's limits if it has some.
+/// exponentials). An angle is reported in `(-π, π]`, or within the joint's limits if it has some; then the joint's offset,
+/// which is its value in the layout, is added.
 pub(super) fn carried(
     reference: impl IntoIterator<Item = (Joint, JointDisplacement)>,
 ) -> Result<Vec<Joint>, Problems> {
@@ -275,7 +276,9 @@ pub(super) fn carried(
     let mut problems = Problems::default();
     for (mut joint, displacement) in reference {
         let coordinate = &mut joint.coordinates[0];
-        let home = home_value(displacement, coordinate.limits);
+        let offset = coordinate.home;
+        let from_zero = coordinate.limits.map(|limits| limits.map(|limit| limit - offset));
+        let home = home_value(displacement, from_zero) + offset;
         if let Some(limits @ [low, high]) = coordinate.limits
             && !(low - ON_LIMIT..=high + ON_LIMIT).contains(&home)
         {

@@ -28,6 +28,7 @@ pub(in crate::mechanism) enum ParameterRef<'a> {
     Point(&'a mut [f64; 2]),
     Limits(Quantity, &'a mut Option<[f64; 2]>),
     DriveLimit(DriveLimit, Quantity, &'a mut Option<f64>),
+    Offset(Quantity, &'a mut Option<f64>),
 }
 
 /// A table of a leg with a value for each of its joints.
@@ -35,14 +36,16 @@ pub(in crate::mechanism) enum ParameterRef<'a> {
 pub(in crate::mechanism) enum JointTable {
     Limits,
     Drive(DriveLimit),
+    Offset,
 }
 
 impl JointTable {
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Limits,
         Self::Drive(DriveLimit::Motion(MotionLimit::Rate)),
         Self::Drive(DriveLimit::Motion(MotionLimit::Acceleration)),
         Self::Drive(DriveLimit::Effort),
+        Self::Offset,
     ];
 
     /// The key of the table in files.
@@ -50,6 +53,7 @@ impl JointTable {
         match self {
             Self::Limits => "limits",
             Self::Drive(limit) => limit.key(),
+            Self::Offset => "offset",
         }
     }
 }
@@ -74,9 +78,9 @@ pub(in crate::mechanism) enum TableKey {
 /// The value of a parameter, in metres and radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterValue {
-    /// No limits.
+    /// No limits, or no offset.
     None,
-    /// A length, an angle, a pitch in metres per radian, or the largest rate, acceleration or effort of a joint.
+    /// A length, an angle, a pitch in metres per radian, or the largest rate, acceleration or effort of a joint, or its offset.
     Number(f64),
     /// A point in the plane, or the lowest and highest value of limits.
     Pair([f64; 2]),
@@ -124,7 +128,8 @@ impl Parameter<'_> {
             ParameterRef::Number(quantity, _)
             | ParameterRef::Optional(quantity, _)
             | ParameterRef::Limits(quantity, _)
-            | ParameterRef::DriveLimit(_, quantity, _) => Some(quantity),
+            | ParameterRef::DriveLimit(_, quantity, _)
+            | ParameterRef::Offset(quantity, _) => Some(quantity),
             ParameterRef::Point(_) => Some(Quantity::Length),
         }
     }
@@ -138,7 +143,7 @@ impl Parameter<'_> {
             ParameterRef::Limits(_, limits) => {
                 Some(limits.map_or(ParameterValue::None, ParameterValue::Pair))
             }
-            ParameterRef::DriveLimit(.., limit) => {
+            ParameterRef::DriveLimit(.., limit) | ParameterRef::Offset(_, limit) => {
                 Some(limit.map_or(ParameterValue::None, ParameterValue::Number))
             }
         }
@@ -168,6 +173,10 @@ impl Parameter<'_> {
                 let value = checks::finite(value)?;
                 **target = Some(checks::drive_limit(value, *limit, *quantity, FileUnits::SI)?);
             }
+            (ParameterRef::Offset(_, target), ParameterValue::None) => **target = None,
+            (ParameterRef::Offset(quantity, target), Number(value)) => {
+                **target = Some(size(value, *quantity)?);
+            }
             (target, value) => {
                 let found = match value {
                     ParameterValue::None => "nothing",
@@ -178,7 +187,7 @@ impl Parameter<'_> {
                     ParameterRef::Number(..) | ParameterRef::Optional(..) => "a number",
                     ParameterRef::Point(_) => "a point [x, y]",
                     ParameterRef::Limits(..) => "limits [lowest, highest] or none",
-                    ParameterRef::DriveLimit(..) => "a number or none",
+                    ParameterRef::DriveLimit(..) | ParameterRef::Offset(..) => "a number or none",
                 };
                 return Err(format!("is {found}, expected {expected}"));
             }
@@ -377,11 +386,11 @@ fn known(groups: &[Group<'_>]) -> String {
         let mut names = of(None).join(", ");
         let joints = of(Some(JointTable::Limits));
         if let Some(first) = joints.first() {
-            let [limits, rate, acceleration, effort] = JointTable::ALL.map(JointTable::key);
+            let [limits, rate, acceleration, effort, offset] = JointTable::ALL.map(JointTable::key);
             let joints = joints.join(", ");
             let _ = write!(
                 names,
-                ", and {limits}, {rate}, {acceleration} and {effort} ({limits}.{first}, ...) of {joints}"
+                ", and {limits}, {rate}, {acceleration}, {effort} and {offset} ({limits}.{first}, ...) of {joints}"
             );
         }
         match kinds.iter_mut().find(|(_, known)| *known == names) {
@@ -415,13 +424,13 @@ impl<'a> Parameter<'a> {
         Self { key, table: None, expected, target: ParameterRef::Point(value) }
     }
 
-    /// The parameters `own` of a leg, and the limits of its joints, each by its key.
+    /// The parameters `own` of a leg, and the limits and offsets of its joints, each by its key.
     pub fn with_limits<const N: usize>(
         own: Vec<Self>,
         joints: [(&'static str, Quantity, &'a mut JointLimits); N],
     ) -> Vec<Self> {
         let mut tables = JointTable::ALL.map(|_| Vec::new());
-        for (key, quantity, JointLimits { range, motion, max_effort }) in joints {
+        for (key, quantity, JointLimits { range, motion, max_effort, offset }) in joints {
             let MotionLimits { max_rate, max_acceleration } = motion;
             let targets = [
                 ParameterRef::Limits(quantity, range),
@@ -432,6 +441,7 @@ impl<'a> Parameter<'a> {
                     max_acceleration,
                 ),
                 ParameterRef::DriveLimit(DriveLimit::Effort, quantity, max_effort),
+                ParameterRef::Offset(quantity, offset),
             ];
             for ((table, parameters), target) in
                 JointTable::ALL.into_iter().zip(&mut tables).zip(targets)

@@ -75,19 +75,24 @@ fn a_change_by_name_is_the_change_in_the_file() {
     }
 }
 
+/// Whether a value that is not given would be a number, not a pair.
+fn is_number(name: &str) -> bool {
+    name.contains(".max_") || name.contains(".offset.")
+}
+
 #[test]
 fn every_parameter_is_listed_and_can_be_set() {
     for (name, count) in FAMILIES.into_iter().zip([
-        5 + 3 * (8 + 4 * 5) + 3 + 4 * 2,
-        3 + 3 * (3 + 4 * 3) + 1,
-        4 + 3 * (7 + 4 * 5) + 8 + 4 * 5,
+        5 + 3 * (8 + 5 * 5) + 3 + 5 * 2,
+        3 + 3 * (3 + 5 * 3) + 1,
+        4 + 3 * (7 + 5 * 5) + 8 + 5 * 5,
     ]) {
         let family = family(name);
         let parameters = family.parameters();
         assert_eq!(parameters.len(), count, "{name}");
         for (parameter, value) in &parameters {
             let changed = match value {
-                ParameterValue::None if parameter.contains(".max_") => Number(0.75),
+                ParameterValue::None if is_number(parameter) => Number(0.75),
                 ParameterValue::None => Pair([-0.1, 0.2]),
                 Number(value) => Number(value + 0.125),
                 Pair([a, b]) => Pair([a - 0.125, b + 0.25]),
@@ -100,6 +105,26 @@ fn every_parameter_is_listed_and_can_be_set() {
         }
         let listed = parameters.iter().map(|(name, value)| (name.as_str(), *value));
         assert_eq!(family.with(listed).unwrap(), family);
+    }
+}
+
+/// An offset changes what a joint's value is called, and nothing that moves.
+#[test]
+fn offsets_shift_values_and_move_nothing() {
+    for (name, offset, joint) in [
+        ("plano-spherical-5dof", "leg2.offset.S", "S2"),
+        ("plano-spherical-5dof", "leg4.offset.phi1", "phi14"),
+        ("translational-helical-3dof", "leg1.offset.phi", "phi1"),
+        ("planar-planar-5dof", "leg1.offset.S", "S1"),
+    ] {
+        let before = family(name).assemble().unwrap();
+        let after = family(name).with([(offset, Number(0.01))]).unwrap().assemble().unwrap();
+        for (before, after) in before.joints().zip(after.joints()) {
+            assert!((before.point - after.point).norm() < 1e-15 && before.axis == after.axis);
+            let shift = if before.name == joint { 0.01 } else { 0.0 };
+            let apart = after.coordinates[0].home - before.coordinates[0].home;
+            assert!((apart - shift).abs() < 1e-15, "{name} {}: {apart}", before.name);
+        }
     }
 }
 
@@ -124,8 +149,8 @@ fn every_problem_is_reported_with_its_parameter() {
         .problems;
     let expected = [
         "`leg1.hh` is not a parameter; did you mean `leg1.h`? home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, \
-         a1, a2, alpha1, alpha2, eta, beta, and limits, max_rate, max_acceleration and max_effort (limits.S, ...) of S, phi1, phi2, \
-         theta2, theta3; leg4 has base, b1, b2, and limits, max_rate, max_acceleration and max_effort (limits.phi1, ...) of phi1, \
+         a1, a2, alpha1, alpha2, eta, beta, and limits, max_rate, max_acceleration, max_effort and offset (limits.S, ...) of S, phi1, phi2, \
+         theta2, theta3; leg4 has base, b1, b2, and limits, max_rate, max_acceleration, max_effort and offset (limits.phi1, ...) of phi1, \
          phi2",
         "`a1` is 10000000000 m, expected an absolute value of at most 1000000000 m",
         "`base` is a number, expected a point [x, y]",
@@ -181,7 +206,7 @@ proptest! {
     #[test]
     fn a_written_family_is_read_again(
         which in 0..FAMILIES.len(),
-        shares in prop::collection::vec(-0.02..0.02_f64, 110),
+        shares in prop::collection::vec(-0.02..0.02_f64, 130),
         signs in prop::collection::vec(any::<bool>(), 8),
     ) {
         let family = family(FAMILIES[which]);
@@ -192,7 +217,8 @@ proptest! {
             .map(|((name, value), share)| match value {
                 Number(value) => (name, Number(value * (1.0 + share))),
                 Pair(pair) => (name, Pair(pair.map(|value| value * (1.0 + share)))),
-                ParameterValue::None if name.contains(".max_") => (name, Number(1.0 + share)),
+                ParameterValue::None if name.contains(".offset.") => (name, Number(share)),
+                ParameterValue::None if is_number(&name) => (name, Number(1.0 + share)),
                 ParameterValue::None => (name, Pair([-10.0 + share, 10.0 + share])),
             })
             .collect();

@@ -104,6 +104,9 @@ fn joint_table(table: JointTable) -> &'static str {
         JointTable::Drive(DriveLimit::Effort) => {
             "The largest efforts of the leg's actuators, from which the capacity of a pose follows."
         }
+        JointTable::Offset => {
+            "The values of the leg's joints where the family's formulas have their zeros: the offsets of encoders."
+        }
     }
 }
 
@@ -116,6 +119,9 @@ fn joint(Parameter { key, target, .. }: &Parameter<'_>) -> Option<Value> {
         }
         ParameterRef::DriveLimit(limit, quantity, _) => {
             Some(drive_limit(&format!("Of the joint {key}."), *limit, *quantity))
+        }
+        ParameterRef::Offset(quantity, _) => {
+            Some(number(&format!("Of the joint {key}."), *quantity))
         }
         ParameterRef::Number(..) | ParameterRef::Optional(..) | ParameterRef::Point(_) => None,
     }
@@ -130,7 +136,9 @@ fn meanings(group: &Group<'_>) -> Properties {
                 number(&format!("{expected}; only for legs that have one"), *quantity)
             }
             ParameterRef::Point(_) => point(expected, 2),
-            ParameterRef::Limits(..) | ParameterRef::DriveLimit(..) => return None,
+            ParameterRef::Limits(..) | ParameterRef::DriveLimit(..) | ParameterRef::Offset(..) => {
+                return None;
+            }
         };
         Some(((*key).to_owned(), value))
     };
@@ -179,9 +187,10 @@ fn form_of(family: &FamilyForm) -> Value {
 fn is_required(parameter: &Parameter<'_>) -> bool {
     match parameter.target {
         ParameterRef::Number(..) | ParameterRef::Point(_) => true,
-        ParameterRef::Optional(..) | ParameterRef::Limits(..) | ParameterRef::DriveLimit(..) => {
-            false
-        }
+        ParameterRef::Optional(..)
+        | ParameterRef::Limits(..)
+        | ParameterRef::DriveLimit(..)
+        | ParameterRef::Offset(..) => false,
     }
 }
 
