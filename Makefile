@@ -60,7 +60,7 @@ web: ## Build the explorer's page; needs node, and a compiler for WebAssembly
 # Bennett's linkages have no inverse kinematics in closed form, and no page.
 gallery: ## Write a page of the explorer for every shipped manipulator, to target/gallery
 	mkdir -p target/gallery
-	for file in data/mechanisms/*.toml; do \
+	for file in crates/opm-core/mechanisms/*.toml; do \
 	  name=$$(basename "$$file" .toml); \
 	  case $$name in bennett-*) continue;; esac; \
 	  $(CARGO) run --quiet --release -- --quiet explore "$$name" -o "target/gallery/$$name.html" || exit 1; \

@@ -8,8 +8,10 @@ else
   processor=$(sysctl -n machdep.cpu.brand_string 2>/dev/null || true)
 fi
 : "${PEERS_PYTHON:?a Python with opm_kinematics, NumPy and numba}"
-export PEERS_PYTHON
-results=$("${CARGO:-cargo}" bench --quiet -p opm-benches -p opm-kinematics)
+OPM=${CARGO_TARGET_DIR:-$PWD/target}/release/opm
+export PEERS_PYTHON OPM
+"${CARGO:-cargo}" build --quiet --release --bin opm
+results=$("${CARGO:-cargo}" bench --quiet -p opm-benches)
 from_python=$("$PEERS_PYTHON" benches/peers/inverse.py)
 
 cat <<END
@@ -22,7 +24,7 @@ Written by \`make bench\` on $(date -u +%Y-%m-%d), opm $(git describe --always -
 
 The contenders of a table were timed in one run, alternately. Each number is a median over the rounds; for inverse
 kinematics from Python it is the best round. On another machine the times differ, but the ratios hardly do. The code is in
-\`benches/benches\`, \`cli/benches\` and, for NumPy and numba, \`benches/peers\`.
+\`benches/benches\` and, for NumPy and numba, \`benches/peers\`.
 END
 # Puts a blank line between paragraphs and tables; a table begins one line above its rule.
 printf '%s\n' "$results" "" "$from_python" | awk '

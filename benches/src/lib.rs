@@ -7,6 +7,7 @@ pub mod square_roots;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_workspace::{Axis, Grid};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// The number of rounds of a comparison if they are short. The number is odd, so that the median is
@@ -89,6 +90,14 @@ pub fn compare(mut contenders: Vec<Contender<'_>>) -> Vec<Timing> {
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
+}
+
+/// The program, built for release, which the variable OPM names: `make bench` sets it.
+///
+/// # Panics
+/// If the variable is missing.
+pub fn program() -> Command {
+    Command::new(std::env::var_os("OPM").expect("the path of the program, in the variable OPM"))
 }
 
 /// The shipped mechanism with this name.

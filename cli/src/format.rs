@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use serde_json::json;
 
 /// The explanation.
-pub const TEXT: &str = include_str!("../format.md");
+pub const TEXT: &str = include_str!("format.md");
 
 pub fn run(output: &Output) -> Result<(), Failure> {
     output.print(&json!({ "text": TEXT }), TEXT)

@@ -59,7 +59,7 @@ class Joint:
 
 def read(name, radii):
     """The legs of a mechanism as lists of joints, the platform's point, and its decomposition."""
-    text = (REPOSITORY / "data" / "mechanisms" / f"{name}.toml").read_text()
+    text = (REPOSITORY / "crates/opm-core/mechanisms" / f"{name}.toml").read_text()
     file = tomllib.loads(text)
     found = json.loads(opm("decompose", name, "--format", "json", "--quiet"))
     legs = []

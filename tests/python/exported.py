@@ -9,7 +9,7 @@ from conftest import LINKAGES, REPOSITORY
 
 # Of the linkages that opm ships, Sarrus' has a pose, too.
 LOOPS = [name for name in LINKAGES if name != "sarrus"]
-SHIPPED = REPOSITORY / "data" / "mechanisms"
+SHIPPED = REPOSITORY / "crates/opm-core/mechanisms"
 MECHANISMS = sorted(path.stem for path in SHIPPED.glob("*.toml"))
 # Joints that no shipped mechanism has, in place of some that one has: its name, what is replaced, and by what.
 ARM = re.compile(r'  \{ name = "mu4".*\n.*\n')

@@ -116,7 +116,7 @@ def record(opm, tmp_path_factory):
 def mechanisms():
     from conftest import REPOSITORY
 
-    return sorted(path.stem for path in (REPOSITORY / "data/mechanisms").glob("*.toml"))
+    return sorted(path.stem for path in (REPOSITORY / "crates/opm-core/mechanisms").glob("*.toml"))
 
 
 def distance(kind, one, other, size):

@@ -37,7 +37,7 @@ def refused(opm):
 
 
 def test_a_number_that_is_set_is_that_of_a_changed_file(ask, tmp_path):
-    text = (REPOSITORY / "data/mechanisms" / f"{MECHANISM}.toml").read_text()
+    text = (REPOSITORY / "crates/opm-core/mechanisms" / f"{MECHANISM}.toml").read_text()
     changed = tmp_path / "longer.toml"
     assert text.count("h = 120") == 3
     changed.write_text(text.replace("h = 120", "h = 140"))

@@ -1,4 +1,4 @@
-"""`opm schema`, compared with what opm reads: the shipped files, those of docs/format.md, and damaged ones."""
+"""`opm schema`, compared with what opm reads: the shipped files, those of cli/src/format.md, and damaged ones."""
 
 import copy
 import datetime
@@ -19,9 +19,9 @@ else:
     import tomli as tomllib
 
 REPOSITORY = Path(__file__).parents[2]
-MECHANISMS = sorted((REPOSITORY / "data" / "mechanisms").glob("*.toml"))
-MOTIONS = sorted((REPOSITORY / "data" / "motions").glob("*.toml"))
-FORMAT = REPOSITORY / "docs" / "format.md"
+MECHANISMS = sorted((REPOSITORY / "crates/opm-core/mechanisms").glob("*.toml"))
+MOTIONS = sorted((REPOSITORY / "crates/opm-core/motions").glob("*.toml"))
+FORMAT = REPOSITORY / "cli/src/format.md"
 
 # Every type of joint, every hint, every optional key.
 EVERY_KEY = """
@@ -231,13 +231,13 @@ def problems(opm, tmp_path):
 
 
 def blocks():
-    """The complete files in docs/format.md, with their kinds."""
+    """The complete files in cli/src/format.md, with their kinds."""
     for block in re.findall(r"^```toml\n(.*?)^```", FORMAT.read_text(encoding="utf-8"), re.M | re.S):
         yield ("motion" if re.search(r"^\[(coordinates|points|\[moves\])\]", block, re.M) else "mechanism", block)
 
 
 def fragments():
-    """The parts of files in docs/format.md, completed to files."""
+    """The parts of files in cli/src/format.md, completed to files."""
     named = {path.stem: path.read_text(encoding="utf-8") for path in MECHANISMS}
     for kind, block in re.findall(r"^```toml \((.*?)\)\n(.*?)^```", FORMAT.read_text(encoding="utf-8"), re.M | re.S):
         if kind == "joints":
@@ -286,7 +286,7 @@ def test_the_explained_mechanisms_can_be_solved(opm, tmp_path):
 
 
 def test_every_key_is_explained(schema):
-    """In editors, which show the descriptions, and in docs/format.md."""
+    """In editors, which show the descriptions, and in cli/src/format.md."""
     page = re.findall(r"`\"?([\w-]+)\"?`", FORMAT.read_text(encoding="utf-8"))
 
     def keys(schema):

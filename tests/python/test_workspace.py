@@ -108,7 +108,7 @@ def test_every_mode_counts_what_the_closed_form_counts(workspace):
 
 
 def test_the_mechanism_is_attached_as_it_is(opm, workspace, tmp_path):
-    shipped = (REPOSITORY / "data" / "mechanisms" / f"{MECHANISM}.toml").read_bytes()
+    shipped = (REPOSITORY / "crates/opm-core/mechanisms" / f"{MECHANISM}.toml").read_bytes()
     own = tmp_path / "own.toml"
     own.write_bytes(b"# My own.\r\n" + shipped)
     for mechanism, text in ((MECHANISM, shipped), (own, own.read_bytes())):
@@ -151,7 +151,7 @@ def test_the_same_run_gives_the_same_bytes(workspace, tmp_path):
     assert len(recordings) == 1
 
 
-SHIPPED = sorted(path.stem for path in (REPOSITORY / "data" / "mechanisms").glob("*.toml"))
+SHIPPED = sorted(path.stem for path in (REPOSITORY / "crates/opm-core/mechanisms").glob("*.toml"))
 
 
 @pytest.mark.parametrize("name", SHIPPED)

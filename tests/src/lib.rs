@@ -21,7 +21,12 @@ pub fn displacement(manipulator: &Manipulator, pose: &[f64], mode: Mode) -> Isom
     at.displacement(manipulator)
 }
 
-/// Compiles the Rust code in the README with the tests.
+/// Compiles the Rust code in the READMEs with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+/// That of `opm-core`, too.
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/opm-core/README.md")]
+pub struct CoreReadme;

@@ -76,7 +76,7 @@ fn the_plano_spherical_manipulator() {
     assert_eq!(legs[3]["imaginary"], Value::Null);
 }
 
-/// The mechanism of docs/format.md has one joint of each type; its numbers are those of the file, SI.
+/// The mechanism of cli/src/format.md has one joint of each type; its numbers are those of the file, SI.
 const EVERY_TYPE: &str = r#"
 format = 1
 name = "every-type"

@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::io::Read;
 use std::process::Stdio;
 
-const PAGE: &str = include_str!("../../format.md");
+const PAGE: &str = include_str!("../../src/format.md");
 
 #[test]
 fn the_page_is_printed_as_it_is() {

@@ -7,7 +7,7 @@ use crate::run::{Folder, keys, opm};
 fn examples_are_listed_and_printed() {
     let list = opm(&["examples", "--format", "json"]).json();
     let examples = list["examples"].as_array().unwrap();
-    let files = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/mechanisms");
+    let files = concat!(env!("CARGO_MANIFEST_DIR"), "/../crates/opm-core/mechanisms");
     assert_eq!(examples.len(), std::fs::read_dir(files).unwrap().count());
     let text = opm(&["examples"]);
     for example in examples {
@@ -25,7 +25,7 @@ fn examples_are_listed_and_printed() {
 fn motions_are_listed_and_printed() {
     let list = opm(&["examples", "--format", "json"]).json();
     let motions = list["motions"].as_array().unwrap();
-    let files = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/motions");
+    let files = concat!(env!("CARGO_MANIFEST_DIR"), "/../crates/opm-core/motions");
     assert_eq!(motions.len(), std::fs::read_dir(files).unwrap().count());
     for motion in motions {
         assert_eq!(keys(motion), ["name", "mechanism", "description"]);

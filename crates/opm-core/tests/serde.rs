@@ -1,5 +1,7 @@
 //! What is serialised has the names and numbers that the getters have.
 
+#![cfg(all(feature = "serde", feature = "files"))]
+
 use opm_core::Manipulator;
 use serde_json::{Value, json};
 

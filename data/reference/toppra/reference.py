@@ -54,7 +54,7 @@ def poses(name):
 
 
 def helical(x, y, phi):
-    """The sliders of translational-helical-3dof: docs/format.md, C = P + (k + pitch phi) k_hat and S = C n(alpha)."""
+    """The sliders of translational-helical-3dof: cli/src/format.md, C = P + (k + pitch phi) k_hat and S = C n(alpha)."""
     legs = [(210, 45, 0.010, 0.020), (330, 285, 0.015, 0.0), (90, 165, 0.025, 0.0)]
     sliders = []
     for alpha, beta, k, pitch in legs:

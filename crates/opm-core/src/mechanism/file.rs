@@ -1,7 +1,7 @@
 //! Mechanism files: TOML text is read into a [`Mechanism`], or every problem is reported with its
 //! location.
 //!
-//! `docs/format.md`, which `opm help format` prints, explains the format to users.
+//! `cli/src/format.md`, which `opm help format` prints, explains the format to users.
 //!
 //! A file names its own units; every value after reading is SI. There are two forms:
 //!

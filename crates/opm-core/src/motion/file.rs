@@ -38,7 +38,7 @@
 //! xi = 5                                     # a number: constant
 //! ```
 //!
-//! Or it may have straight lines and circular arcs in `[[moves]]`, with a feed rate: see `docs/format.md`.
+//! Or it may have straight lines and circular arcs in `[[moves]]`, with a feed rate: see `cli/src/format.md`.
 //!
 //! ```toml
 //! format = 1

@@ -1,9 +1,8 @@
 //! A motion of 10⁵ samples, followed and recorded by the program, against inverse kinematics alone.
 
-use opm_benches::{Contender, compare, example};
+use opm_benches::{Contender, compare, example, program};
 use opm_core::motion::{Instant, examples, file};
 use std::hint::black_box;
-use std::process::Command;
 
 const MECHANISM: &str = "plano-spherical-5dof";
 const MOTION: &str = "plano-spherical-sinusoids";
@@ -21,7 +20,7 @@ fn main() {
     let path = folder.path().join("motion.mcap");
     let run = |more: &[&str]| {
         let rate = RATE.to_string();
-        let status = Command::new(env!("CARGO_BIN_EXE_opm"))
+        let status = program()
             .args(["trajectory", MECHANISM, "--motion", MOTION, "--rate", &rate, "--quiet"])
             .args(more)
             .args(["--format", "json"])

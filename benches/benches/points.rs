@@ -1,7 +1,7 @@
 //! Points of a sweep, recorded by the program, against what compressing and copying the same bytes takes: a large grid,
 //! then the grid that is fitted to each shipped mechanism.
 
-use opm_benches::{Contender, compare};
+use opm_benches::{Contender, compare, program};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_mcap::workspace::{CHUNK_BYTES, OVERVIEW_TOPIC, SLICES_TOPIC};
 use opm_mcap::{COMPRESSION_LEVEL, ReadError, read};
@@ -34,7 +34,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn command(&self, threads: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_opm"));
+        let mut command = program();
         command.args(["workspace", self.mechanism, "--threads", threads, "--quiet"]);
         command.args(self.grid.iter().flat_map(|axis| ["--grid", axis]));
         command
