@@ -46,10 +46,13 @@
 mod accept;
 mod along;
 mod distance;
+mod held;
 mod matches;
 mod near;
+mod nearest;
 mod newton;
 mod search;
+mod solve;
 mod three;
 mod trigonometric;
 

@@ -66,6 +66,8 @@ use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
+pub(crate) use closure::ClosureBuffer;
+pub(crate) use inverse::LowerValues;
 use leg::CompileContext;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 use mode::ModeLayout;

@@ -84,7 +84,7 @@ impl Track {
 
     /// The displacements, at most two, that bring the axis to an intersection of two tracks. `None` where the
     /// tracks are concentric or parallel.
-    pub fn meetings(&self, other: &Self, size: f64) -> Option<Vec<Displacement>> {
+    pub fn meetings(&self, other: &Self, size: f64) -> Option<[Option<Displacement>; 2]> {
         match (self, other) {
             (Self::Circle { centre: c, radius: a }, Self::Circle { centre: d, radius: b }) => {
                 // On the radical axis, which is perpendicular to the line of the centres.
@@ -107,7 +107,7 @@ impl Track {
                     return None;
                 }
                 let z = Complex::new(p * m.im - q * n.im, n.re * q - m.re * p) / determinant;
-                Some(vec![translation(z)])
+                Some([Some(translation(z)), None])
             }
             (Self::Cone { axis: a, cosine: p }, Self::Cone { axis: b, cosine: q }) => {
                 let (across, cosine) = (a.cross(b), a.dot(b));
@@ -118,11 +118,11 @@ impl Track {
                 let middle = (a * (p - cosine * q) + b * (q - cosine * p)) / square;
                 let left = 1.0 - middle.norm_squared();
                 if left < -2.0 * VERGE {
-                    return Some(vec![]);
+                    return Some([None; 2]);
                 }
                 let aside = across * (left.max(0.0) / square).sqrt();
-                let signs: &[f64] = if left > 0.0 { &[1.0, -1.0] } else { &[1.0] };
-                Some(signs.iter().map(|sign| pointing(&(middle + aside * *sign))).collect())
+                let second = (left > 0.0).then(|| pointing(&(middle - aside)));
+                Some([Some(pointing(&(middle + aside))), second])
             }
             (Self::Cone { .. }, Self::Circle { .. } | Self::Line { .. })
             | (Self::Circle { .. } | Self::Line { .. }, Self::Cone { .. }) => {
@@ -140,17 +140,14 @@ fn on_line(
     centre: Complex<f64>,
     radius: f64,
     size: f64,
-) -> Vec<Displacement> {
+) -> [Option<Displacement>; 2] {
     let square = radius * radius - (foot - centre).norm_sqr();
     if square < -2.0 * VERGE * size * size {
-        return vec![];
+        return [None; 2];
     }
     let step = along * square.max(0.0).sqrt();
-    let mut found = vec![translation(foot + step)];
-    if square > 0.0 {
-        found.push(translation(foot - step));
-    }
-    found
+    let second = (square > 0.0).then(|| translation(foot - step));
+    [Some(translation(foot + step)), second]
 }
 
 fn translation(z: Complex<f64>) -> Displacement {

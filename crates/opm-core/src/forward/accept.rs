@@ -5,7 +5,9 @@ use super::matches::{Match, Matches};
 use super::search::Search;
 use super::{Assemblies, Assembly, Unmet};
 use crate::group::Displacement;
-use crate::manipulator::{Dependent, Manipulator, Mode, Section, Solution, Unreachable};
+use crate::manipulator::{
+    ClosureBuffer, Dependent, Manipulator, Mode, Section, Solution, Unreachable,
+};
 use crate::numeric::Quantity;
 use nalgebra::Isometry3;
 use pulp::{Simd, WithSimd};
@@ -21,7 +23,7 @@ pub(super) const MATCH: f64 = 1e-6;
 pub(super) const APART: f64 = 1e-4;
 
 /// Below this residual, the passive joints that inverse kinematics give are not improved any further.
-const SETTLED: f64 = 1e-13;
+pub(super) const SETTLED: f64 = 1e-13;
 
 /// Two assemblies in one mode are the same if no joint differs by more than this, in radians or metres.
 const SAME: f64 = 1e-9;
@@ -53,13 +55,13 @@ impl Assembly {
 
 impl Manipulator {
     /// Writes the assembly at a pose, where the actuated joints have these displacements from home. The other joints
-    /// are those of a solution there, improved where that does not close to rounding. `tried` is a buffer.
+    /// are those of a solution there, improved where that does not close to rounding.
     pub(super) fn write_assembly(
         &self,
         Place { pose, target, mode }: Place<'_>,
         displacements: &[f64],
         solution: &Solution,
-        tried: &mut Vec<f64>,
+        buffer: &mut ClosureBuffer,
         out: &mut Assembly,
     ) {
         let write = |to: &mut Vec<f64>, from: &[f64]| {
@@ -82,9 +84,9 @@ impl Manipulator {
             };
             *joint = given + TAU * revolutions;
         }
-        out.residual = self.closure.residual(&out.joints, target);
+        out.residual = self.closure.residual(&out.joints, target, buffer);
         if out.residual > SETTLED {
-            out.residual = self.closure.settle(&mut out.joints, target, out.residual, tried);
+            out.residual = self.closure.settle(&mut out.joints, target, out.residual, buffer);
         }
     }
 }
@@ -112,11 +114,11 @@ impl Search<'_> {
             .lifts_of_legs()
             .filter_map(|(leg, lift)| Some((leg, lift, lift.coordinate.actuated?)));
         let Some((leg, lift, actuated)) = driven.next() else { return Vec::new() };
-        let own = lift.rise(self.displacements[actuated]);
+        let own = lift.rise(self.held.displacements[actuated]);
         let branches = m.leg_modes(leg).map(|mode| m.branches(mode, leg));
         // The chains do not depend on the height: it is zero here.
         let solved = branches.filter_map(|branches| {
-            self.legs[leg].solve_seldom(m.task(), [v, b], 0.0, branches, 0.0).ok()
+            self.held.legs[leg].solve_seldom(m.task(), [v, b], 0.0, branches, 0.0).ok()
         });
         let mut found: Vec<f64> =
             solved.map(|solution| own - m.task().rise_of_leg(0.0, solution.tau)).collect();
@@ -185,7 +187,13 @@ impl Search<'_> {
                 mode = mode.with(*own);
                 self.solution.legs[leg] = *solution;
             }
-            m.write_legs(&mut self.solution);
+            let mut rest = number;
+            let lower = matches.iter().map(|Matches { list, .. }| {
+                let values = &list[rest % list.len()].lower;
+                rest /= list.len();
+                values
+            });
+            m.write_upper_sections(lower, &mut self.solution);
             if m.task().height.is_some() {
                 self.solution.solved.pose.copy_from_slice(all);
                 m.write_lifts(&mut self.solution);
@@ -230,12 +238,12 @@ impl Search<'_> {
         let m = self.manipulator;
         let place = Place { pose, target, mode };
         let mut assembly = Assembly::buffer(m);
-        let (solution, tried) = (&self.solution, &mut self.tried);
-        m.write_assembly(place, self.displacements, solution, tried, &mut assembly);
+        let (solution, closure) = (&self.solution, &mut self.closure);
+        m.write_assembly(place, self.held.displacements, solution, closure, &mut assembly);
         if assembly.residual > SETTLED && assembly.residual < MATCH {
             // Near a singularity of a section, Newton's method on the whole mechanism restores digits that
             // the sections have lost.
-            let actuated = m.actuated().iter().zip(self.displacements);
+            let actuated = m.actuated().iter().zip(self.held.displacements);
             let given: Vec<f64> = actuated.map(|(&c, a)| m.coordinates()[c].home + a).collect();
             if let Ok(better) = m.forward_near(&given, pose, mode) {
                 let moved = better.joints.iter().zip(&assembly.joints);

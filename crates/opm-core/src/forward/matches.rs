@@ -9,7 +9,7 @@ use crate::chain::Branch;
 use crate::chain::condition::length;
 use crate::group::{Displacement, JointDisplacement, SubspaceKind};
 use crate::manipulator::{
-    ChainCoordinate, CompiledSection, LegBranches, LegSolution, Mode, Section,
+    ChainCoordinate, CompiledSection, LegBranches, LegSolution, LowerValues, Mode, Section,
 };
 use crate::numeric::Quantity;
 use nalgebra::Complex;
@@ -23,6 +23,8 @@ pub(super) struct Match {
     /// The signs of its choices.
     pub mode: Mode,
     pub solution: LegSolution,
+    /// The values of its lower joints.
+    pub lower: LowerValues,
     /// The largest error of an actuated joint, in radians or shares of the size.
     error: f64,
 }
@@ -49,8 +51,16 @@ impl Matches {
     }
 }
 
-/// The displacements of a section's joints, and the largest error of an actuated one.
-type Solved = ([JointDisplacement; 3], f64);
+/// A solution of a leg's lower section.
+#[derive(Clone, Copy)]
+struct SolvedLower {
+    displacements: [JointDisplacement; 3],
+    tau: JointDisplacement,
+    /// The same as numbers.
+    values: LowerValues,
+    /// The largest error of an actuated joint.
+    error: f64,
+}
 
 /// The solutions of a leg's lower section at some `v` and τ that have the given values of its actuated joints.
 pub(super) struct LowerSection {
@@ -58,7 +68,7 @@ pub(super) struct LowerSection {
     /// Where the section has the imaginary joint, it gives τ.
     tau: Option<JointDisplacement>,
     /// The solution on each branch.
-    branches: [Option<Solved>; 2],
+    branches: [Option<SolvedLower>; 2],
     /// The smallest error of the others, in radians or shares of the size.
     least: f64,
 }
@@ -72,7 +82,7 @@ impl LowerSection {
     }
 
     /// The solutions, with their branches.
-    fn solutions(&self) -> impl Iterator<Item = (Branch, &Solved)> {
+    fn solutions(&self) -> impl Iterator<Item = (Branch, &SolvedLower)> {
         let solved = Branch::BOTH.into_iter().zip(&self.branches);
         solved.filter_map(|(branch, solved)| Some((branch, solved.as_ref()?)))
     }
@@ -90,7 +100,7 @@ impl Search<'_> {
     ) {
         found.list.clear();
         found.least = f64::INFINITY;
-        let compiled = &self.legs[leg];
+        let compiled = &self.held.legs[leg];
         if compiled.lean.is_some() {
             self.match_leaning(leg, pose, rise, found);
         } else if compiled.split_section == Section::Lower {
@@ -110,9 +120,10 @@ impl Search<'_> {
         let m = self.manipulator;
         for mode in m.leg_modes(leg) {
             let branches = m.branches(mode, leg);
-            if let Ok(solution) = self.legs[leg].solve(m.task(), pose, rise, branches, 0.0) {
-                let error = self.section_error(&self.legs[leg].lower, &solution.lower);
-                found.note(self.compared(leg, branches, solution, error, rise));
+            if let Ok(solution) = self.held.legs[leg].solve(m.task(), pose, rise, branches, 0.0) {
+                let error = self.section_error(&self.held.legs[leg].lower, &solution.lower);
+                let lower = m.lower_values(leg, &solution.lower, solution.tau);
+                found.note(self.compared(leg, branches, solution, (lower, error), rise));
             }
         }
     }
@@ -129,8 +140,8 @@ impl Search<'_> {
         // A leg that closes has the τ that was solved for. Another τ only tells by how much a leg that does not close
         // is off.
         for expected in [true, false] {
-            for &branch in self.legs[leg].upper.branches() {
-                let compiled = &self.legs[leg];
+            for &branch in self.held.legs[leg].upper.branches() {
+                let compiled = &self.held.legs[leg];
                 let Ok(upper) = compiled.upper.inverse(b, branch) else { continue };
                 let tau = compiled.unwound(compiled.step(&upper), 0.0);
                 let known = self.taus[leg].filter(|&known| comparable(known, tau));
@@ -140,12 +151,13 @@ impl Search<'_> {
                 let exact = known.filter(|&known| agrees(known, tau, ROUNDING));
                 let tau = exact.unwrap_or(tau);
                 self.solve_lower(leg, v, Some(tau));
-                let section = &self.lowers[leg];
+                let [section, _] = &self.lowers[leg];
                 found.least = found.least.min(section.least);
-                for (lower_branch, &(lower, error)) in section.solutions() {
-                    let solution = LegSolution { lower, upper, tau };
+                for (lower_branch, lower) in section.solutions() {
+                    let solution = LegSolution { lower: lower.displacements, upper, tau };
                     let branches = LegBranches { lower: lower_branch, upper: branch };
-                    found.note(self.compared(leg, branches, solution, error, rise));
+                    let known = (lower.values, lower.error);
+                    found.note(self.compared(leg, branches, solution, known, rise));
                 }
                 // Another branch with this τ would be the same solution, at a singularity.
                 if exact.is_some() && !found.list.is_empty() {
@@ -168,39 +180,45 @@ impl Search<'_> {
         found: &mut Matches,
     ) {
         self.solve_lower(leg, v, None);
-        let (compiled, section) = (&self.legs[leg], &self.lowers[leg]);
+        let (compiled, [section, _]) = (&self.held.legs[leg], &self.lowers[leg]);
         found.least = section.least;
-        for (lower_branch, &(lower, error)) in section.solutions() {
-            // L · exp(I c) = v, with c the imaginary joint's displacement: τ = −c and U = exp(I c) · b.
-            let step = compiled.unwound(compiled.step(&lower), 0.0);
+        for (lower_branch, lower) in section.solutions() {
+            // U = exp(−I τ) · b
+            let step = lower.tau.inverse();
             let target = self.manipulator.task().upper_intersection.before(b, step);
             for &branch in compiled.upper.branches() {
                 let Ok(upper) = compiled.upper.inverse(&target, branch) else { continue };
-                let solution = LegSolution { lower, upper, tau: step.inverse() };
+                let SolvedLower { displacements, tau, values, error } = *lower;
+                let solution = LegSolution { lower: displacements, upper, tau };
                 let branches = LegBranches { lower: lower_branch, upper: branch };
-                found.note(self.compared(leg, branches, solution, error, rise));
+                found.note(self.compared(leg, branches, solution, (values, error), rise));
             }
         }
     }
 
-    /// Solves a leg's lower section, unless it was solved last for the same `v` and τ. Most solutions already have
-    /// other actuated joints, and are rejected before the rest is solved.
+    /// Puts a leg's lower section first among those that are kept, and solves it, unless it is one of them. Most solutions
+    /// already have other actuated joints, and are rejected before the rest is solved.
     #[inline(always)]
     fn solve_lower(&mut self, leg: usize, v: &Displacement, tau: Option<JointDisplacement>) {
         let same = |lower: &LowerSection| lower.tau == tau && lower.v == *v;
-        if !same(&self.lowers[leg]) {
-            self.lowers[leg] = self.lower_section(leg, v, tau);
+        if same(&self.lowers[leg][0]) {
+            return;
+        }
+        self.lowers[leg].swap(0, 1);
+        if !same(&self.lowers[leg][0]) {
+            self.lowers[leg][0] = self.lower_section(leg, v, tau);
         }
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn lower_section(
         &self,
         leg: usize,
         v: &Displacement,
         tau: Option<JointDisplacement>,
     ) -> LowerSection {
-        let lower = &self.legs[leg].lower;
+        let compiled = &self.held.legs[leg];
+        let lower = &compiled.lower;
         let along = &self.manipulator.task().lower_intersection;
         let target = tau.map_or(*v, |tau| along.after(v, tau));
         let mut section = LowerSection { v: *v, tau, branches: [None; 2], least: f64::INFINITY };
@@ -208,7 +226,11 @@ impl Search<'_> {
             let Ok(displacements) = lower.inverse(&target, branch) else { continue };
             let error = self.section_error(lower, &displacements);
             if error <= MATCH {
-                *solved = Some((displacements, error));
+                // L · exp(I c) = v, with c the imaginary joint's displacement: τ = −c.
+                let step = || compiled.unwound(compiled.step(&displacements), 0.0);
+                let tau = tau.unwrap_or_else(|| step().inverse());
+                let values = self.manipulator.lower_values(leg, &displacements, tau);
+                *solved = Some(SolvedLower { displacements, tau, values, error });
             } else {
                 section.least = section.least.min(error);
             }
@@ -216,14 +238,15 @@ impl Search<'_> {
         section
     }
 
-    /// A solution of a leg, compared with the given values. `error` is the largest one in its lower section.
+    /// A solution of a leg, compared with the given values. Of its lower section, the values and the largest error are
+    /// known.
     #[inline(always)]
     fn compared(
         &self,
         leg: usize,
         branches: LegBranches,
         solution: LegSolution,
-        error: f64,
+        (lower, error): (LowerValues, f64),
         rise: f64,
     ) -> Match {
         let m = self.manipulator;
@@ -234,11 +257,11 @@ impl Search<'_> {
         if let Some((lift, actuated)) =
             lift.and_then(|lift| Some((lift, lift.coordinate.actuated?)))
         {
-            let own = lift.rise(self.displacements[actuated]);
+            let own = lift.rise(self.held.displacements[actuated]);
             let off = own - m.task().rise_of_leg(rise, solution.tau);
             error = error.max(off.abs() / m.closure.size);
         }
-        Match { mode: m.leg_mode(leg, branches), solution, error }
+        Match { mode: m.leg_mode(leg, branches), solution, lower, error }
     }
 
     /// Of solutions that are the same near a singularity, keeps the one with the smallest error.
@@ -268,7 +291,8 @@ impl Search<'_> {
         }
         for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
             if let Some(ChainCoordinate { number, actuated: Some(actuated), .. }) = *coordinate {
-                let (value, direction) = (self.displacements[actuated], self.directions[actuated]);
+                let (value, direction) =
+                    (self.held.displacements[actuated], self.directions[actuated]);
                 error = error.max(self.distance(number, displacement, value, direction));
             }
         }

@@ -1,6 +1,7 @@
-//! Forward kinematics near a pose, for any mechanism: Newton's method on the platform's two displacements,
-//! with the Jacobian of the actuated joints. Steps are twists, not changes of the task coordinates, so that
-//! a singularity of the Euler angles does not stop them. Home is such a pose in many mechanisms.
+//! Forward kinematics near a pose, for any mechanism. Where the sections can be solved one after the other, and lead to an
+//! assembly nearby, it is that one. Otherwise it is Newton's method on the platform's two displacements, with the Jacobian
+//! of the actuated joints. Steps are twists, not changes of the task coordinates, so that a singularity of the Euler angles
+//! does not stop them. Home is such a pose in many mechanisms.
 
 use super::newton::{NearBuffer, Newton};
 use super::{Assembly, ForwardError};
@@ -72,12 +73,13 @@ impl fmt::Display for Stop {
 }
 
 impl Manipulator {
-    /// The assembly that Newton's method finds from a start pose, in one working mode. At the assembly, the
-    /// actuated joints have the given values, in the order of [`Manipulator::actuated`], radians and metres.
+    /// The assembly near a start pose, in one working mode: the nearest solution of each section in turn, where they are
+    /// solved like that and move little; otherwise what Newton's method finds. At the assembly, the actuated joints have
+    /// the given values, in the order of [`Manipulator::actuated`], radians and metres.
     /// Angles count modulo 2π, unless full revolutions matter.
     ///
-    /// Convergence is quadratic near the solution. Steps that lead out of reach or away from the solution
-    /// are shortened.
+    /// The convergence of Newton's method is quadratic near the solution. Steps that lead out of reach or away from the
+    /// solution are shortened.
     ///
     /// # Errors
     /// If the joint values or the start cannot be computed with, or if the steps end without an assembly;

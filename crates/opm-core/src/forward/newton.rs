@@ -1,11 +1,16 @@
-//! The steps of Newton's method near a pose, and its buffers.
+//! The assembly near a pose: the sections one after the other, or else the steps of Newton's method; and the buffers of
+//! both.
 
-use super::accept::Place;
+use super::accept::{MATCH, Place, SETTLED};
+use super::held::Held;
 use super::near::{NotFound, Stop};
+use super::nearest::{NearestBuffer, distance};
 use super::{Assembly, NearError};
 use crate::chain::limits::Limits;
-use crate::group::{JointDisplacement, LocalTwist};
-use crate::manipulator::{ChainCoordinate, Manipulator, Mode, Section, Solution, SolvedPose};
+use crate::group::{Displacement, JointDisplacement, LocalTwist};
+use crate::manipulator::{
+    ChainCoordinate, ClosureBuffer, Manipulator, Mode, Section, Solution, SolvedPose,
+};
 use crate::mechanism::joint::JointKind;
 use crate::numeric::Quantity;
 use crate::numeric::least_squares::{LeastSquares, MOST};
@@ -29,6 +34,10 @@ const ARRIVED: f64 = 1e-11;
 /// The joints have their values to within this, in radians and shares of the size, which is the rounding of some
 /// operations: no step is taken.
 const EXACT: f64 = 4e-15;
+
+/// The farthest assembly that the sections are solved for one after the other, in radians and shares of the size. Of
+/// those beyond, Newton's method may find another one.
+const NEAR: f64 = 0.25;
 
 /// What is left of a column of the Jacobian counts as zero below this share of the longest. Lengths are over the
 /// size.
@@ -59,8 +68,8 @@ pub struct NearBuffer {
     /// The unit of each component of a step: the size where it is a length, otherwise one.
     units: [f64; MOST],
     system: LeastSquares,
-    /// A buffer for joint values.
-    joints: Vec<f64>,
+    nearest: NearestBuffer,
+    closure: ClosureBuffer,
     /// The assembly that was found last.
     pub(super) assembly: Assembly,
 }
@@ -127,7 +136,8 @@ impl Manipulator {
             units: self.units(&jacobians),
             system: LeastSquares::new(actuated + locked, jacobians.joints.ncols()),
             jacobians,
-            joints: Vec::with_capacity(self.coordinates().len()),
+            nearest: NearestBuffer::new(self.legs()),
+            closure: self.closure.buffer(),
             assembly: Assembly::buffer(self),
         }
     }
@@ -210,13 +220,51 @@ pub(super) struct Newton<'a> {
 }
 
 impl Newton<'_> {
-    /// Starts at a pose, takes steps until the joints have the wanted values, and writes the assembly to the buffer.
+    /// Starts at a pose, goes to where the joints have the wanted values, and writes the assembly to the buffer.
     pub fn run(&self, start: &[f64], at: &mut NearBuffer) -> Result<(), NearError> {
         if !self.manipulator.close(start, self.mode, &mut at.solution)? {
             let why = Stop::OutOfReach(at.solution.unreachable[0]);
             return Err(NotFound { why, steps: 0, off: f64::INFINITY, pose: start.to_vec() }.into());
         }
         self.write_error(&at.solution, &at.driven, &mut at.error);
+        let steps = if self.follow_plan(at) { 0 } else { self.take_steps(at)? };
+        self.assemble(at);
+        let residual = at.assembly.residual;
+        match residual > self.manipulator.largest_residual() {
+            true => Err(self.ended(at, Stop::Stalled, steps, residual)),
+            false => Ok(()),
+        }
+    }
+
+    /// Goes to the assembly nearby that the sections have one after the other, as the mechanism's plan says. Returns
+    /// `false` where there is none, and stays where it is. So it does where a step of Newton's method costs no more: near a
+    /// singularity that one is more accurate.
+    fn follow_plan(&self, at: &mut NearBuffer) -> bool {
+        let m = self.manipulator;
+        let Ok(plan) = &m.plan else { return false };
+        if most(&at.error) <= MATCH || !m.lifts_straight() || m.shares_height() {
+            return false;
+        }
+        let held = Held::new(m, plan, &at.displacements);
+        let found = held.nearest(&at.solution, &mut at.nearest);
+        let rise = held.rise;
+        let Some([v, b]) = found else { return false };
+        if self.displace([&v, &b], rise, at).is_err() {
+            return false;
+        }
+        self.write_error(&at.tried, &at.driven, &mut at.error_after);
+        let (old, new) = (&at.solution.solved, &at.tried.solved);
+        let [of_v, of_b] = [(&old.v, &new.v), (&old.b, &new.b)]
+            .map(|(old, new)| distance(old, new, m.closure.size));
+        let found = most(&at.error_after) <= SETTLED && of_v <= NEAR && of_b <= NEAR;
+        if found {
+            std::mem::swap(&mut at.solution, &mut at.tried);
+        }
+        found
+    }
+
+    /// Takes steps of Newton's method until the joints have the wanted values, and returns their number.
+    fn take_steps(&self, at: &mut NearBuffer) -> Result<u32, NearError> {
         let (mut steps, mut kept) = (0, false);
         while steps < STEPS && most(&at.error) > EXACT {
             let before = most(&at.error);
@@ -236,14 +284,9 @@ impl Newton<'_> {
             kept = !kept && 2.0 * after * after <= EXACT * before;
         }
         let off = most(&at.error);
-        if off.is_nan() || off > ARRIVED {
-            return Err(self.ended(at, Stop::Steps, steps, off));
-        }
-        self.assemble(at);
-        let residual = at.assembly.residual;
-        match residual > self.manipulator.largest_residual() {
-            true => Err(self.ended(at, Stop::Stalled, steps, residual)),
-            false => Ok(()),
+        match off.is_nan() || off > ARRIVED {
+            true => Err(self.ended(at, Stop::Steps, steps, off)),
+            false => Ok(steps),
         }
     }
 
@@ -322,15 +365,26 @@ impl Newton<'_> {
         let moved_b = upper.first_order(&upper_twist).after(&b);
         let moved_v = v.after(&lower.first_order(&lower_twist));
         let rise = m.task().rise(&at.solution.solved.pose) + along;
+        self.displace([&moved_v, &moved_b], rise, at)
+    }
+
+    /// Solves the pose at the displacements `v` and `b`, and at a height above home, metres.
+    fn displace(
+        &self,
+        [v, b]: [&Displacement; 2],
+        rise: f64,
+        at: &mut NearBuffer,
+    ) -> Result<(), Stop> {
+        let m = self.manipulator;
         let reached = if m.dependent_coordinates().is_empty() {
             // The legs need no coordinates, which would cost sines and arctangents.
             let solved = &mut at.tried.solved;
-            let (v, b, rise) = m.task().described_factors(&moved_v, &moved_b, rise);
+            let (v, b, rise) = m.task().described_factors(v, b, rise);
             (solved.v, solved.b) = (v, b);
             m.task().set_rise(rise, &mut solved.pose);
             m.close_displaced(self.mode, &mut at.tried)
         } else {
-            m.task().write_pose(&moved_v, &moved_b, rise, &mut at.all);
+            m.task().write_pose(v, b, rise, &mut at.all);
             m.write_independent(&mut at.all, &mut at.pose);
             m.close(&at.pose, self.mode, &mut at.tried).map_err(|_| Stop::Stalled)?
         };
@@ -355,11 +409,11 @@ impl Newton<'_> {
     fn assemble(&self, at: &mut NearBuffer) {
         let m = self.manipulator;
         self.write_pose(at);
-        let NearBuffer { displacements, pose, solution, joints, assembly, .. } = at;
+        let NearBuffer { displacements, pose, solution, closure, assembly, .. } = at;
         m.write_closed(solution);
         let target = solution.displacement(m);
         let place = Place { pose, target: &target, mode: self.mode };
-        m.write_assembly(place, displacements, solution, joints, assembly);
+        m.write_assembly(place, displacements, solution, closure, assembly);
     }
 }
 
@@ -408,6 +462,9 @@ fn norm(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::decomposition::samples::Numbers;
+    use crate::manipulator::plan::{Anchor, Plan};
+    use crate::mechanism::examples::EXAMPLES;
 
     /// Each step leaves the square of the error before it, times a constant of the mechanism.
     #[test]
@@ -440,5 +497,66 @@ mod tests {
             }
         }
         assert!(squared > 6, "{squared} steps above rounding");
+    }
+
+    /// The sections one after the other lead to the assembly to which Newton's method leads, from starts near poses in
+    /// random modes. Near singularities, where they do not, the steps lead farther away more often.
+    #[test]
+    fn the_plan_leads_where_newton_leads() {
+        let mut numbers = Numbers::new(8);
+        for name in EXAMPLES.iter().map(|example| example.name) {
+            let Ok(m) = Manipulator::example(name) else { continue };
+            // A linear system takes one step of Newton's method.
+            let Ok(Plan { anchor, .. }) = &m.plan else { continue };
+            if matches!(anchor, Anchor::Flat(_)) {
+                continue;
+            }
+            let modes: Vec<Mode> = m.modes().collect();
+            let (mut ends, mut solution) = ([m.near_buffer(), m.near_buffer()], m.solution());
+            let (mut starts, mut followed, mut same, mut nearer) = (0, 0, 0, 0);
+            while starts < 200 {
+                let pose = beside(&m, &m.home_pose(), [0.5, 0.08], &mut numbers);
+                let start = beside(&m, &pose, [0.02, 0.002], &mut numbers);
+                let mode = modes[(numbers.next().abs() * modes.len() as f64) as usize];
+                if m.inverse(&pose, mode, &mut solution).unwrap().is_none() {
+                    continue;
+                }
+                let wanted: Vec<f64> = m.actuated().iter().map(|&i| solution.joints[i]).collect();
+                let newton = Newton { manipulator: &m, wanted: &wanted, mode };
+                for at in &mut ends {
+                    m.write_displacements(&wanted, &mut at.displacements).unwrap();
+                    if m.close(&start, mode, &mut at.solution).unwrap() {
+                        newton.write_error(&at.solution, &at.driven, &mut at.error);
+                    }
+                }
+                let [by_plan, by_steps] = &mut ends;
+                let in_reach = by_steps.solution.unreachable.is_empty();
+                if !in_reach || newton.take_steps(by_steps).is_err() {
+                    continue;
+                }
+                starts += 1;
+                if !newton.follow_plan(by_plan) {
+                    continue;
+                }
+                followed += 1;
+                let [pose, a, b] = [&solution, &by_plan.solution, &by_steps.solution]
+                    .map(|solution| m.platform_at(&solution.displacement(&m)));
+                if m.platform_distance(&a, &b) < 1e-8 {
+                    same += 1;
+                } else if m.platform_distance(&a, &pose) < m.platform_distance(&b, &pose) {
+                    nearer += 1;
+                }
+            }
+            println!("{name}: {followed} of {starts} followed, {same} the same, {nearer} nearer");
+            // Full revolutions of schoenflies-4dof's screw are assemblies farther away; planar-3rpr is nearly singular.
+            assert!(followed >= 60 && 100 * (same + nearer) >= 98 * followed, "{name}");
+        }
+    }
+
+    /// A random pose within these angles and lengths of another one, radians and metres.
+    fn beside(m: &Manipulator, pose: &[f64], reach: [f64; 2], numbers: &mut Numbers) -> Vec<f64> {
+        let coordinates = m.task_coordinates().iter().zip(pose);
+        let reach = |quantity| reach[usize::from(quantity == Quantity::Length)];
+        coordinates.map(|(c, q)| q + reach(c.quantity) * numbers.next()).collect()
     }
 }

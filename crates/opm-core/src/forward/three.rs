@@ -42,6 +42,13 @@ const POLISH: usize = 3;
 /// The conditions are met to rounding, in radians and shares of the size: there is nothing to polish.
 const POLISHED: f64 = 1e-15;
 
+/// The largest number of steps from a displacement that is near, but does not satisfy the conditions.
+const NEAR_STEPS: usize = 8;
+
+/// What the conditions are missed by at most where such steps have converged, in radians and shares of the size: the
+/// rounding of some hundred operations.
+const MET: f64 = 1e-13;
+
 /// An equation in θ (rows: 1, cos, sin) and φ (columns: 1, cos, sin).
 #[derive(Clone, Copy, Debug)]
 struct Bilinear {
@@ -52,7 +59,7 @@ struct Bilinear {
 }
 
 /// A group in which three conditions are solved, with lengths over the mechanism's size.
-trait Group: Copy {
+pub trait Group: Copy {
     /// The error of a condition, and its derivative by a small step: a rotation and a translation in a
     /// plane, a rotation vector in a spherical subspace.
     fn error(&self, condition: &Condition) -> (f64, Vector3<f64>);
@@ -413,6 +420,18 @@ fn lines(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
 
 /// Removes the rounding of the elimination by steps of Newton's method on the conditions themselves.
 fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
+    newton(start, conditions, POLISH).0
+}
+
+/// The displacement to which Newton's method leads from another one; `None` if no displacement near it satisfies the
+/// conditions, or if they are not independent there.
+pub fn near<G: Group>(start: G, conditions: &[Condition; 3]) -> Option<G> {
+    let (found, miss) = newton(start, conditions, NEAR_STEPS);
+    (miss <= MET).then_some(found)
+}
+
+/// Takes steps of Newton's method as long as each comes closer. Returns by how much the conditions are missed, too.
+fn newton<G: Group>(start: G, conditions: &[Condition; 3], steps: usize) -> (G, f64) {
     let evaluate = |g: &G| {
         let parts = conditions.each_ref().map(|condition| g.error(condition));
         let miss = Vector3::from_fn(|i, _| parts[i].0);
@@ -421,7 +440,7 @@ fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
     };
     let mut here = start;
     let (mut miss, mut derivative) = evaluate(&here);
-    for _ in 0..POLISH {
+    for _ in 0..steps {
         if miss.amax() <= POLISHED {
             break;
         }
@@ -439,7 +458,7 @@ fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
         }
         (here, miss, derivative) = (next, after, slope);
     }
-    here
+    (here, miss.amax())
 }
 
 /// Adds a displacement to the solutions, unless it is there already.

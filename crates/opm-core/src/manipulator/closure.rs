@@ -7,7 +7,7 @@ use crate::decomposition::mobility::frame;
 use crate::group::screw::Screw;
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointKind;
-use abreast::Abreast;
+use abreast::{Abreast, Products};
 use nalgebra::{Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -20,6 +20,15 @@ pub struct Closure {
     /// The characteristic length of the mechanism, metres.
     pub size: f64,
     arch: Arch,
+}
+
+/// The buffer of [`Closure::residual`] and [`Closure::settle`].
+#[derive(Clone, Debug)]
+pub struct ClosureBuffer {
+    /// The products of exponentials of every group of legs.
+    products: Vec<Products>,
+    /// Joint values that are tried.
+    tried: Vec<f64>,
 }
 
 /// One joint and its values at home.
@@ -95,39 +104,57 @@ impl Closure {
 
     /// The largest closure error of a leg, with the platform displaced from home by `target`: the angle in
     /// radians plus the distance of the reference point over the size.
-    pub fn residual(&self, joints: &[f64], target: &Isometry3<f64>) -> f64 {
-        self.arch.dispatch(Residual { closure: self, joints, target })
+    pub fn residual(
+        &self,
+        joints: &[f64],
+        target: &Isometry3<f64>,
+        buffer: &mut ClosureBuffer,
+    ) -> f64 {
+        self.arch.dispatch(Residual {
+            closure: self,
+            joints,
+            target,
+            products: &mut buffer.products,
+        })
+    }
+
+    /// A buffer for the closure errors.
+    pub fn buffer(&self) -> ClosureBuffer {
+        let products = self.abreast.iter().map(Abreast::products).collect();
+        let values = self.legs.iter().flatten().map(LegJoint::values).sum();
+        ClosureBuffer { products, tried: Vec::with_capacity(values) }
     }
 
     /// Moves the passive joints of every leg so that it closes, with the actuated joints held, by Newton's
     /// method with least squares. Near a serial singularity, joints that were computed from the pose have
-    /// errors of the order of the root of the rounding, which this removes. Takes and returns the residual; `tried` is a
-    /// buffer.
+    /// errors of the order of the root of the rounding, which this removes. Takes and returns the residual.
     pub fn settle(
         &self,
         joints: &mut [f64],
         target: &Isometry3<f64>,
         residual: f64,
-        tried: &mut Vec<f64>,
+        buffer: &mut ClosureBuffer,
     ) -> f64 {
         /// The number of steps: where the passive joints are singular, each only halves the error.
         const STEPS: usize = 40;
         let mut residual = residual;
-        tried.clear();
-        tried.extend_from_slice(joints);
+        buffer.tried.clear();
+        buffer.tried.extend_from_slice(joints);
         for _ in 0..STEPS {
             let mut first = 0;
             for leg in &self.legs {
                 let values: usize = leg.iter().map(LegJoint::values).sum();
-                self.step(leg, &mut tried[first..first + values], target);
+                self.step(leg, &mut buffer.tried[first..first + values], target);
                 first += values;
             }
-            let after = self.residual(tried, target);
+            let tried = std::mem::take(&mut buffer.tried);
+            let after = self.residual(&tried, target, buffer);
+            buffer.tried = tried;
             if after.is_nan() || after >= residual {
                 break;
             }
             residual = after;
-            joints.copy_from_slice(tried);
+            joints.copy_from_slice(&buffer.tried);
         }
         residual
     }
@@ -195,6 +222,7 @@ struct Residual<'a> {
     closure: &'a Closure,
     joints: &'a [f64],
     target: &'a Isometry3<f64>,
+    products: &'a mut [Products],
 }
 
 impl WithSimd for Residual<'_> {
@@ -202,10 +230,11 @@ impl WithSimd for Residual<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
-        let Self { closure: Closure { abreast, platform, size, .. }, joints, target } = self;
+        let Self { closure, joints, target, products } = self;
+        let Closure { abreast, platform, size, .. } = closure;
         let mut largest = 0.0;
-        for legs in abreast {
-            largest = f64::max(largest, legs.residual(joints, target, platform, *size));
+        for (legs, products) in abreast.iter().zip(products) {
+            largest = f64::max(largest, legs.residual(joints, target, platform, *size, products));
         }
         largest
     }

@@ -247,12 +247,68 @@ impl Manipulator {
 
     /// Writes the joints of all legs, whose solutions `out` holds, with angles within π of home.
     #[inline(always)]
-    pub(crate) fn write_legs(&self, out: &mut Solution) {
+    fn write_legs(&self, out: &mut Solution) {
         let mut angles = Angles::new(AngleOf::Leg(0));
         for number in 0..self.legs.len() {
             self.write(number, out, Revolutions::NearHome, &mut angles);
         }
         angles.answer(|of, angle| self.take(of, angle, out, Revolutions::NearHome));
+    }
+
+    /// Does the same where the values of every leg's lower joints are known.
+    #[inline(always)]
+    pub(crate) fn write_upper_sections<'a>(
+        &self,
+        lower: impl Iterator<Item = &'a LowerValues>,
+        out: &mut Solution,
+    ) {
+        let home = Revolutions::NearHome;
+        let mut angles = Angles::new(AngleOf::Leg(0));
+        for ((number, leg), known) in self.legs.iter().enumerate().zip(lower) {
+            angles.make_room(|of, angle| self.take(of, angle, out, home));
+            for (coordinate, value) in leg.lower.coordinates.iter().zip(known.joints) {
+                if let Some(joint) = coordinate {
+                    out.joints[joint.number] = value;
+                }
+            }
+            out.within_limits &= known.within_limits;
+            self.take_tau(number, known.tau, out);
+            Self::write_section(&leg.upper, (number, Section::Upper), out, home, &mut angles);
+        }
+        angles.answer(|of, angle| self.take(of, angle, out, home));
+    }
+
+    /// The values of a leg's lower joints with these displacements, and of τ, with angles within π of home.
+    pub(crate) fn lower_values(
+        &self,
+        number: usize,
+        lower: &[JointDisplacement; 3],
+        tau: JointDisplacement,
+    ) -> LowerValues {
+        let mut values = LowerValues { joints: [0.0; 3], tau: tau.value(), within_limits: true };
+        let section = &self.legs[number].lower;
+        for (i, joint) in section.coordinates.iter().enumerate() {
+            let Some(joint) = joint else { continue };
+            values.joints[i] = joint.home
+                + match lower[i] {
+                    JointDisplacement::Value(value) => value,
+                    angle @ JointDisplacement::Direction(_) => {
+                        joint.limits.report_angle(angle.value())
+                    }
+                };
+            values.within_limits &= joint.limits.admits(lower[i]);
+        }
+        values
+    }
+
+    /// Takes a leg's displacement along the intersection motion as a number.
+    #[inline(always)]
+    fn take_tau(&self, leg: usize, tau: f64, out: &mut Solution) {
+        out.taus[leg] = tau;
+        if let Some(imaginary) = self.legs[leg].imaginary {
+            let joint = &self.imaginary[imaginary];
+            out.imaginary[imaginary] = joint.home + joint.sign * tau;
+        }
     }
 
     /// Writes the joints of a leg whose solution `out` holds, but for the angles of directions, which it asks for.
@@ -271,13 +327,7 @@ impl Manipulator {
         }
         match out.legs[number].tau {
             JointDisplacement::Direction(e) => angles.ask(AngleOf::Leg(number), e),
-            JointDisplacement::Value(value) => {
-                out.taus[number] = value;
-                if let Some(imaginary) = leg.imaginary {
-                    let joint = &self.imaginary[imaginary];
-                    out.imaginary[imaginary] = joint.home + joint.sign * value;
-                }
-            }
+            JointDisplacement::Value(value) => self.take_tau(number, value, out),
         }
     }
 
@@ -342,6 +392,15 @@ impl Manipulator {
             }
         }
     }
+}
+
+/// The values of a leg's lower joints, radians and metres; zero for what is no joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LowerValues {
+    joints: [f64; 3],
+    /// The leg's displacement along the intersection motion.
+    tau: f64,
+    within_limits: bool,
 }
 
 /// What an angle is that was asked for.

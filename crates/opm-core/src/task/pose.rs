@@ -195,27 +195,48 @@ impl Task {
         }
     }
 
+    /// The factors of `v` with the least displacement from another one, `reference`, along the intersection motion: what is
+    /// left of it, and the displacement along that motion that is applied before it. A shared rotation is left to nothing:
+    /// see [`Task::without_shared_rotation`].
+    pub(crate) fn aligned(
+        &self,
+        v: &Displacement,
+        reference: &Displacement,
+    ) -> (Displacement, JointDisplacement) {
+        match self.shared() {
+            Some(MotionType::Translation) => {
+                let moved = reference.inverse().after(v);
+                let translation = translation_along(&self.lower_intersection, &moved);
+                (self.lower_intersection.after(v, translation.inverse()), translation)
+            }
+            Some(MotionType::Rotation) | None => self.without_shared_rotation(v),
+        }
+    }
+
     /// The translation along the shared direction in `b`, which its coordinates do not describe.
     fn shared_translation(&self, b: &Displacement) -> JointDisplacement {
-        let component = |t: Complex<f64>, along: Complex<f64>| t.re * along.re + t.im * along.im;
-        JointDisplacement::Value(match self.upper_intersection {
-            // `along` is shorter than one where the motion is inclined.
-            IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
-                component(b.planar().translation, along) / along.norm_sqr()
-            }
-            IntersectionMotion::Translational(TranslationalMotion::Translation(along)) => {
-                component(*b.translational(), along)
-            }
-            IntersectionMotion::Spatial(SpatialMotion::Translation) => b.spatial().z,
-            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
-                b.cylindrical().advance
-            }
-            IntersectionMotion::None(_)
-            | IntersectionMotion::Planar(PlanarMotion::Rotation)
-            | IntersectionMotion::Spherical(SphericalMotion::Rotation)
-            | IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => 0.0,
-        })
+        translation_along(&self.upper_intersection, b)
     }
+}
+
+/// The part of a displacement that is a translation along an intersection motion; zero where that is none.
+fn translation_along(motion: &IntersectionMotion, g: &Displacement) -> JointDisplacement {
+    let component = |t: Complex<f64>, along: Complex<f64>| t.re * along.re + t.im * along.im;
+    JointDisplacement::Value(match *motion {
+        // `along` is shorter than one where the motion is inclined.
+        IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
+            component(g.planar().translation, along) / along.norm_sqr()
+        }
+        IntersectionMotion::Translational(TranslationalMotion::Translation(along)) => {
+            component(*g.translational(), along)
+        }
+        IntersectionMotion::Spatial(SpatialMotion::Translation) => g.spatial().z,
+        IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => g.cylindrical().advance,
+        IntersectionMotion::None(_)
+        | IntersectionMotion::Planar(PlanarMotion::Rotation)
+        | IntersectionMotion::Spherical(SphericalMotion::Rotation)
+        | IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => 0.0,
+    })
 }
 
 /// The angles `mu nu` of the rotation that takes the third direction to `axis`.

@@ -1,4 +1,5 @@
-//! The products of exponentials of four legs side by side: each leg has a lane of every vector.
+//! The products of exponentials of four legs side by side: each leg has a lane of every vector. Products are kept, and the
+//! next ones begin at the first joint with another value.
 
 use super::LegJoint;
 use crate::group::screw::Screw;
@@ -16,13 +17,14 @@ const ZEROS: Lanes = [0.0; LANES];
 /// Up to four legs.
 #[derive(Clone, Debug)]
 pub(super) struct Abreast {
-    /// The first joints of all legs, the second ones, and so on.
+    /// The joints of all legs, those at the platform in the last stage: of legs with spherical joints there, which are fewer,
+    /// the others are in one stage with joints that are as near to the base.
     stages: Vec<Stage>,
     /// The number of legs.
     legs: usize,
 }
 
-/// One joint of each leg. A leg that has no joint more has one that does not move.
+/// One joint of each leg. A leg with fewer joints has some at the base that do not move.
 #[derive(Clone, Debug)]
 struct Stage {
     /// For each leg, the number of the joint's first value.
@@ -58,7 +60,7 @@ struct Exponents {
 }
 
 /// A displacement for each leg: a unit quaternion, its real part first, and a translation.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Displacements {
     rotation: [Lanes; 4],
     translation: [Lanes; 3],
@@ -101,13 +103,19 @@ impl Stage {
     const REST: Self =
         Self { values: [0; LANES], home: ZEROS, exponents: Exponents::REST, balls: Vec::new() };
 
-    /// The displacements `g`, followed towards the platform by those of these joints.
+    /// The displacements of these joints from home; of a spherical joint, the first component.
     #[inline(always)]
-    fn after(&self, g: &Displacements, joints: &[f64]) -> Displacements {
+    fn by(&self, joints: &[f64]) -> Lanes {
         let mut by = ZEROS;
         for i in 0..LANES {
             by[i] = joints[self.values[i]] - self.home[i];
         }
+        by
+    }
+
+    /// The displacements `g`, followed towards the platform by those of these joints.
+    #[inline(always)]
+    fn after(&self, g: &Displacements, mut by: Lanes, joints: &[f64]) -> Displacements {
         if self.balls.is_empty() {
             return g.followed(&self.exponents, &by);
         }
@@ -211,7 +219,7 @@ impl Abreast {
         let most = legs.iter().map(Vec::len).max().unwrap_or(0);
         let mut stages = vec![Stage::REST; most];
         for (lane, leg) in legs.iter().enumerate() {
-            for (joint, stage) in leg.iter().zip(&mut stages) {
+            for (joint, stage) in leg.iter().zip(&mut stages[most - leg.len()..]) {
                 stage.values[lane] = *first;
                 *first += joint.values();
                 match joint {
@@ -228,6 +236,11 @@ impl Abreast {
         Self { stages, legs: legs.len() }
     }
 
+    /// A buffer for products.
+    pub fn products(&self) -> Products {
+        Products(vec![([f64::NAN; LANES], Displacements::IDENTITY); self.stages.len()])
+    }
+
     /// The largest distance of a leg's end from the displacement `target`: see [`Displacements::apart`].
     #[inline(always)]
     pub fn residual(
@@ -236,12 +249,23 @@ impl Abreast {
         target: &Isometry3<f64>,
         platform: &Point3<f64>,
         size: f64,
+        Products(kept): &mut Products,
     ) -> f64 {
-        let mut ends = Displacements::IDENTITY;
-        for stage in &self.stages {
-            ends = stage.after(&ends, joints);
+        let (mut ends, mut same) = (Displacements::IDENTITY, true);
+        for (stage, (kept_by, kept_ends)) in self.stages.iter().zip(kept) {
+            let by = stage.by(joints);
+            same &= by == *kept_by && stage.balls.is_empty();
+            if !same {
+                (*kept_by, *kept_ends) = (by, stage.after(&ends, by, joints));
+            }
+            ends = *kept_ends;
         }
         let distances = ends.apart(target, platform, size);
         distances[..self.legs].iter().fold(0.0, |most, &distance| f64::max(most, distance))
     }
 }
+
+/// After each stage, the joints' displacements and the product of the exponentials up to there, as they were computed
+/// last.
+#[derive(Clone, Debug)]
+pub(super) struct Products(Vec<(Lanes, Displacements)>);
