@@ -7,22 +7,20 @@ mod report;
 use crate::args::{AnalyzeArgs, Output};
 use crate::failure::Failure;
 use crate::load as mechanisms;
-use crate::pose::Number;
 use crate::unitless;
-use load::LinkStiffness;
-use opm_analysis::{Balance, Compliant, Load, NoTransmission, Springs, Statics, Transmissions};
+use opm_analysis::{
+    Balance, Compliant, Efforts, Index, Indices, Loads, NoTransmission, Setup, Statics,
+    Transmissions, Velocity,
+};
 use opm_core::manipulator::{Manipulator, Solution};
-use opm_study::characteristic_length;
 use report::{Elastic, Report};
 
 pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let loaded = mechanisms::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let mode = mechanisms::mode(&manipulator, &args.mode)?;
-    let length = args.length.map(Number::characteristic_length).transpose()?;
-    let length = characteristic_length(length, &manipulator)?;
-    let load = args.wrench.map(|given| Load { wrench: given.0, at: args.at.0, axes: args.frame });
-    let mut analyser = Analyser::new(&manipulator, length, load);
+    let setup = args.setup.options(args.length)?.check(&manipulator)?;
+    let mut analyser = Analyser::new(&manipulator, &setup)?;
     if let Some(input) = &args.poses {
         return poses::run(args, input, output, &loaded, (&mut analyser, mode));
     }
@@ -31,14 +29,13 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let mut at = manipulator.solution();
     let found = manipulator.inverse(&pose, mode, &mut at);
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
-    let mut springs = None;
-    if let Some(LinkStiffness([translation, rotation])) = args.link_stiffness {
-        let actuators = load::actuators(args.joint_stiffness.as_ref(), &manipulator)
-            .map_err(|error| Failure::flag("--joint-stiffness", error))?;
-        let given = Springs { actuators, translation, rotation };
-        let compliant = Compliant::new(&manipulator, given);
-        springs = Some(compliant.map_err(|error| Failure::flag("--link-stiffness", error))?);
+    let springs = setup.springs.clone().map(|springs| Compliant::new(&manipulator, springs));
+    let springs = springs.transpose().map_err(|error| Failure::flag("--link-stiffness", error))?;
+    if springs.is_some() && setup.gravity.is_some() {
+        let problem = "reactions are those of --wrench alone; give one of them";
+        return Err(Failure::flag("--gravity with --link-stiffness", problem));
     }
+    let mut springs = springs;
     let mut elastic = None;
     if reached {
         checks.verify(&manipulator, &at, loaded.file.units)?;
@@ -58,15 +55,28 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
 /// What is computed at a pose.
 pub struct Analyser<'a> {
     manipulator: &'a Manipulator,
-    load: Option<Load>,
+    setup: &'a Setup,
+    loads: Option<Loads<'a>>,
     statics: Statics<'a>,
     transmissions: Result<Transmissions<'a>, NoTransmission>,
+    indices: Indices<'a>,
+    /// What acts at the pose, if anything does: its work, and the efforts that balance it.
+    acting: Option<(Option<Velocity>, Efforts)>,
 }
 
 impl<'a> Analyser<'a> {
-    fn new(manipulator: &'a Manipulator, length: f64, load: Option<Load>) -> Self {
-        let transmissions = Transmissions::new(manipulator);
-        Self { manipulator, load, statics: Statics::new(manipulator, length), transmissions }
+    fn new(manipulator: &'a Manipulator, setup: &'a Setup) -> Result<Self, Failure> {
+        let known = Index::known(manipulator, setup);
+        let indices = Indices::new(manipulator, setup, known);
+        Ok(Self {
+            manipulator,
+            setup,
+            loads: Loads::new(manipulator, setup),
+            statics: Statics::new(manipulator, setup.length),
+            transmissions: Transmissions::new(manipulator),
+            indices: indices.map_err(|error| Failure::work(error.to_string()))?,
+            acting: None,
+        })
     }
 
     /// Takes a solution that is in reach.
@@ -75,13 +85,19 @@ impl<'a> Analyser<'a> {
         if let Ok(transmissions) = &mut self.transmissions {
             transmissions.update(at);
         }
+        self.indices.evaluate(at);
+        let statics = &self.statics;
+        self.acting = self.loads.as_mut().map(|loads| {
+            let work = statics.is_regular().then(|| loads.work(statics, at)).flatten();
+            (work, loads.efforts(statics, at))
+        });
         Ok(())
     }
 
-    /// The wrench at the reference point of the platform, in base directions.
+    /// The wrench at the reference point of the platform, in base directions, without the weight of bodies.
     fn wrench(&self, at: &Solution) -> Option<opm_analysis::Wrench> {
-        let platform = self.manipulator.platform_at(&at.displacement(self.manipulator));
-        Some(self.load?.on(&platform))
+        self.setup.load?;
+        Some(self.loads.as_ref()?.wrench(at))
     }
 }
 

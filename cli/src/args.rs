@@ -10,6 +10,7 @@ mod motion;
 mod path;
 mod pose;
 mod recording;
+mod setup;
 mod workspace;
 
 pub use analyze::AnalyzeArgs;
@@ -22,6 +23,7 @@ pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use path::PathArgs;
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, LayoutArgs, PlotArgs};
+pub use setup::SetupArgs;
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
 use crate::change::Change;

@@ -7,8 +7,8 @@ use crate::progress::{interruptible, watch_reading};
 use crate::workspace::{Effort, Outcome, Work, advice, grid_flags, points, threads};
 use opm_core::mechanism::file::FileUnits;
 use opm_study::recording::{Attachment, Findings, Shards, StoredShard, WorkspaceRecording};
-use opm_study::{MissingShards, StudyError, Workspace, WorkspaceKind};
-use opm_workspace::Progress;
+use opm_study::{MissingShards, StudyError, Workspace, WorkspaceKind, setup_fields};
+use opm_workspace::{PoseLimit, Progress};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -35,7 +35,8 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     })?;
 
     let work = Work { output, pool: &pool, progress: &progress };
-    let points = points(&args.cloud).choose(workspace.kind(), workspace.manipulator())?;
+    let setup = workspace.setup();
+    let points = points(&args.cloud).choose(workspace.kind(), workspace.manipulator(), setup)?;
     let recording = match &args.cloud.output {
         Some(path) => {
             loaded.refuse_as_output(path, &shards.paths().collect::<Vec<_>>())?;
@@ -113,13 +114,16 @@ fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, 
     if let Some(clearance) = workspace.clearance() {
         command += &format!(" --clearance {}", clearance.least);
     }
+    for (option, value) in setup_fields(workspace.setup(), workspace.manipulator()) {
+        command += &format!(" --{} {value}", option.replace('_', "-"));
+    }
     for (index, bound) in limit.iter().flat_map(|limit| limit.indices.iter()) {
         command += &format!(" --limit {index}={bound}");
     }
     if conditioning.is_some() {
         command += " --conditioning";
     }
-    if let Some(length) = conditioning.or(limit.map(|limit| limit.length)) {
+    if let Some(length) = conditioning.or(limit.map(PoseLimit::length)) {
         command += &format!(" --length {length}");
     }
     let output = named_like(part, number);

@@ -1,6 +1,7 @@
 //! Poses and grids in the syntax of the command line: `x=10mm,xi=15deg`, `x=-0.1:0.1:11`.
 
 use crate::failure::Failure;
+use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
@@ -76,7 +77,12 @@ impl FromStr for IndexLimit {
 
     fn from_str(text: &str) -> Result<Self, Misread> {
         let (name, value) = assignment(text, "NAME=VALUE, for example lti=0.7")?;
-        let bound = value.parse::<Number>()?.bare(name)?;
+        let number = value.parse::<Number>()?;
+        let length = Index::from_name(name).is_some_and(|index| index.facts().unit == "m");
+        let bound = match length {
+            true => number.value_of(name, Quantity::Length)?,
+            false => number.bare(name)?,
+        };
         Ok(Self { name: name.to_owned(), bound })
     }
 }

@@ -16,7 +16,7 @@ use opm_mcap::RecordError;
 use opm_study::recording::{
     MotionRecorder, TableOptions, is_motion_table, partial, write_motion_csv, write_motion_table,
 };
-use opm_study::{MotionRequest, StudyError};
+use opm_study::{MotionRequest, SetupOptions, StudyError};
 use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -57,7 +57,6 @@ impl<'a> Target<'a> {
             let options = [
                 ("--rates", args.rates, "a recording has them anyway"),
                 ("--accelerations", args.accelerations, "a recording has them anyway"),
-                ("--indices", args.indices, "a recording has none"),
                 ("--units", args.units == TableUnits::File, "a recording is in metres and radians"),
             ];
             if let Some((flag, _, why)) = options.into_iter().find(|(_, given, _)| *given) {
@@ -78,6 +77,15 @@ impl<'a> Target<'a> {
             Self::Nowhere | Self::Printed => None,
             Self::Table(path) | Self::Recording(path) => Some(path),
         }
+    }
+}
+
+/// The first flag of a setup that was given.
+fn given_setup(setup: &SetupOptions) -> &'static str {
+    match setup {
+        SetupOptions { load: Some(_), .. } => "--wrench",
+        SetupOptions { gravity: Some(_), .. } => "--gravity",
+        _ => "--link-stiffness",
     }
 }
 
@@ -105,6 +113,15 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     if let Some(rate) = args.rate {
         request = request.rate(rate);
     }
+    let setup = args.setup.options(None)?;
+    if setup != SetupOptions::default() && !args.indices {
+        let problem = "nothing uses it; --indices does";
+        return Err(Failure::flag(given_setup(&setup), problem));
+    }
+    let setup = setup.check(&manipulator)?;
+    if args.indices {
+        request = request.indices(&setup);
+    }
     let clearance = interference::clearance(args.clearance)?;
     request = request.clearance(clearance.unwrap_or(0.0));
     let trajectory = request.trajectory()?;
@@ -121,7 +138,6 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let options = TableOptions {
         rates: args.rates,
         accelerations: args.accelerations,
-        indices: args.indices,
         units: (args.units == TableUnits::File).then_some(loaded.file.units),
     };
     let progress = interruptible()?;

@@ -18,7 +18,7 @@ use crate::args::{CloudArgs, Output, WorkspaceArgs};
 use crate::failure::Failure;
 use crate::interference;
 use crate::load::{self, Loaded};
-use crate::pose::{GridAxis, Number};
+use crate::pose::GridAxis;
 use crate::progress::interruptible;
 use crate::text::{count, plural};
 use crate::unitless;
@@ -42,6 +42,10 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let manipulator = Arc::new(loaded.compile()?);
     let request = request(args, &manipulator)?.check(Arc::clone(&manipulator))?;
     request.refuse_unused_length()?;
+    if args.shard.is_none() {
+        // What is stored with the points of shards is asked for when they are merged.
+        request.refuse_unused_setup()?;
+    }
     let path = args.cloud.output.as_deref();
     if let Some(path) = path {
         loaded.refuse_as_output(path, &[])?;
@@ -110,7 +114,7 @@ fn request(args: &WorkspaceArgs, manipulator: &Manipulator) -> Result<WorkspaceR
     let coordinates = args.kind.sections().coordinates(manipulator);
     let axes = args.grid.iter().map(|axis| axis.resolve(&coordinates));
     request.axes = axes.collect::<Result<_, _>>()?;
-    request.length = args.length.map(Number::characteristic_length).transpose()?;
+    request.setup = args.setup.options(args.length)?;
     request.max_condition = args.max_condition;
     request.clearance = interference::clearance(args.clearance)?;
     request.limits = args.limit.iter().map(|limit| (limit.name.clone(), limit.bound)).collect();

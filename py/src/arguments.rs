@@ -4,7 +4,8 @@
 use crate::error::wrong;
 use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
 use opm_core::mechanism::examples;
-use opm_export::{Density, MjcfOptions, OutOfRange};
+use opm_core::skeleton::{Density, OutOfRange};
+use opm_export::MjcfOptions;
 use opm_workspace::MOST_THREADS;
 use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;

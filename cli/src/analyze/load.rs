@@ -1,10 +1,10 @@
 //! Loads in the syntax of the command line.
 
-use crate::pose::{Misread, Number, Pose};
+use crate::pose::{Misread, Number};
 use crate::text::plural;
 use opm_analysis::{LoadPoint, Wrench};
 use opm_core::Quantity;
-use opm_core::manipulator::Manipulator;
+use opm_core::nalgebra::Vector3;
 use std::str::FromStr;
 
 /// Largest component, newtons and newton metres.
@@ -36,24 +36,17 @@ impl FromStr for LinkStiffness {
     }
 }
 
-/// The stiffness of every actuated coordinate, in their order; those that are not given are rigid.
-pub fn actuators(given: Option<&Pose>, manipulator: &Manipulator) -> Result<Vec<f64>, Misread> {
-    let all = manipulator.coordinates();
-    let names: Vec<&str> = manipulator.actuated().iter().map(|&i| &*all[i].name).collect();
-    let mut found = vec![f64::INFINITY; names.len()];
-    for (name, number) in given.into_iter().flat_map(Pose::assignments) {
-        let Some(place) = names.iter().position(|known| *known == name) else {
-            let known = names.join(", ");
-            return Err(Misread(format!("no actuated joint {name:?}, expected one of {known}")));
-        };
-        found[place] = match number.bare(name)? {
-            value if value > 0.0 => value,
-            value => {
-                return Err(Misread(format!("{name} is {value:?}, expected a number above 0")));
-            }
-        };
+/// How a body falls, m/s², base directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GravityVector(pub Vector3<f64>);
+
+impl FromStr for GravityVector {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let components = numbers(text, ["X", "Y", "Z"], |name, number| number.bare(name))?;
+        Ok(Self(components.into()))
     }
-    Ok(found)
 }
 
 /// The numbers of a list, each with its name.
@@ -111,7 +104,6 @@ impl FromStr for At {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
 
     #[test]
     fn a_load_is_six_numbers_and_a_point() {

@@ -8,8 +8,9 @@ use crate::pose::find;
 use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
 use crate::unitless::Plausible;
-use opm_analysis::{Index, Indices};
+use opm_analysis::Index;
 use opm_core::manipulator::Mode;
+use opm_study::effort_names;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -56,12 +57,8 @@ fn solve(
 ) -> Result<Summary, Stop> {
     let start = Instant::now();
     let manipulator = analyser.manipulator;
-    let length = analyser.statics.length();
     // Those that the mechanism has.
-    let has = |index: &Index| Indices::new(manipulator, length, [*index]).is_ok();
-    let known: Vec<Index> = Index::ALL.into_iter().filter(has).collect();
-    let mut indices = Indices::new(manipulator, length, known.iter().copied())
-        .map_err(|error| Failure::work(error.to_string()))?;
+    let known: Vec<Index> = analyser.indices.indices().to_vec();
     let coordinates = manipulator.task_coordinates();
     let values = coordinates.iter().map(|c| Wanted {
         name: c.name,
@@ -76,10 +73,8 @@ fn solve(
         manipulator.refuse_following(name).map_err(|error| error.to_string())?;
         find(name, coordinates).map(Some).map_err(|error| error.to_string())
     })?;
-    let loaded_with = analyser.load.is_some();
-    let imaginary = manipulator.imaginary().iter().map(|joint| &*joint.name);
-    let actuated = manipulator.actuated().iter().map(|&i| &*manipulator.coordinates()[i].name);
-    let carried: Vec<String> = actuated.chain(imaginary).map(|n| format!("effort.{n}")).collect();
+    let loaded_with = analyser.loads.is_some();
+    let carried: Vec<String> = effort_names(manipulator).collect();
     let efforts: &[String] = if loaded_with { &carried } else { &[] };
     let header = (columns.timed().then_some("t").into_iter())
         .chain(coordinates.iter().map(|c| c.name))
@@ -106,12 +101,11 @@ fn solve(
             analyser.update(&at)?;
             dependent = at.dependent().iter().map(|&value| Some(value)).collect();
             let finite = |&value: &f64| value.is_finite().then_some(value);
-            numbers = indices.evaluate(&at).iter().map(finite).collect();
-            if let Some(wrench) = analyser.wrench(&at) {
-                let found = analyser.statics.efforts(&wrench);
+            numbers = analyser.indices.values().iter().map(finite).collect();
+            if let Some((_, found)) = &analyser.acting {
                 word(found.balance).clone_into(&mut balance);
                 balanced += u64::from(found.balance == opm_analysis::Balance::Balanced);
-                cells = found.actuated.into_iter().chain(found.imaginary).collect();
+                cells = found.actuated.iter().chain(&found.imaginary).copied().collect();
             }
         }
         reachable += u64::from(reached);

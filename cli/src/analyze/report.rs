@@ -100,13 +100,17 @@ impl Report<'_> {
             json.insert("unreachable".into(), out.collect::<Vec<_>>().into());
             return json.into();
         }
-        let load = self.load();
-        let of = |part: fn(&(Wrench, Efforts)) -> Value| load.as_ref().map_or(Value::Null, part);
+        let (efforts, analyser) = (self.efforts(), self.analyser);
+        let wrench = analyser.wrench(self.at);
+        let gravity = analyser.setup.gravity.zip(analyser.loads.as_ref());
         let values = [
-            of(|(wrench, _)| json!(wrench.components().map(|part| part + 0.0))),
-            of(|(_, efforts)| word(efforts.balance).into()),
-            load.as_ref().map_or(Value::Null, |(_, efforts)| self.actuated(&efforts.actuated)),
-            load.as_ref().map_or(Value::Null, |(_, efforts)| self.imaginary(&efforts.imaginary)),
+            json!(wrench.map(|wrench| wrench.components().map(|part| part + 0.0))),
+            gravity.map_or(Value::Null, |(gravity, loads)| {
+                json!({ "acceleration": triple(&gravity.acceleration), "mass": loads.mass() })
+            }),
+            efforts.map_or(Value::Null, |efforts| word(efforts.balance).into()),
+            efforts.map_or(Value::Null, |efforts| self.actuated(&efforts.actuated)),
+            efforts.map_or(Value::Null, |efforts| self.imaginary(&efforts.imaginary)),
             self.statics().is_regular().then(|| self.statics().loose()).into(),
             self.statics().is_regular().then(|| self.statics().internal()).into(),
             self.worst(),
@@ -115,6 +119,7 @@ impl Report<'_> {
             self.elastic.as_ref().map_or(Value::Null, |found| {
                 found.as_ref().map_or(Value::Null, |found| found.json(self))
             }),
+            self.indices(),
             self.statics().length().into(),
             transform::at(manipulator, self.at),
         ];
@@ -126,22 +131,33 @@ impl Report<'_> {
         &self.analyser.statics
     }
 
-    /// The load at the reference point, and what balances it.
-    fn load(&self) -> Option<(Wrench, Efforts)> {
-        let wrench = self.analyser.wrench(self.at)?;
-        Some((wrench, self.statics().efforts(&wrench)))
+    /// What balances the loads.
+    fn efforts(&self) -> Option<&Efforts> {
+        self.analyser.acting.as_ref().map(|(_, efforts)| efforts)
     }
 
     /// The size of the load, or a unit.
     fn scale(&self) -> f64 {
         let wrench = self.analyser.wrench(self.at);
         let size = wrench.map(|w| w.components().iter().map(|part| part.abs()).sum::<f64>());
-        size.unwrap_or(1.0)
+        let weight = self.analyser.setup.gravity.zip(self.analyser.loads.as_ref());
+        let weight = weight.map(|(gravity, loads)| gravity.acceleration.norm() * loads.mass());
+        size.into_iter().chain(weight).reduce(|a, b| a + b).unwrap_or(1.0)
     }
 
     fn capacity(&self) -> Option<Capacity> {
-        let work = self.load().map(|(wrench, _)| self.statics().work(&wrench));
-        self.statics().capacity(&work.unwrap_or_default())
+        let work = match &self.analyser.acting {
+            Some((work, _)) => (*work)?,
+            None => Default::default(),
+        };
+        self.statics().capacity(&work)
+    }
+
+    /// Every index that the mechanism has; null where the pose has none.
+    fn indices(&self) -> Value {
+        let indices = &self.analyser.indices;
+        let each = indices.indices().iter().zip(indices.values());
+        Value::Object(each.map(|(index, &v)| (index.name().to_owned(), json!(finite(v)))).collect())
     }
 
     /// The names and quantities of the actuated joint coordinates.
@@ -208,6 +224,16 @@ impl Report<'_> {
             })
         });
         json["inputs"] = inputs.collect::<Vec<_>>().into();
+        let legs = &manipulator.mechanism().legs;
+        let constraints = found.constraints().map(|constraint| {
+            json!({
+                "legs": constraint.legs.iter().map(|&leg| &*legs[leg].name).collect::<Vec<_>>(),
+                "section": constraint.section.to_string(),
+                "oci": constraint.output,
+            })
+        });
+        json["oci"] = found.constraint().into();
+        json["constraints"] = constraints.collect::<Vec<_>>().into();
         json
     }
 
@@ -246,7 +272,7 @@ impl Report<'_> {
         }
         self.efforts_text(&mut text);
         if let Some(found) = self.capacity() {
-            let more = if self.analyser.load.is_some() { " on top of the load" } else { "" };
+            let more = if self.efforts().is_some() { " on top of the load" } else { "" };
             let _ = writeln!(
                 text,
                 "borne in every direction{more}: force {} N, moment {} N m\n",
@@ -263,6 +289,7 @@ impl Report<'_> {
             }
         }
         self.transmission_text(&mut text);
+        self.indices_text(&mut text);
         text
     }
 
@@ -277,7 +304,7 @@ impl Report<'_> {
             text.push('\n');
             return;
         }
-        let load = self.load();
+        let efforts = self.efforts();
         let mut table = Table::new(["joint", ">effort", "unit", ">per N", ">per N m"]);
         let scale = self.scale();
         let cell = |value: Option<f64>| value.map_or("-".to_owned(), |value| part(value, scale));
@@ -285,13 +312,13 @@ impl Report<'_> {
             let worst = statics.worst(row);
             table.row([
                 name,
-                &cell(load.as_ref().and_then(|(_, efforts)| efforts.actuated[row])),
+                &cell(efforts.and_then(|efforts| efforts.actuated[row])),
                 unit(quantity),
                 &cell(worst.map(|worst| worst.per_force)),
                 &cell(worst.map(|worst| worst.per_moment)),
             ]);
         }
-        if let Some((_, efforts)) = &load {
+        if let Some(efforts) = efforts {
             for (joint, effort) in manipulator.imaginary().iter().zip(&efforts.imaginary) {
                 table.row([&*joint.name, &cell(*effort), unit(joint.quantity), "", ""]);
             }
@@ -305,7 +332,7 @@ impl Report<'_> {
             let internal = text::plural(statics.internal() as u64, "internal effort");
             let _ = writeln!(text, "redundant actuators: loads do not determine {internal}");
         }
-        if load.is_some_and(|(_, efforts)| efforts.balance == Balance::Driven) {
+        if efforts.is_some_and(|efforts| efforts.balance == Balance::Driven) {
             let _ = writeln!(text, "the load is not balanced: it drives a motion of the platform");
         }
         if statics.loose() + statics.internal() > 0 {
@@ -317,7 +344,7 @@ impl Report<'_> {
         let found = match &self.analyser.transmissions {
             Ok(found) => found,
             Err(why) => {
-                let _ = writeln!(text, "no transmission indices: {why}");
+                let _ = writeln!(text, "no transmission indices: {why}\n");
                 return;
             }
         };
@@ -333,14 +360,41 @@ impl Report<'_> {
                 &short(input.output),
             ]);
         }
-        let whole = found.whole();
-        let _ = writeln!(text, "{table}\nlocal transmission index {}", short(whole.local()));
+        let _ = writeln!(text, "{table}");
+        for constraint in found.constraints() {
+            let all = &self.analyser.manipulator.mechanism().legs;
+            let legs: Vec<&str> = constraint.legs.iter().map(|&leg| &*all[leg].name).collect();
+            let index = constraint
+                .output
+                .map_or("no output constraint index: several constraints".into(), |oci| {
+                    format!("output constraint index {}", short(oci))
+                });
+            let _ = writeln!(
+                text,
+                "{} section, constrained by {}: {index}\n",
+                constraint.section,
+                legs.join(", ")
+            );
+        }
+    }
+
+    /// Every index that the mechanism has.
+    fn indices_text(&self, text: &mut String) {
+        let indices = &self.analyser.indices;
+        let mut table = Table::new(["index", ">value", "unit", ""]);
+        for (index, &value) in indices.indices().iter().zip(indices.values()) {
+            let facts = index.facts();
+            let shown = if value.is_nan() { "-".to_owned() } else { shown(value) };
+            table.row([facts.name, &shown, facts.unit, facts.about]);
+        }
+        let _ = write!(text, "{table}");
     }
 }
 
 /// The keys of what is computed at a pose.
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 14] = [
     "wrench",
+    "gravity",
     "balance",
     "efforts",
     "imaginary_efforts",
@@ -350,6 +404,7 @@ const KEYS: [&str; 12] = [
     "capacity",
     "transmission",
     "stiffness",
+    "indices",
     "length",
     "transform",
 ];

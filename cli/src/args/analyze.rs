@@ -1,11 +1,8 @@
 //! Arguments of `opm analyze`.
 
-use super::MechanismArgs;
-use crate::analyze::load::{At, LinkStiffness, WrenchComponents};
+use super::{MechanismArgs, SetupArgs};
 use crate::pose::{Number, Pose};
 use clap::ValueHint;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use opm_analysis::LoadAxes;
 use std::path::PathBuf;
 
 /// Forces and transmission at a pose: efforts of the actuators, payload, transmission indices
@@ -20,21 +17,26 @@ use std::path::PathBuf;
 /// singularity it is "singular". A pose out of reach is an answer (exit status 0).
 ///
 /// Without a load: the largest effort for a unit force and a unit moment, with its direction; the transmission
-/// indices of every input, of both sections, and of the whole (`lti` is the least of all); and, if joints have a
-/// `max_effort`, the largest force and moment that the actuators bear in every direction. With a load, these are
-/// on top of it. docs/analysis.md has the definitions.
+/// indices of every input, of both sections, and of the whole (`lti` is the least of all), and the constraint index where
+/// legs constrain the platform; and, if joints have a `max_effort`, the largest force and moment that the actuators bear
+/// in every direction. With a load, these are on top of it. `indices` has all numbers that `opm workspace` takes for
+/// --limit, --color and --scalars. docs/analysis.md has the definitions.
+///
+/// --gravity adds the weight of links and platform. Their masses are those of the mechanism file, or follow from the shapes
+/// and a density, as in models for simulators. The weight of a payload is a --wrench.
 ///
 /// Statics do not tell what the legs of an overconstrained mechanism, or redundant actuators, carry: --link-stiffness
 /// and --joint-stiffness do, by the virtual joint method.
 ///
 /// CSV in: as for `opm ik`. CSV out: the pose, `reachable`, `within_limits`, `mode`, `balance`, the efforts
-/// (`effort.NAME`), and the indices that the mechanism has.
+/// (`effort.NAME`), and the indices that the mechanism has; with --link-stiffness the least stiffness, too.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm analyze plano-spherical-5dof --pose x=10mm,xi=15deg
   opm analyze plano-spherical-5dof --pose xi=15deg --wrench 10,0,0,0,0,0.5 --format json
   opm analyze plano-spherical-5dof --wrench 0,0,-100,0,0,0 --link-stiffness 1e7,1e4
+  opm analyze plano-spherical-5dof --pose x=10mm --gravity 0,0,-9.81
   opm analyze planar-3rrr --wrench 0,-20,0,0,0,0 --at 50mm,0,0 --frame platform
   opm analyze planar-3rrr --poses poses.csv --wrench 0,-20,0,0,0,0 -o efforts.csv")]
 pub struct AnalyzeArgs {
@@ -47,35 +49,9 @@ pub struct AnalyzeArgs {
     /// A CSV file of poses; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
-    /// Force and moment on the platform, N and N m
-    #[arg(long, value_name = "FX,FY,FZ,MX,MY,MZ", allow_hyphen_values = true)]
-    pub wrench: Option<WrenchComponents>,
-    /// Where the force acts: `platform`, its reference point; `base`, the base's origin; or a point of the platform, from
-    /// the reference point along the axes of --frame
-    #[arg(
-        long,
-        value_name = "POINT",
-        default_value = "platform",
-        requires = "wrench",
-        allow_hyphen_values = true
-    )]
-    pub at: At,
-    /// The axes of --wrench and --at: those of the base, or those that the platform carries
-    #[arg(
-        long,
-        value_name = "base|platform",
-        value_parser = axes(),
-        default_value = "base",
-        requires = "wrench"
-    )]
-    pub frame: LoadAxes,
-    /// Stiffness of each link against translations of its end, N/m, and against rotations, N m/rad: adds the platform's
-    /// stiffness, and with --wrench the reactions in the legs
-    #[arg(long, value_name = "KT,KR", conflicts_with = "poses", allow_hyphen_values = true)]
-    pub link_stiffness: Option<LinkStiffness>,
-    /// Stiffness of actuators, N/m or N m/rad; one that is not given is rigid
-    #[arg(long, value_name = "NAME=K,...", requires = "link_stiffness")]
-    pub joint_stiffness: Option<Pose>,
+    /// What acts on the mechanism, and how much it gives way.
+    #[command(flatten)]
+    pub setup: SetupArgs,
     /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
@@ -92,10 +68,4 @@ pub struct AnalyzeArgs {
         value_hint = ValueHint::FilePath
     )]
     pub output: Option<PathBuf>,
-}
-
-/// Parses which axes a load is along.
-fn axes() -> impl TypedValueParser<Value = LoadAxes> {
-    let names = PossibleValuesParser::new(LoadAxes::NAMED.map(|(name, _)| name));
-    names.map(|name| LoadAxes::from_name(&name).unwrap_or_default())
 }

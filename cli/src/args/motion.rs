@@ -1,6 +1,6 @@
 //! Arguments of the commands that follow a motion: of a platform, or of a single loop.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, SetupArgs};
 use crate::linkage::input::InputValue;
 use crate::pose::Number;
 use clap::{ValueEnum, ValueHint};
@@ -80,6 +80,8 @@ pub struct LinkageArgs {
 /// as fast as the limits of rates and accelerations in the mechanism file let it. Every actuated joint needs a
 /// max_acceleration.
 ///
+/// --indices needs -o. --wrench, --gravity and --link-stiffness are those of `opm analyze`, and need --indices.
+///
 /// The recording (.mcap) has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
 /// and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of /bodies in
 /// Rerun.
@@ -114,9 +116,13 @@ pub struct TrajectoryArgs {
     /// Also the accelerations in the table: second derivatives by time, as dd.NAME
     #[arg(long, requires = "output")]
     pub accelerations: bool,
-    /// Also the indices of `opm analyze` in the table: iti, oti, lti, effort_per_force, effort_per_moment, payload
+    /// Also the indices of `opm analyze` (lti, effort_per_force, clearance, ...) in the table or the recording, and the
+    /// efforts of joints with --wrench or --gravity, as effort.NAME
     #[arg(long, requires = "output")]
     pub indices: bool,
+    /// What indices are computed with.
+    #[command(flatten)]
+    pub setup: SetupArgs,
     /// Units of the table: SI and radians, or those of the mechanism file, which the header then names
     #[arg(long, value_enum, default_value_t = TableUnits::Si, requires = "output")]
     pub units: TableUnits,

@@ -1,6 +1,6 @@
 //! Arguments of the commands that sweep a workspace, and join the shards of one.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, SetupArgs};
 use crate::pose::{GridAxis, IndexLimit, Number, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -35,6 +35,9 @@ use std::path::PathBuf;
 /// --max-condition keeps away from singularities: see `opm velocity`. --limit does so with an index of
 /// `opm analyze`: --limit lti=0.7 leaves the good-transmission workspace. Both are decided pose by pose, which
 /// takes longer, and do not change the grid that is fitted.
+///
+/// --wrench, --gravity and --link-stiffness are those of `opm analyze`: indices that depend on a load or on springs need
+/// them, as do the efforts of joints (effort.NAME) for --color and --scalars.
 ///
 /// --clearance keeps links, platform and obstacles apart: links are rods between their joints, with the radii of the
 /// mechanism file, where obstacles stand, too. It is decided by bounds over boxes of poses, and pose by pose where these do
@@ -75,6 +78,9 @@ Examples:
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace plano-spherical-5dof --grid x=-0.2:0.2:201 --grid y=-0.2:0.2:201 --clearance 2mm
+  opm workspace plano-spherical-5dof --grid x=-0.2:0.2:201 --grid y=-0.2:0.2:201 --limit lti=0.7 -o good.mcap --color lti
+  opm workspace plano-spherical-5dof --grid x=-0.2:0.2:41 --grid y=-0.2:0.2:41 --wrench 10,0,0,0,0,0 \\
+      --limit effort=20 -o efforts.mcap --color effort.S1
   opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
   opm workspace plano-spherical-5dof --kind reachable -o places.mcap
   opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid theta=-10deg:10deg:5
@@ -108,9 +114,13 @@ pub struct WorkspaceArgs {
     /// Count a pose only if all bodies are at least this far apart, for example 5mm: see `opm ik` for the nearest two
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub clearance: Option<Number>,
-    /// Count a pose only if an index is as good as VALUE: lti=0.7, effort_per_force=2, payload=50 (repeatable)
+    /// Count a pose only if an index of `opm analyze` is as good as VALUE: lti=0.7, payload=50, effort=20 with --wrench,
+    /// stiffness=1e5 with --link-stiffness (repeatable)
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub limit: Vec<IndexLimit>,
+    /// What indices are computed with.
+    #[command(flatten)]
+    pub setup: SetupArgs,
     /// Also compute the global conditioning index, the mean of 1 / condition number
     #[arg(long)]
     pub conditioning: bool,
@@ -167,8 +177,9 @@ pub struct CloudArgs {
     /// `tip`, the position of the reference point
     #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
     pub axes: Vec<String>,
-    /// The value that the colour shows: a task coordinate, an imaginary joint, an actuated joint, or
-    /// `inverse_condition`, one over the condition number
+    /// The value that the colour shows: a task coordinate, an imaginary joint, an actuated joint, `inverse_condition`
+    /// (one over the condition number), an index of `opm analyze` such as lti or clearance, or, with a load, an
+    /// effort such as effort.S1
     #[arg(long, value_name = "NAME", requires = "output")]
     pub color: Option<String>,
     /// Values stored with every point, with names as for --color

@@ -6,7 +6,7 @@ use crate::output::named;
 use crate::text::{self, Table, count, plural, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
-use opm_study::{Analysis, Shape, Workspace, WorkspaceKind};
+use opm_study::{Analysis, Shape, Workspace, WorkspaceKind, setup_fields};
 use opm_workspace::{Axis, GridSet, Outline, Sections, Shard};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -87,7 +87,10 @@ impl Outcome<'_> {
                 let each = limit.indices.iter().map(|(index, bound)| (index.name(), bound));
                 json["limits"] = named(each).into();
             }
-            json["characteristic_length"] = limit.length.into();
+            json["characteristic_length"] = limit.length().into();
+        }
+        for (key, value) in setup_fields(workspace.setup(), workspace.manipulator()) {
+            json[key] = value.into();
         }
         if let Some(clearance) = workspace.clearance() {
             json["clearance"] = clearance.least.into();
@@ -118,7 +121,7 @@ impl Outcome<'_> {
         }
         let _ = writeln!(text, "\n\n{axes}");
         if let Some(limit) = workspace.limit() {
-            let length = units.show(limit.length, Quantity::Length);
+            let length = units.show(limit.length(), Quantity::Length);
             if let Some(most) = limit.max_condition() {
                 let _ = writeln!(text, "condition number at most {most} (lengths over {length})");
             }

@@ -93,6 +93,13 @@ impl Statics<'_> {
         Efforts { balance, imaginary: imaginary.collect(), actuated }
     }
 
+    /// The effort of an actuated coordinate for a load, N or N m; `None` where the load is not balanced, or does not
+    /// determine it.
+    pub fn effort_under(&self, actuated: usize, work: &Velocity) -> Option<f64> {
+        let known = self.balance(work) == Balance::Balanced && self.is_determined(actuated);
+        known.then(|| self.effort(actuated, work))
+    }
+
     /// Whether the actuators balance a load.
     fn balance(&self, work: &Velocity) -> Balance {
         if !self.is_regular() {

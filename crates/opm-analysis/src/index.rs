@@ -2,10 +2,13 @@
 //!
 //! Another index is a variant here, a row in [`Index::facts`] and an arm in [`Indices::evaluate`].
 
-use crate::statics::{MOST, Statics};
+use crate::setup::{Loads, Setup};
+use crate::statics::{MOST, Statics, Velocity};
+use crate::stiffness::{Compliant, SpringError};
 use crate::transmission::{NoTransmission, Transmissions};
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Solution};
+use opm_interference::{Distances, Interference};
 use std::fmt;
 
 /// A number that says how good a pose is.
@@ -17,14 +20,30 @@ pub enum Index {
     Oti,
     /// The local transmission index: the least of both.
     Lti,
+    /// The output constraint index: how well the legs that constrain the platform do so.
+    Oci,
     /// The largest effort of an actuator for a unit force in the worst direction, sliders' efforts as they are, torques over
     /// the characteristic length.
     EffortPerForce,
     /// The largest effort of an actuator for a unit moment in the worst direction, sliders' efforts times the
     /// characteristic length, torques as they are.
     EffortPerMoment,
-    /// The largest force that the actuators bear in every direction, within their `max_effort`.
+    /// The largest effort of an actuator under the load, sliders' efforts as they are, torques over the characteristic length.
+    Effort,
+    /// The largest share of its `max_effort` that an actuator needs under the load.
+    EffortShare,
+    /// The largest force that the actuators bear in every direction on top of the load, within their `max_effort`.
     Payload,
+    /// The largest moment that they bear about every axis, likewise.
+    PayloadMoment,
+    /// The radius of the largest ball in the wrench polytope around the load.
+    PayloadBall,
+    /// The least force that displaces the reference point by a unit of length in its direction.
+    Stiffness,
+    /// The least moment that turns the platform by a unit of angle about its axis.
+    RotationalStiffness,
+    /// The distance of the nearest two bodies.
+    Clearance,
 }
 
 /// What is said of an index.
@@ -41,7 +60,7 @@ pub struct Facts {
 }
 
 /// Why a manipulator has no such index.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IndexError {
     /// It has no transmission indices.
@@ -67,33 +86,69 @@ pub enum IndexError {
     /// No actuator has a largest effort.
     #[error("{0}: no actuated joint has a `max_effort`")]
     NoLimits(Index),
+    /// Nothing acts on the mechanism.
+    #[error("{0}: nothing acts on the mechanism; give a wrench or gravity")]
+    NoLoad(Index),
+    /// Nothing gives way.
+    #[error("{0}: nothing gives way; give the stiffness of links")]
+    Rigid(Index),
+    /// The springs do not suit the manipulator.
+    #[error("{index}: {reason}")]
+    Springs {
+        /// The index.
+        index: Index,
+        /// The reason.
+        reason: SpringError,
+    },
+    /// No two bodies can interfere.
+    #[error("{0}: no two bodies that could interfere")]
+    NoBodies(Index),
 }
 
 impl Index {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 14] = [
         Self::Iti,
         Self::Oti,
         Self::Lti,
+        Self::Oci,
         Self::EffortPerForce,
         Self::EffortPerMoment,
+        Self::Effort,
+        Self::EffortShare,
         Self::Payload,
+        Self::PayloadMoment,
+        Self::PayloadBall,
+        Self::Stiffness,
+        Self::RotationalStiffness,
+        Self::Clearance,
     ];
 
     /// What is said of it.
     pub const fn facts(self) -> Facts {
         match self {
-            Self::Iti => share("iti", "input transmission index"),
-            Self::Oti => share("oti", "output transmission index"),
-            Self::Lti => share("lti", "local transmission index"),
-            Self::EffortPerForce => load("effort_per_force", "largest effort for a unit force"),
-            Self::EffortPerMoment => load("effort_per_moment", "largest effort for a unit moment"),
-            Self::Payload => Facts {
-                name: "payload",
-                unit: "N",
-                large_is_good: true,
-                about: "largest force that is borne in every direction",
-            },
+            Self::Iti => good("iti", "", "input transmission index"),
+            Self::Oti => good("oti", "", "output transmission index"),
+            Self::Lti => good("lti", "", "local transmission index"),
+            Self::Oci => good("oci", "", "output constraint index"),
+            Self::EffortPerForce => bad("effort_per_force", "", "largest effort for a unit force"),
+            Self::EffortPerMoment => {
+                bad("effort_per_moment", "", "largest effort for a unit moment")
+            }
+            Self::Effort => bad("effort", "N", "largest effort under the load"),
+            Self::EffortShare => bad("effort_share", "", "largest share of a max_effort"),
+            Self::Payload => good("payload", "N", "largest force that is borne in every direction"),
+            Self::PayloadMoment => {
+                good("payload_moment", "N m", "largest moment that is borne about every axis")
+            }
+            Self::PayloadBall => {
+                good("payload_ball", "N m", "radius of the largest ball of wrenches that is borne")
+            }
+            Self::Stiffness => good("stiffness", "N/m", "least stiffness against a force"),
+            Self::RotationalStiffness => {
+                good("rotational_stiffness", "N m/rad", "least stiffness against a moment")
+            }
+            Self::Clearance => good("clearance", "m", "distance of the nearest two bodies"),
         }
     }
 
@@ -107,12 +162,34 @@ impl Index {
         Self::ALL.into_iter().find(|index| index.name() == name)
     }
 
-    /// Whether a manipulator has this index.
+    /// Whether a manipulator has this index in a setup.
     ///
     /// # Errors
     /// Why it does not.
-    pub fn check(self, manipulator: &Manipulator) -> Result<(), IndexError> {
-        Indices::new(manipulator, manipulator.characteristic_length(), [self]).map(drop)
+    pub fn check(self, manipulator: &Manipulator, setup: &Setup) -> Result<(), IndexError> {
+        Indices::new(manipulator, setup, [self]).map(drop)
+    }
+
+    /// The indices that a manipulator has in a setup.
+    pub fn known(manipulator: &Manipulator, setup: &Setup) -> Vec<Self> {
+        Self::ALL.into_iter().filter(|index| index.check(manipulator, setup).is_ok()).collect()
+    }
+
+    /// Whether its value depends on what acts on the mechanism.
+    pub fn depends_on_load(self) -> bool {
+        matches!(
+            self,
+            Self::Effort
+                | Self::EffortShare
+                | Self::Payload
+                | Self::PayloadMoment
+                | Self::PayloadBall
+        )
+    }
+
+    /// Whether its value depends on how much the mechanism gives way.
+    pub fn depends_on_springs(self) -> bool {
+        matches!(self, Self::Stiffness | Self::RotationalStiffness)
     }
 
     /// Whether a value is as good as a bound, or better. A value that is not a number is not.
@@ -121,12 +198,14 @@ impl Index {
     }
 }
 
-const fn share(name: &'static str, about: &'static str) -> Facts {
-    Facts { name, unit: "", large_is_good: true, about }
+/// An index of which large values are good.
+const fn good(name: &'static str, unit: &'static str, about: &'static str) -> Facts {
+    Facts { name, unit, large_is_good: true, about }
 }
 
-const fn load(name: &'static str, about: &'static str) -> Facts {
-    Facts { name, unit: "", large_is_good: false, about }
+/// An index of which small values are good.
+const fn bad(name: &'static str, unit: &'static str, about: &'static str) -> Facts {
+    Facts { name, unit, large_is_good: false, about }
 }
 
 impl fmt::Display for Index {
@@ -158,15 +237,16 @@ impl IndexBounds {
     }
 }
 
-/// Evaluates indices of solved poses. It holds the working memory, so that nothing is allocated for a pose.
+/// Evaluates indices of solved poses. It holds the working memory, so that nothing is allocated for a pose, but for
+/// stiffnesses.
 ///
 /// ```
-/// use opm_analysis::{Index, Indices};
+/// use opm_analysis::{Index, Indices, Setup};
 /// use opm_core::Manipulator;
 ///
 /// let manipulator = Manipulator::example("planar-3rrr")?;
-/// let length = manipulator.characteristic_length();
-/// let mut indices = Indices::new(&manipulator, length, [Index::Lti, Index::Iti])?;
+/// let setup = Setup::new(manipulator.characteristic_length());
+/// let mut indices = Indices::new(&manipulator, &setup, [Index::Lti, Index::Iti])?;
 /// let mut buffer = manipulator.solution();
 /// let home = manipulator.home_pose();
 /// let at = manipulator.inverse(&home, manipulator.home_mode(), &mut buffer)?;
@@ -176,52 +256,133 @@ impl IndexBounds {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Indices<'a> {
+    manipulator: &'a Manipulator,
     indices: Vec<Index>,
     statics: Option<Statics<'a>>,
+    loads: Option<Loads<'a>>,
     transmissions: Option<Transmissions<'a>>,
+    compliant: Option<Compliant<'a>>,
+    distances: Option<Distances<'static>>,
     values: Vec<f64>,
+    /// The effort of each actuated and each imaginary joint under the load, if they are asked for.
+    efforts: Vec<f64>,
 }
 
 impl<'a> Indices<'a> {
-    /// A buffer for some indices of a manipulator, with this characteristic length, metres.
+    /// A buffer for some indices of a manipulator in a setup.
     ///
     /// # Errors
     /// Which index it does not have, and why.
     pub fn new(
         manipulator: &'a Manipulator,
-        length: f64,
+        setup: &Setup,
         indices: impl IntoIterator<Item = Index>,
     ) -> Result<Self, IndexError> {
         let indices: Vec<Index> = indices.into_iter().collect();
-        let (mut statics, mut transmissions) = (None, None);
-        for &index in &indices {
-            let (actuators, freedoms) =
-                (manipulator.actuated().len(), manipulator.task_coordinates().len());
-            let limited = |&c: &usize| manipulator.coordinates()[c].max_effort.is_some();
-            match index {
-                Index::Iti | Index::Oti | Index::Lti => {
-                    let new = Transmissions::new(manipulator);
-                    transmissions =
-                        Some(new.map_err(|reason| IndexError::Transmission { index, reason })?);
+        let mut new = Self {
+            manipulator,
+            statics: None,
+            loads: Loads::new(manipulator, setup),
+            transmissions: None,
+            compliant: None,
+            distances: None,
+            values: vec![f64::NAN; indices.len()],
+            efforts: Vec::new(),
+            indices: Vec::new(),
+        };
+        indices.iter().try_for_each(|&index| new.prepare(manipulator, setup, index))?;
+        Ok(Self { indices, ..new })
+    }
+
+    /// The same with the effort of every actuated and every imaginary joint under the load of the setup:
+    /// [`Indices::efforts`].
+    ///
+    /// # Panics
+    /// If the setup has no load.
+    #[must_use]
+    pub fn with_efforts(mut self, setup: &Setup) -> Self {
+        assert!(setup.has_load(), "efforts of a setup without a load");
+        let count = self.manipulator.actuated().len() + self.manipulator.imaginary().len();
+        self.efforts = vec![f64::NAN; count];
+        self.statics.get_or_insert_with(|| Statics::new(self.manipulator, setup.length));
+        self
+    }
+
+    /// The effort of every actuated, then of every imaginary joint at the pose that was evaluated last, N and N m; not a
+    /// number where it is not known. Empty unless asked for.
+    pub fn efforts(&self) -> &[f64] {
+        &self.efforts
+    }
+
+    /// Makes what an index is computed with.
+    fn prepare(
+        &mut self,
+        manipulator: &'a Manipulator,
+        setup: &Setup,
+        index: Index,
+    ) -> Result<(), IndexError> {
+        let actuated = manipulator.actuated();
+        let coordinates = manipulator.coordinates();
+        let limited = |&c: &usize| coordinates[c].max_effort.is_some();
+        let (actuators, freedoms) = (actuated.len(), manipulator.task_coordinates().len());
+        match index {
+            Index::Iti | Index::Oti | Index::Lti | Index::Oci => {
+                let wrong = |reason| IndexError::Transmission { index, reason };
+                let found = Transmissions::new(manipulator).map_err(wrong)?;
+                if index == Index::Oci {
+                    found.has_constraints().map_err(wrong)?;
                 }
-                Index::EffortPerForce | Index::EffortPerMoment if actuators != freedoms => {
-                    return Err(IndexError::Efforts { index, actuators, freedoms });
-                }
-                Index::Payload if !manipulator.actuated().iter().any(limited) => {
-                    return Err(IndexError::NoLimits(index));
-                }
-                Index::EffortPerForce | Index::EffortPerMoment | Index::Payload => {
-                    statics = Some(Statics::new(manipulator, length));
-                }
+                self.transmissions = Some(found);
+                return Ok(());
             }
+            Index::Stiffness | Index::RotationalStiffness => {
+                let springs = setup.springs.clone().ok_or(IndexError::Rigid(index))?;
+                let found = Compliant::new(manipulator, springs);
+                self.compliant =
+                    Some(found.map_err(|reason| IndexError::Springs { index, reason })?);
+                return Ok(());
+            }
+            Index::Clearance => {
+                let interference = Interference::new(manipulator.mechanism());
+                if interference.pairs() == 0 {
+                    return Err(IndexError::NoBodies(index));
+                }
+                self.distances = Some(Distances::owned(interference));
+                return Ok(());
+            }
+            Index::EffortPerForce | Index::EffortPerMoment | Index::Effort | Index::EffortShare
+                if actuators != freedoms =>
+            {
+                return Err(IndexError::Efforts { index, actuators, freedoms });
+            }
+            Index::EffortShare | Index::Payload | Index::PayloadMoment | Index::PayloadBall
+                if !actuated.iter().any(limited) =>
+            {
+                return Err(IndexError::NoLimits(index));
+            }
+            Index::Effort | Index::EffortShare if !setup.has_load() => {
+                return Err(IndexError::NoLoad(index));
+            }
+            Index::EffortPerForce
+            | Index::EffortPerMoment
+            | Index::Effort
+            | Index::EffortShare
+            | Index::Payload
+            | Index::PayloadMoment
+            | Index::PayloadBall => {}
         }
-        let values = vec![f64::NAN; indices.len()];
-        Ok(Self { indices, statics, transmissions, values })
+        self.statics.get_or_insert_with(|| Statics::new(manipulator, setup.length));
+        Ok(())
     }
 
     /// The indices, in the order of their values.
     pub fn indices(&self) -> &[Index] {
         &self.indices
+    }
+
+    /// The values at the pose that was evaluated last.
+    pub fn values(&self) -> &[f64] {
+        &self.values
     }
 
     /// The value of an index at the pose that was evaluated last; `None` if it is none of these indices.
@@ -230,24 +391,72 @@ impl<'a> Indices<'a> {
         Some(self.values[place])
     }
 
-    /// The values at a solved pose that is in reach. NaN where a pose has none: an effort at a serial singularity. At a
-    /// parallel one, efforts are infinite.
+    /// The values at a solved pose that is in reach. NaN where a pose has none: an effort or a stiffness at a serial
+    /// singularity. At a parallel one, efforts are infinite.
     pub fn evaluate(&mut self, at: &Solution) -> &[f64] {
-        let Self { indices, statics, transmissions, values } = self;
+        let Self {
+            manipulator,
+            indices,
+            statics,
+            loads,
+            transmissions,
+            compliant,
+            distances,
+            values,
+            efforts,
+        } = self;
         if let Some(transmissions) = transmissions {
             transmissions.update(at);
         }
         let regular = statics.as_mut().is_some_and(|s| s.update(at).unwrap_or(false));
         let statics = statics.as_ref().filter(|_| regular);
+        if let Some(loads) = loads.as_mut().filter(|_| !efforts.is_empty()) {
+            let found = statics.map(|statics| loads.efforts(statics, at));
+            let each = found.iter().flat_map(|found| found.actuated.iter().chain(&found.imaginary));
+            efforts.fill(f64::NAN);
+            efforts.iter_mut().zip(each).for_each(|(to, effort)| *to = effort.unwrap_or(f64::NAN));
+        }
+        // What acts, and what is left for a payload.
+        let work = statics.and_then(|statics| match loads {
+            Some(loads) => loads.work(statics, at),
+            None => Some([0.0; MOST]),
+        });
+        let loaded = || statics.zip(work.as_ref());
+        let capacity = || loaded().and_then(|(statics, work)| statics.capacity(work));
+        let capacity = indices
+            .iter()
+            .any(|index| {
+                matches!(index, Index::Payload | Index::PayloadMoment | Index::PayloadBall)
+            })
+            .then(capacity)
+            .flatten();
+        let stiffness = compliant.as_mut().and_then(|compliant| {
+            let found = compliant.stiffness(at)?;
+            Some(compliant.least(&found))
+        });
+        let nearest = distances.as_mut().and_then(|distances| {
+            distances.place(manipulator, at);
+            distances.nearest()
+        });
+        let transmission = transmissions.as_ref();
         for (index, value) in indices.iter().zip(values) {
-            let transmission = transmissions.as_ref().map(Transmissions::whole);
             let found = match index {
-                Index::Iti => transmission.map(|whole| whole.input),
-                Index::Oti => transmission.map(|whole| whole.output),
-                Index::Lti => transmission.map(|whole| whole.local()),
+                Index::Iti => transmission.map(|found| found.whole().input),
+                Index::Oti => transmission.map(|found| found.whole().output),
+                Index::Lti => transmission.map(|found| found.whole().local()),
+                Index::Oci => transmission.and_then(Transmissions::constraint),
                 Index::EffortPerForce => statics.map(|statics| statics.largest(false)),
                 Index::EffortPerMoment => statics.map(|statics| statics.largest(true)),
-                Index::Payload => statics.and_then(|s| Some(s.capacity(&[0.0; MOST])?.force)),
+                Index::Effort => loaded().map(|(statics, work)| statics.largest_under(work, false)),
+                Index::EffortShare => {
+                    loaded().map(|(statics, work)| statics.largest_under(work, true))
+                }
+                Index::Payload => capacity.map(|found| found.force),
+                Index::PayloadMoment => capacity.map(|found| found.moment),
+                Index::PayloadBall => capacity.map(|found| found.ball),
+                Index::Stiffness => stiffness.map(|[against_force, _]| against_force),
+                Index::RotationalStiffness => stiffness.map(|[_, against_moment]| against_moment),
+                Index::Clearance => nearest.map(|found| found.distance),
             };
             *value = found.unwrap_or(f64::NAN);
         }
@@ -259,11 +468,9 @@ impl Statics<'_> {
     /// The largest effort of any actuator for a unit force, or for a unit moment, in its worst direction, with sliders'
     /// efforts and torques made comparable by the characteristic length; infinite where the platform is not held.
     fn largest(&self, moment: bool) -> f64 {
-        let manipulator = self.manipulator();
-        let each = manipulator.actuated().iter().enumerate().map(|(row, &coordinate)| {
+        let each = (0..self.manipulator().actuated().len()).map(|row| {
             let Some(worst) = self.worst(row) else { return f64::INFINITY };
-            let slides = manipulator.coordinates()[coordinate].quantity == Quantity::Length;
-            match (moment, slides) {
+            match (moment, self.slides(row)) {
                 (false, true) => worst.per_force,
                 (false, false) => worst.per_force / self.length(),
                 (true, true) => worst.per_moment * self.length(),
@@ -271,5 +478,29 @@ impl Statics<'_> {
             }
         });
         each.fold(0.0, f64::max)
+    }
+
+    /// The largest effort of any actuator for a load, torques over the characteristic length, or the largest share of a
+    /// `max_effort`; infinite where the load drives a motion, or none determines the effort.
+    fn largest_under(&self, work: &Velocity, share: bool) -> f64 {
+        let manipulator = self.manipulator();
+        let each = manipulator.actuated().iter().enumerate().map(|(row, &coordinate)| {
+            let Some(effort) = self.effort_under(row, work) else { return f64::INFINITY };
+            let unit = match (share, manipulator.coordinates()[coordinate].max_effort) {
+                (true, Some(most)) => most,
+                // An actuator without a limit has enough.
+                (true, None) => f64::INFINITY,
+                (false, _) if self.slides(row) => 1.0,
+                (false, _) => self.length(),
+            };
+            effort.abs() / unit
+        });
+        each.fold(0.0, f64::max)
+    }
+
+    /// Whether an actuated coordinate is a length.
+    fn slides(&self, actuated: usize) -> bool {
+        let manipulator = self.manipulator();
+        manipulator.coordinates()[manipulator.actuated()[actuated]].quantity == Quantity::Length
     }
 }

@@ -7,6 +7,7 @@
 //! | which efforts balance a load, and which loads are worst | [`Statics::efforts`], [`Statics::worst`] |
 //! | which loads actuators with limits bear | [`Statics::capacity`], [`Statics::facets`] |
 //! | how well motion and force are transmitted | [`Transmissions`] |
+//! | what acts: a load on the platform, and the weight of all bodies | [`Loads`] |
 //! | how much the platform gives way, and how the legs share a load | [`Compliant`] |
 //! | one number for a colour, a column or a limit | [`Indices`] |
 //!
@@ -37,16 +38,22 @@ mod capacity;
 mod efforts;
 mod index;
 mod screws;
+mod setup;
 mod statics;
 mod stiffness;
 mod transmission;
+mod weights;
 mod wrench;
 
 pub use capacity::{Capacity, Facet};
 pub use efforts::{Balance, Efforts, Worst};
 pub use index::{Facts, Index, IndexBounds, IndexError, Indices};
 pub use screws::{Freedom, Screws};
-pub use statics::Statics;
+pub use setup::{Loads, Setup};
+pub use statics::{Statics, Velocity};
 pub use stiffness::{Compliant, Reactions, SpringError, Springs, Stiffness};
-pub use transmission::{InputIndices, NoTransmission, Transmission, Transmissions};
+pub use transmission::{
+    ConstraintIndex, InputIndices, NoTransmission, Transmission, Transmissions,
+};
+pub use weights::{Gravity, Weights};
 pub use wrench::{Load, LoadAxes, LoadPoint, Wrench};

@@ -19,12 +19,16 @@ pub struct Freedom {
     home_point: Point3<f64>,
     /// The value at home.
     home_value: f64,
+    /// The value at the pose.
+    value: f64,
     /// Its number among those of a spherical joint.
-    of_ball: Option<usize>,
+    pub of_ball: Option<usize>,
     /// Its unit screw at the pose, base coordinates.
     pub screw: Screw,
     /// The joint's point at the pose, metres.
     pub point: Point3<f64>,
+    /// The displacement from home of what the freedom moves; of a ball's freedoms, only the last one has it.
+    pub after: Isometry3<f64>,
 }
 
 /// The screws of all joints at a pose, in the order of the joint coordinates. The buffer is filled by
@@ -52,9 +56,11 @@ impl Screws {
                     home: screw,
                     home_point: joint.point,
                     home_value: coordinate.home,
+                    value: coordinate.home,
                     of_ball: ball.then_some(number),
                     screw,
                     point: joint.point,
+                    after: Isometry3::identity(),
                 }));
             }
             legs.push(first..freedoms.len());
@@ -72,29 +78,37 @@ impl Screws {
                 let freedom = &mut self.freedoms[number];
                 freedom.screw = freedom.home.transformed(&g);
                 freedom.point = g * freedom.home_point;
-                let from_home = |i: usize, home: f64| values[i] - home;
+                freedom.value = values[number];
                 match freedom.of_ball {
-                    None => g *= freedom.home.exp(from_home(number, freedom.home_value)),
+                    None => g *= freedom.home.exp(freedom.value - freedom.home_value),
                     // The three values are one rotation vector.
                     Some(2) => {
                         let point = freedom.home_point.coords;
-                        let vector = Vector3::from_fn(|i, _| {
-                            let number = number - 2 + i;
-                            from_home(number, self.freedoms[number].home_value)
-                        });
+                        let vector = rotation_vector(&self.freedoms[number - 2..=number]);
                         let rotation = UnitQuaternion::from_scaled_axis(vector);
                         let shift = Translation3::from(point - rotation * point);
                         g *= Isometry3::from_parts(shift, rotation);
                     }
                     Some(_) => {}
                 }
+                self.freedoms[number].after = g;
             }
             *end = g;
         }
+    }
+
+    /// The rotation vector from home of a spherical joint, by the number of its first coordinate.
+    pub fn rotation_vector(&self, first: usize) -> Vector3<f64> {
+        rotation_vector(&self.freedoms[first..first + 3])
     }
 
     /// The displacement of the end of a leg, which is the platform, from home.
     pub fn end(&self, leg: usize) -> &Isometry3<f64> {
         &self.ends[leg]
     }
+}
+
+/// The rotation vector from home of a spherical joint with these three freedoms.
+fn rotation_vector(freedoms: &[Freedom]) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| freedoms[i].value - freedoms[i].home_value)
 }

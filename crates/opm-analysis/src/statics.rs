@@ -25,7 +25,7 @@ use opm_core::velocity::{Jacobians, SINGULAR, SingularCause, SingularLeg, Veloci
 pub(crate) const MOST: usize = 6;
 
 /// Independent velocities, or the work that a load does for each of them; those beyond the last are zero.
-pub(crate) type Velocity = [f64; MOST];
+pub type Velocity = [f64; MOST];
 
 /// The virtual work at one pose. The buffer is filled by [`Statics::update`], which allocates nothing.
 #[derive(Clone, Debug)]

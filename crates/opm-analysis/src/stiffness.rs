@@ -17,7 +17,7 @@
 
 use crate::screws::Screws;
 use crate::wrench::Wrench;
-use nalgebra::{DMatrix, Matrix6, Point3, Vector3, Vector6};
+use nalgebra::{Cholesky, DMatrix, Matrix6, Point3, U6, Vector3, Vector6};
 use opm_core::manipulator::{Manipulator, Solution};
 
 /// A pivot below this share of the largest is rounding.
@@ -36,7 +36,7 @@ pub struct Springs {
 }
 
 /// Why springs do not suit a manipulator.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpringError {
     /// The number of stiffnesses is not that of the actuated coordinates.
@@ -52,6 +52,14 @@ pub enum SpringError {
     /// A stiffness is not a positive number.
     #[error("a stiffness is {0}, expected a positive number")]
     NotPositive(f64),
+    /// A name is not that of an actuated joint.
+    #[error("no actuated joint {name:?}, expected one of {}", known.join(", "))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The names of the actuated joints.
+        known: Vec<String>,
+    },
 }
 
 /// How a mechanism gives way at a pose.
@@ -79,6 +87,35 @@ pub struct Reactions {
 }
 
 impl Springs {
+    /// The springs of links against translations, N/m, and rotations, N m/rad, and of actuated joints by their names; those
+    /// that are not among them are rigid.
+    ///
+    /// # Errors
+    /// A name is unknown, or a stiffness is not positive.
+    pub fn new(
+        manipulator: &Manipulator,
+        [translation, rotation]: [f64; 2],
+        actuators: &[(String, f64)],
+    ) -> Result<Self, SpringError> {
+        let names = Self::names(manipulator);
+        let mut each = vec![f64::INFINITY; names.len()];
+        for (name, stiffness) in actuators {
+            let Some(place) = names.iter().position(|known| known == name) else {
+                let known = names.iter().map(|&name| name.to_owned()).collect();
+                return Err(SpringError::Unknown { name: name.clone(), known });
+            };
+            each[place] = *stiffness;
+        }
+        let springs = Self { actuators: each, translation, rotation };
+        springs.check(manipulator).map(|()| springs)
+    }
+
+    /// The names of the actuated joints, in the order of [`Springs::actuators`].
+    pub fn names(manipulator: &Manipulator) -> Vec<&str> {
+        let all = manipulator.coordinates();
+        manipulator.actuated().iter().map(|&number| &*all[number].name).collect()
+    }
+
     /// Checks that there is a positive stiffness for each actuated coordinate of a manipulator, and for the links.
     ///
     /// # Errors
@@ -155,6 +192,20 @@ impl<'a> Compliant<'a> {
         let count = self.screws.legs.len();
         let legs: Vec<Matrix6<f64>> = (0..count).map(|leg| self.leg(leg)).collect::<Option<_>>()?;
         Some(Stiffness { platform: legs.iter().sum(), legs })
+    }
+
+    /// The least stiffness against a force, N/m, and against a moment, N m/rad, of the platform at the pose of a stiffness: a
+    /// force in the worst direction displaces the reference point by one over the first along that direction, a moment about
+    /// the worst axis turns the platform by one over the second about it. Both are zero where it can move without resistance.
+    pub fn least(&self, stiffness: &Stiffness) -> [f64; 2] {
+        let unit = self.unit();
+        let scaled = unit * stiffness.platform * unit;
+        let Some(compliance) = inverse(&scaled) else { return [0.0; 2] };
+        let compliance = unit * compliance * unit;
+        [0, 3].map(|first| {
+            let block = compliance.fixed_view::<3, 3>(first, first).into_owned();
+            block.symmetric_eigenvalues().max().recip()
+        })
     }
 
     /// How a load is shared at the pose of a stiffness, which is the last that was computed. `None` where the platform can
@@ -272,8 +323,17 @@ fn regular_inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 
 /// The solution of a symmetric system; `None` if it is singular.
 fn solve(matrix: &Matrix6<f64>, right: &Vector6<f64>) -> Option<Vector6<f64>> {
+    decomposed(matrix).map(|decomposed| decomposed.solve(right))
+}
+
+/// The inverse of a symmetric matrix; `None` if it is singular.
+fn inverse(matrix: &Matrix6<f64>) -> Option<Matrix6<f64>> {
+    decomposed(matrix).map(|decomposed| decomposed.inverse())
+}
+
+fn decomposed(matrix: &Matrix6<f64>) -> Option<Cholesky<f64, U6>> {
     let largest = matrix.diagonal().amax();
     let decomposed = matrix.cholesky()?;
     let least = decomposed.l_dirty().diagonal().iter().copied().fold(f64::INFINITY, f64::min);
-    (least * least > SINGULAR * largest).then(|| decomposed.solve(right))
+    (least * least > SINGULAR * largest).then_some(decomposed)
 }

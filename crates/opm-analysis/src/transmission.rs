@@ -15,6 +15,15 @@
 //! input index the joint next to the input in the chain (that on the platform's side, if both are), for the output index
 //! the joint next to the platform. In a spherical section the point is anywhere on the axis of that joint; in a
 //! translational section, and for a couple in a plane, no point is needed.
+//!
+//! A leg with fewer joints in a section than the section's dimension constrains it: `d − m` wrenches are reciprocal to all of
+//! its joints. X.-J. Liu, X. Chen, M. Nahon, *Motion/force constrainability analysis of lower-mobility parallel
+//! manipulators*, J. Mechanisms Robotics 6 (2014), and X. Chen, X.-J. Liu, F. Xie, *Screw theory based singularity analysis of
+//! lower-mobility parallel robots considering the motion/force transmissibility and constrainability*, Mathematical Problems
+//! in Engineering (2015): while all inputs are locked and one constraint is released, the platform has one twist, and the
+//! *output constraint index* is the cosine of the pressure angle between the constraint wrench and that twist. Legs that
+//! repeat the constraint of another are one group, which is released together. The wrench of an input in such a leg is
+//! determined up to the leg's constraints; of these, it is the one that is perpendicular to them at the joint on its axis.
 
 mod section;
 
@@ -46,6 +55,17 @@ pub struct InputIndices {
     pub input: f64,
     /// The output transmission index, 0 to 1.
     pub output: f64,
+}
+
+/// The index of the constraint of a section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstraintIndex<'a> {
+    /// The numbers of the legs that constrain it, all in the same way.
+    pub legs: &'a [usize],
+    /// The section.
+    pub section: Section,
+    /// The output constraint index, 0 to 1; `None` if the legs impose more than one constraint.
+    pub output: Option<f64>,
 }
 
 /// The least indices of the inputs of a section, or of both.
@@ -84,15 +104,22 @@ pub enum NoTransmission {
         /// The number of its freedoms.
         freedoms: usize,
     },
-    /// A leg with an input constrains the platform, so that its transmission wrench is not unique.
+    /// No leg constrains the platform within its section.
     #[error(
-        "leg {leg} constrains the platform in its {section} section, so that its transmission wrench is not unique"
+        "no leg constrains the platform within the motions of its section, so that no constraint can be released"
     )]
-    Constrains {
+    NoConstraint,
+    /// A leg imposes several constraints at once.
+    #[error(
+        "leg {leg} lacks {lacks} freedoms in its {section} section; only a single constraint has an index"
+    )]
+    Constraints {
         /// The name of the leg.
         leg: String,
         /// The section.
         section: Section,
+        /// How many freedoms it lacks.
+        lacks: usize,
     },
     /// A leg moves along the intersection motion in its lower section, and its upper section has an input.
     #[error("leg {leg} has inputs in both sections, which share the intersection motion")]
@@ -141,6 +168,8 @@ pub struct Transmissions<'a> {
     screws: Screws,
     sections: Vec<Mechanism>,
     found: Vec<InputIndices>,
+    /// The output constraint index of each section.
+    constraints: Vec<f64>,
 }
 
 impl<'a> Transmissions<'a> {
@@ -161,8 +190,26 @@ impl<'a> Transmissions<'a> {
             length: manipulator.characteristic_length(),
             screws: Screws::new(manipulator),
             found: Vec::with_capacity(sections.iter().map(|section| section.inputs).sum()),
+            constraints: vec![f64::NAN; sections.len()],
             sections,
         })
+    }
+
+    /// Whether there is an output constraint index.
+    ///
+    /// # Errors
+    /// No leg constrains the platform within its section, or one does so in several ways.
+    pub fn has_constraints(&self) -> Result<(), NoTransmission> {
+        let mut any = false;
+        for section in self.sections.iter().filter(|section| section.lacks > 0) {
+            if section.lacks > 1 {
+                let leg = self.manipulator.mechanism().legs[section.constraining[0]].name.clone();
+                let (section, lacks) = (section.section, section.lacks);
+                return Err(NoTransmission::Constraints { leg, section, lacks });
+            }
+            any = true;
+        }
+        if any { Ok(()) } else { Err(NoTransmission::NoConstraint) }
     }
 
     /// Computes the indices at a solved pose that is in reach.
@@ -175,7 +222,7 @@ impl<'a> Transmissions<'a> {
             Some(point) => Screw::rotation(axis.direction, point),
             None => Screw::translation(axis.direction),
         });
-        for section in &mut self.sections {
+        for (section, constraint) in self.sections.iter_mut().zip(&mut self.constraints) {
             // The lower section is seen from the base, the upper one from the frame that moves with the lower.
             let (subspace, to_frame, along) = match section.section {
                 Section::Lower => {
@@ -185,8 +232,25 @@ impl<'a> Transmissions<'a> {
             };
             let view = View { subspace, to_frame, length: self.length };
             section.place(&self.screws, &view, along.map(|screw| view.in_frame(&screw)));
-            section.indices(&mut self.found);
+            *constraint = section.indices(&mut self.found);
         }
+    }
+
+    /// The constraints of the sections that legs constrain, that of the lower section first.
+    pub fn constraints(&self) -> impl Iterator<Item = ConstraintIndex<'_>> {
+        let each = self.sections.iter().zip(&self.constraints).filter(|(own, _)| own.lacks > 0);
+        each.map(|(own, &output)| ConstraintIndex {
+            legs: &own.constraining,
+            section: own.section,
+            output: (own.lacks == 1).then_some(output),
+        })
+    }
+
+    /// The least output constraint index of both sections; `None` as for [`Transmissions::has_constraints`].
+    pub fn constraint(&self) -> Option<f64> {
+        let least = |all: Option<f64>, next: ConstraintIndex<'_>| Some(all?.min(next.output?));
+        self.has_constraints().ok()?;
+        self.constraints().fold(Some(1.0), least)
     }
 
     /// The indices of every input, those of the lower section first, leg by leg.

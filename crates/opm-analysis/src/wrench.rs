@@ -61,13 +61,20 @@ pub enum LoadAxes {
 }
 
 impl LoadAxes {
-    /// Both, with their names.
-    pub const NAMED: [(&'static str, Self); 2] =
-        [("base", Self::Base), ("platform", Self::Platform)];
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Base, Self::Platform];
+
+    /// Their name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Platform => "platform",
+        }
+    }
 
     /// The axes of a name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::NAMED.into_iter().find(|named| named.0 == name).map(|named| named.1)
+        Self::ALL.into_iter().find(|axes| axes.name() == name)
     }
 }
 

@@ -18,9 +18,13 @@
 //! joint on the base side; the platform's origin is its reference point.
 
 mod centre;
+mod density;
+mod mass;
 mod obstacle;
 mod solid;
 
+pub use density::{Density, OutOfRange};
+pub use mass::Mass;
 pub use solid::{Material, Part, PartKind, Solid};
 
 use crate::decomposition::{Decomposition, Freedom};

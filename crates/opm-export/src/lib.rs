@@ -23,16 +23,13 @@
 //! ```
 
 mod color;
-mod density;
 mod keyframe;
-mod mass;
 mod mjcf;
 mod names;
 mod page;
 mod urdf;
 mod xml;
 
-pub use density::{Density, OutOfRange};
 pub use keyframe::{Keyframe, Keyframes, Source};
 pub use mjcf::{MjcfOptions, MjcfReference, ReferenceError, mjcf};
 pub use page::explorer;

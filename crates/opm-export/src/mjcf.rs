@@ -15,14 +15,12 @@ mod servo;
 
 pub use reference::{MjcfReference, ReferenceError};
 
-use crate::density::{Density, OutOfRange, check};
 use crate::keyframe::{Keyframes, Source};
-use crate::mass::{self, Mass};
 use crate::xml::{Element, number};
 use joints::{Names, joint_values, joints};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::leg::Leg;
-use opm_core::skeleton::{Body, Skeleton};
+use opm_core::skeleton::{Body, Density, Mass, OutOfRange, Skeleton};
 use servo::Servos;
 use std::ops::Range;
 
@@ -49,7 +47,7 @@ impl MjcfOptions {
     /// # Errors
     /// The time step is not a number from a nanosecond to a second.
     pub fn new(density: Density, time_step: f64) -> Result<Self, OutOfRange> {
-        check("time_step", time_step, TIME_STEPS).map(|()| Self { density, time_step })
+        OutOfRange::check("time_step", time_step, TIME_STEPS).map(|()| Self { density, time_step })
     }
 
     /// The time step of a simulation, seconds.
@@ -74,7 +72,7 @@ pub fn mjcf(keyframes: &Keyframes<'_>, options: &MjcfOptions) -> String {
     let skeleton = Skeleton::new(mechanism, None);
     let bodies = skeleton.bodies();
     let density = options.density.of(mechanism);
-    let masses = mass::of_bodies(mechanism, bodies, density);
+    let masses = skeleton.masses(mechanism, options.density);
     let time_step = options.time_step;
     Model { mechanism, bodies, masses: &masses, density, time_step }.document(keyframes)
 }

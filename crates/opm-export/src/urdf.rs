@@ -12,14 +12,12 @@ mod joints;
 mod shapes;
 
 use crate::color::{MATERIALS, color};
-use crate::density::Density;
-use crate::mass::{self, Mass};
 use crate::names::unique;
 use crate::xml::Element;
 use nalgebra::{Point3, Vector3};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::leg::Leg;
-use opm_core::skeleton::{Body, Skeleton};
+use opm_core::skeleton::{Body, Density, Mass, Skeleton};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -39,7 +37,8 @@ pub struct Urdf {
 /// (`mimic`). The platform is the link `platform`, at its reference point.
 ///
 /// ```
-/// use opm_export::{Density, urdf};
+/// use opm_core::skeleton::Density;
+/// use opm_export::urdf;
 ///
 /// let manipulator = opm_core::Manipulator::example("planar-3rrr")?;
 /// let model = urdf(manipulator.mechanism(), Density::default());
@@ -54,7 +53,7 @@ pub struct Urdf {
 pub fn urdf(mechanism: &Mechanism, density: Density) -> Urdf {
     let skeleton = Skeleton::new(mechanism, None);
     let bodies = skeleton.bodies();
-    let masses = mass::of_bodies(mechanism, bodies, density.of(mechanism));
+    let masses = skeleton.masses(mechanism, density);
     let (links, joints, motors) = (Vec::new(), Vec::new(), Vec::new());
     let names = joints::names(mechanism);
     let mut tree = Tree { mechanism, bodies, masses: &masses, names, links, joints, motors };

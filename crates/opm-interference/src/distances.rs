@@ -8,6 +8,7 @@ use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::joint::ValueCountError;
 use opm_core::skeleton::Configuration;
 use parry3d_f64::math::Vector;
+use std::borrow::Cow;
 
 /// A pair and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,29 +22,37 @@ pub struct Nearest {
 /// Measures the pairs of a mechanism at one configuration after the other, with working memory of its own.
 #[derive(Clone, Debug)]
 pub struct Distances<'a> {
-    interference: &'a Interference,
+    interference: Cow<'a, Interference>,
     bodies: Vec<Isometry3<f64>>,
     /// The ends of every capsule; unused for other shapes.
     ends: Vec<[Vector; 2]>,
 }
 
+impl Distances<'static> {
+    /// The same as [`Distances::new`], for pairs that nothing else keeps.
+    pub fn owned(interference: Interference) -> Self {
+        Self::of_either(Cow::Owned(interference))
+    }
+}
+
 impl<'a> Distances<'a> {
     /// Working memory for the pairs of a mechanism. The distances are those at home until a configuration is placed.
     pub fn new(interference: &'a Interference) -> Self {
-        let mut new = Self {
-            interference,
-            bodies: Vec::new(),
-            ends: vec![[Vector::ZERO; 2]; interference.shapes.len()],
-        };
+        Self::of_either(Cow::Borrowed(interference))
+    }
+
+    fn of_either(interference: Cow<'a, Interference>) -> Self {
         let bodies = interference.skeleton.bodies().iter();
-        new.bodies.extend(bodies.map(|body| Isometry3::from(body.origin)));
+        let bodies = bodies.map(|body| Isometry3::from(body.origin)).collect();
+        let ends = vec![[Vector::ZERO; 2]; interference.shapes.len()];
+        let mut new = Self { interference, bodies, ends };
         new.take_ends();
         new
     }
 
     /// The mechanism whose pairs are measured.
-    pub fn interference(&self) -> &'a Interference {
-        self.interference
+    pub fn interference(&self) -> &Interference {
+        &self.interference
     }
 
     /// Places the bodies as in a solution of the mechanism's inverse kinematics.

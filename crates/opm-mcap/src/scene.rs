@@ -125,6 +125,11 @@ impl State {
     }
 }
 
+/// The colour of a body that is in a state, and interferes or does not.
+fn tinted((state, interfering): (State, bool), color: [f64; 4]) -> [f64; 4] {
+    if interfering { INTERFERING } else { state.tint(color) }
+}
+
 /// The scene: an entity a body, fixed to the body's frame. The bodies with these numbers interfere.
 pub(crate) fn update(
     bodies: &[Body],
@@ -146,8 +151,7 @@ pub(crate) fn update(
             ..SceneEntity::default()
         };
         for solid in &body.solids {
-            let tinted = if red { INTERFERING } else { state.tint(solid.color) };
-            let color = color(tinted);
+            let color = color(tinted((state, red), solid.color));
             match solid.shape {
                 Shape::Cylinder { from, to, radius } => {
                     let (axis, length) = direction(from, to);
@@ -360,6 +364,7 @@ fn short(value: f64) -> String {
 pub(crate) fn surface(
     body: &Body,
     bodies: &[Body],
+    look: (State, bool),
     time: Timestamp,
 ) -> Result<Vec<u8>, RecordError> {
     let radius = |solid: &Solid| match solid.shape {
@@ -370,7 +375,7 @@ pub(crate) fn surface(
     let thinnest = solids.map(radius).fold(f64::INFINITY, f64::min);
     let mut points = Vec::new();
     for solid in &body.solids {
-        let rgba = solid.color.map(|c| (c * 255.0).round() as u8);
+        let rgba = tinted(look, solid.color).map(|c| (c * 255.0).round() as u8);
         cover(&solid.shape, SPACING * thinnest, &mut |at| {
             if points.len() < MOST_POINTS {
                 points.push(ColoredPoint { at, rgba });

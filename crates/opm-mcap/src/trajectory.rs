@@ -7,10 +7,11 @@
 //! | `/joints`, `/velocities`, `/accelerations` | `opm.Joints` and so on: one double for each joint coordinate |
 //! | `/imaginary_joints`, `/imaginary_velocities` | one double for each imaginary joint |
 //! | `/condition` | `opm.Condition`: condition number, singularity measures, and `valid`, 1 or 0 |
+//! | `/indices` | `opm.Indices`: what the caller judges each pose by |
 //! | `/joint_states` | `foxglove.JointStates` of the joints, for viewers that know this schema; at most 60 a second |
 //! | `/tf` | `foxglove.FrameTransforms`: where every body is; at most 60 a second |
 //! | `/scene` | `foxglove.SceneUpdate`: what the bodies look like, each in its own frame; red while they are stuck, and those that interfere |
-//! | `/scene/bodies/NAME` | one `foxglove.PointCloud` for each body, for viewers without scenes: its surface |
+//! | `/scene/bodies/NAME` | a `foxglove.PointCloud` for each body, for viewers without scenes: its surface, once more where its colour changes |
 //! | `/violations` | `foxglove.Log`: a line where the motion cannot be followed |
 //!
 //! Units are metres, radians and seconds. A topic without values is left out. Time starts at [`START`]; no
@@ -22,7 +23,7 @@
 //!
 //! * `run`: the caller's description of the run;
 //! * `joints`: which joint each field is (see [`crate::joints`]);
-//! * `quantities`: the unit of each position field, `rad` or `m`;
+//! * `quantities`: the unit of each position field, `rad` or `m`, and of each index that has one;
 //! * `roles`: `actuated`, `passive`, `imaginary`, `task` or `dependent`, for each field; if a joint and a task
 //!   coordinate have the same name, the joint's role counts;
 //! * the records that the caller adds;
@@ -47,6 +48,7 @@
 //!     imaginary: vec![],
 //!     rates: false,
 //!     measures: vec![],
+//!     indices: vec![],
 //!     bodies: vec![],
 //!     files: vec![],
 //!     run: Metadata::new(),
@@ -104,6 +106,8 @@ pub const ACCELERATIONS_TOPIC: &str = "/accelerations";
 pub const IMAGINARY_VELOCITIES_TOPIC: &str = "/imaginary_velocities";
 /// The topic of the condition number and the singularity measures.
 pub const CONDITION_TOPIC: &str = "/condition";
+/// The topic of what each pose is judged by.
+pub const INDICES_TOPIC: &str = "/indices";
 /// The topic of the joints in the schema that viewers know.
 pub const JOINT_STATES_TOPIC: &str = "/joint_states";
 /// The topic of the bodies' frames.
@@ -179,6 +183,8 @@ pub struct Trajectory<'a> {
     pub rates: bool,
     /// The names of the values of `/condition` beside `valid`; without any there is no such topic.
     pub measures: Vec<String>,
+    /// Names and units of the values of `/indices`; without any there is no such topic.
+    pub indices: Vec<(String, &'static str)>,
     /// The bodies, parents first; none for a recording without a scene.
     pub bodies: Vec<Body>,
     /// The files to attach: name and text (TOML or CSV), the mechanism file first.
@@ -197,6 +203,8 @@ pub struct Sample<'a> {
     pub pose_velocities: &'a [f64],
     /// The values of `/condition`.
     pub measures: &'a [f64],
+    /// The values of `/indices`.
+    pub indices: &'a [f64],
     /// Whether the pose is in reach and within all limits.
     pub valid: bool,
     /// The joints and bodies; `None` out of reach.
@@ -248,6 +256,8 @@ pub struct Frame {
 struct Shown {
     topic: Topic,
     bodies: Vec<Body>,
+    /// The topic of the cloud of each body.
+    clouds: Vec<Topic>,
     state: State,
     /// The numbers of the bodies that interfere.
     interfering: Vec<usize>,
@@ -266,6 +276,7 @@ pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     imaginary: Option<JointsTopic>,
     imaginary_velocities: Option<JointsTopic>,
     condition: Option<JointsTopic>,
+    indices: Option<JointsTopic>,
     states: Option<(Topic, JointStates)>,
     frames: Option<(Topic, FrameTransforms)>,
     scene: Option<Shown>,
@@ -298,8 +309,8 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let names = |coordinates: &[Coordinate]| -> Vec<String> {
             coordinates.iter().map(|c| c.name.clone()).collect()
         };
-        let Trajectory { pose, dependent, joints, imaginary, rates, measures, bodies, .. } =
-            trajectory;
+        let Trajectory { pose, dependent, joints, imaginary, rates, .. } = trajectory;
+        let Trajectory { measures, indices, bodies, .. } = trajectory;
         check(bodies)?;
         let (pose_names, joint_names) = (names(pose), names(joints));
         let (dependent_names, imaginary_names) = (names(dependent), names(imaginary));
@@ -311,6 +322,12 @@ impl<W: Sink> TrajectoryRecorder<W> {
                 if !matches!(coordinate.role, Role::Task | Role::Dependent) {
                     which.insert(field, coordinate.name.clone());
                 }
+            }
+        }
+        let index_names: Vec<String> = indices.iter().map(|(name, _)| name.clone()).collect();
+        for (field, (_, unit)) in fields(&index_names)?.into_iter().zip(indices) {
+            if !unit.is_empty() {
+                quantities.insert(field, (*unit).to_owned());
             }
         }
         let mut log = Log::new(sink, CHUNK_BYTES)?;
@@ -348,6 +365,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let imaginary_velocities =
             topic(IMAGINARY_VELOCITIES_TOPIC, "ImaginaryVelocities", &imaginary_names, *rates)?;
         let condition = topic(CONDITION_TOPIC, "Condition", &judged, true)?;
+        let indices = topic(INDICES_TOPIC, "Indices", &index_names, true)?;
         let state = |name: &String| JointState { name: name.clone(), ..JointState::default() };
         let states =
             JointStates { timestamp: None, joints: joint_names.iter().map(state).collect() };
@@ -369,6 +387,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
             imaginary,
             imaginary_velocities,
             condition,
+            indices,
             states,
             violations,
             judged: Vec::with_capacity(judged.len()),
@@ -385,18 +404,21 @@ impl<W: Sink> TrajectoryRecorder<W> {
     /// Writes the shapes of the bodies.
     fn show(&mut self, bodies: &[Body]) -> Result<(), RecordError> {
         let topic = self.log.topic::<foxglove::messages::SceneUpdate>(SCENE_TOPIC)?;
+        let cloud = |body: &Body| {
+            let name = format!("{BODIES_TOPIC}{}", body.frame);
+            self.log.topic::<foxglove::messages::PointCloud>(&name)
+        };
+        let clouds = bodies.iter().map(cloud).collect::<Result<_, _>>()?;
         self.scene = Some(Shown {
             topic,
             bodies: bodies.to_vec(),
+            clouds,
             state: State::Moves,
             interfering: Vec::new(),
         });
         self.draw(START)?;
-        for body in bodies {
-            let name = format!("{BODIES_TOPIC}{}", body.frame);
-            let mut topic = self.log.topic::<foxglove::messages::PointCloud>(&name)?;
-            let cloud = surface(body, bodies, stamp(START))?;
-            self.log.message(&mut topic, START, &cloud)?;
+        for number in 0..bodies.len() {
+            self.draw_cloud(START, number)?;
         }
         let transform = |body: &Body| {
             body.parent.map(|parent| FrameTransform {
@@ -415,11 +437,21 @@ impl<W: Sink> TrajectoryRecorder<W> {
 
     /// Writes the scene in its present state.
     fn draw(&mut self, time: u64) -> Result<(), RecordError> {
-        let Some(Shown { topic, bodies, state, interfering }) = &mut self.scene else {
+        let Some(Shown { topic, bodies, state, interfering, .. }) = &mut self.scene else {
             return Ok(());
         };
         let scene = update(bodies, (*state, interfering), stamp(time));
         put(&mut self.log, &mut self.message, topic, time, &scene)
+    }
+
+    /// Writes the surface of a body in its present colours.
+    fn draw_cloud(&mut self, time: u64, number: usize) -> Result<(), RecordError> {
+        let Some(Shown { bodies, clouds, state, interfering, .. }) = &mut self.scene else {
+            return Ok(());
+        };
+        let look = (*state, interfering.contains(&number));
+        let cloud = surface(&bodies[number], bodies, look, stamp(time))?;
+        self.log.message(&mut clouds[number], time, &cloud)
     }
 
     /// Writes the scene anew where the bodies get stuck, or move again, and where others interfere.
@@ -433,11 +465,18 @@ impl<W: Sink> TrajectoryRecorder<W> {
                 if shown.state != now
                     || interfering.is_some_and(|all| shown.interfering != all) =>
             {
-                shown.state = now;
+                let before = std::mem::replace(&mut shown.state, now);
+                let mut red = shown.interfering.clone();
                 if let Some(interfering) = interfering {
+                    std::mem::swap(&mut red, &mut shown.interfering);
                     shown.interfering = interfering.to_vec();
                 }
-                self.draw(time)
+                let look = |state, red: &[usize], number| (state, red.contains(&number));
+                let changed: Vec<usize> = (0..shown.bodies.len())
+                    .filter(|&i| look(before, &red, i) != look(now, &shown.interfering, i))
+                    .collect();
+                self.draw(time)?;
+                changed.into_iter().try_for_each(|number| self.draw_cloud(time, number))
             }
             _ => Ok(()),
         }
@@ -483,6 +522,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
             self.judged.push(f64::from(u8::from(sample.valid)));
             write(log, &mut self.condition, &self.judged)?;
         }
+        write(log, &mut self.indices, sample.indices)?;
         let posture = sample.posture;
         let rates = posture.and_then(|posture| posture.rates);
         for (topic, values) in [

@@ -27,6 +27,7 @@ fn trajectory(imaginary: &[&str]) -> Trajectory<'static> {
         imaginary: coordinates(imaginary, Role::Imaginary),
         rates: false,
         measures: Vec::new(),
+        indices: Vec::new(),
         bodies: Vec::new(),
         files: vec![("test.toml", MECHANISM)],
         run: record([("input", "a1")]),
@@ -51,6 +52,7 @@ fn whole() -> Trajectory<'static> {
         dependent: coordinates(&["theta"], Role::Dependent),
         rates: true,
         measures: vec!["condition".into()],
+        indices: Vec::new(),
         bodies: vec![body("base", None), body("arm", Some(0))],
         files: vec![("test.toml", MECHANISM), ("motion.csv", b"t,x\n")],
         ..trajectory(&["tau.leg1"])
@@ -153,6 +155,7 @@ fn a_motion_has_all_topics() {
         pose: &[1.0, 2.0],
         pose_velocities: &[3.0, 4.0],
         measures: &[7.0],
+        indices: &[],
         valid,
         posture,
     };

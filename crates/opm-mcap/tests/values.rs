@@ -16,6 +16,7 @@ fn recorded(long: &[u8], joints: &[[f64; 2]]) -> Vec<u8> {
         imaginary: vec![],
         rates: false,
         measures: vec![],
+        indices: Vec::new(),
         bodies: vec![],
         files: vec![("m.toml", MECHANISM), ("long.csv", long), ("last.csv", MECHANISM)],
         run: Metadata::new(),

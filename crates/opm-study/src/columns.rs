@@ -4,7 +4,7 @@
 use crate::error::{RequestError, RequestOption};
 use crate::kind::WorkspaceKind;
 use crate::names::{ASPECT, INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
-use opm_analysis::Index;
+use opm_analysis::{Index, Setup};
 use opm_core::manipulator::Manipulator;
 use opm_core::task::CoordinateKind;
 use opm_workspace::{Axis, Grid, GridSet};
@@ -29,6 +29,8 @@ pub enum Column {
     InverseCondition,
     /// An index of the pose.
     Index(Index),
+    /// The effort of an actuated joint under the load or, by larger numbers, of an imaginary one.
+    Effort(usize),
     /// The share of the orientations that reach a place.
     Share,
     /// The number of the aspect that a pose is in, 0 for a singular one.
@@ -106,12 +108,16 @@ impl PointOptions {
         &self,
         kind: WorkspaceKind,
         manipulator: &Manipulator,
+        setup: &Setup,
     ) -> Result<PointChoice, RequestError> {
-        let known = known(kind, manipulator);
+        let known = known(kind, manipulator, setup);
         let find = |name: &String, option| {
             let found = known.iter().find(|column| column.name == *name).cloned();
             if found.is_none() {
                 refuse_following(name, manipulator, option)?;
+                if kind.is_of_poses() {
+                    refuse_absent(name, manipulator, setup, option)?;
+                }
             }
             found.ok_or_else(|| RequestError::UnknownColumn {
                 option,
@@ -155,6 +161,18 @@ impl PointChoice {
         let mut asked = self.scalars.iter().flatten().chain(&self.color);
         asked.any(|named| matches!(named.column, Column::InverseCondition | Column::Index(_)))
     }
+
+    /// Whether one of the values is an index of some kind.
+    pub fn has_index(&self, test: fn(Index) -> bool) -> bool {
+        let mut asked = self.scalars.iter().flatten().chain(&self.color);
+        asked.any(|named| matches!(named.column, Column::Index(index) if test(index)))
+    }
+
+    /// Whether one of the values is the effort of a joint.
+    pub fn has_efforts(&self) -> bool {
+        let mut asked = self.scalars.iter().flatten().chain(&self.color);
+        asked.any(|named| matches!(named.column, Column::Effort(_)))
+    }
 }
 
 /// Refuses the name of a dependent coordinate, which points do not have.
@@ -165,6 +183,31 @@ fn refuse_following(
 ) -> Result<(), RequestError> {
     let refused = manipulator.refuse_following(name);
     refused.map_err(|follows| RequestError::Follows { option, follows })
+}
+
+/// Refuses an index that the manipulator does not have, and an effort without a load.
+fn refuse_absent(
+    name: &str,
+    manipulator: &Manipulator,
+    setup: &Setup,
+    option: RequestOption,
+) -> Result<(), RequestError> {
+    if let Some(index) = Index::from_name(name) {
+        let absent = |error| RequestError::ColumnIndex { option, error };
+        return index.check(manipulator, setup).map_err(absent);
+    }
+    match !setup.has_load() && efforts(manipulator).any(|known| known == name) {
+        true => Err(RequestError::NoLoad { option, name: name.to_owned() }),
+        false => Ok(()),
+    }
+}
+
+/// The names of the efforts of the actuated, then of the imaginary joints.
+pub fn efforts(manipulator: &Manipulator) -> impl Iterator<Item = String> + '_ {
+    let all = manipulator.coordinates();
+    let actuated = manipulator.actuated().iter().map(|&number| &*all[number].name);
+    let imaginary = manipulator.imaginary().iter().map(|joint| &*joint.name);
+    actuated.chain(imaginary).map(|name| format!("effort.{name}"))
 }
 
 /// An axis of a cloud of poses.
@@ -182,7 +225,7 @@ fn task_coordinate(name: &str, manipulator: &Manipulator) -> Result<NamedColumn,
 }
 
 /// Every value that the points of a kind of workspace have.
-fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
+fn known(kind: WorkspaceKind, manipulator: &Manipulator, setup: &Setup) -> Vec<NamedColumn> {
     let places = manipulator.place_coordinates();
     let coordinates = kind.sections().coordinates(manipulator).into_iter().enumerate();
     let mut known: Vec<NamedColumn> = coordinates
@@ -215,8 +258,12 @@ fn known(kind: WorkspaceKind, manipulator: &Manipulator) -> Vec<NamedColumn> {
             if kind == WorkspaceKind::Aspects {
                 known.push(NamedColumn::new(ASPECT, Column::Aspect));
             }
-            let indices = Index::ALL.into_iter().filter(|index| index.check(manipulator).is_ok());
+            let indices = Index::known(manipulator, setup).into_iter();
             known.extend(indices.map(|index| NamedColumn::new(index.name(), Column::Index(index))));
+            if setup.has_load() {
+                let efforts = efforts(manipulator).enumerate();
+                known.extend(efforts.map(|(i, name)| NamedColumn::new(&name, Column::Effort(i))));
+            }
         }
         WorkspaceKind::Reachable | WorkspaceKind::Dexterous => {
             known.push(NamedColumn::new(SHARE, Column::Share));

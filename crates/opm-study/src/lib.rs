@@ -39,7 +39,7 @@
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("dexterous.mcap");
-//! let points = PointOptions::default().choose(workspace.kind(), workspace.manipulator())?;
+//! let points = PointOptions::default().choose(workspace.kind(), workspace.manipulator(), workspace.setup())?;
 //! let recording = WorkspaceRecording::of_workspace(&path, &workspace, points)?;
 //! let mechanism = Attachment { name: "plano-spherical-5dof.toml", text: example.text };
 //! let poses = &workspace.poses();
@@ -59,6 +59,7 @@
 //! | [`WorkspaceRequest`] | a request; [`RequestError`] names the [`RequestOption`] that is wrong |
 //! | [`Workspace`] | a request that is checked and complete |
 //! | [`Analysis`] | the results: counts, set, shape, conditioning |
+//! | [`SetupOptions`] | what poses are judged by: load, gravity, springs |
 //! | [`PointOptions`] | which values a recording stores of every point |
 //! | [`MotionRequest`], [`LinkageRound`] | motions of a platform, rounds of a single loop |
 //! | [`Tracker`] | forward kinematics of a series, each pose near the last |
@@ -80,12 +81,16 @@ mod poses;
 #[cfg(feature = "recording")]
 pub mod recording;
 mod request;
+mod setup;
 pub mod text;
 mod tracker;
 mod workspace;
 
 pub use analysis::{Analysis, Shape};
-pub use columns::{AxisScale, Column, NamedColumn, PointChoice, PointColumns, PointOptions};
+pub use columns::{
+    AxisScale, Column, NamedColumn, PointChoice, PointColumns, PointOptions,
+    efforts as effort_names,
+};
 #[cfg(feature = "recording")]
 pub use error::{MissingShards, ShardError, ShardProblem};
 pub use error::{RequestError, RequestOption, SetPart, Spelling, StudyError};
@@ -100,6 +105,7 @@ pub use poses::PoseSource;
 #[cfg(feature = "recording")]
 pub use poses::ShardPoses;
 pub use request::{CheckedRequest, WorkspaceRequest, characteristic_length};
+pub use setup::{SetupOptions, SpringOptions, fields as setup_fields};
 pub use tracker::Tracker;
 pub use workspace::Workspace;
 

@@ -6,6 +6,7 @@ mod summary;
 pub use summary::{Contacts, CoordinateRanges, MOST_LISTED, MotionSummary, Range};
 
 use crate::error::StudyError;
+use opm_analysis::Setup;
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::motion::PlatformMotion;
 use opm_core::trajectory::{Change, Sample, Trajectory, TrajectoryError};
@@ -32,6 +33,8 @@ pub struct MotionRequest<'a> {
     pub rate: f64,
     /// The least distance of two bodies that is no contact, metres, if contacts are watched for.
     pub clearance: Option<f64>,
+    /// What the poses are judged by, if indices are to be recorded or written beside the joints.
+    pub indices: Option<&'a Setup>,
 }
 
 impl<'a> MotionRequest<'a> {
@@ -40,7 +43,8 @@ impl<'a> MotionRequest<'a> {
     pub fn new(manipulator: &'a Manipulator, motion: &'a PlatformMotion, label: &'a str) -> Self {
         let mode = motion.mode.unwrap_or_else(|| manipulator.home_mode());
         let rate = motion.rate.unwrap_or(DEFAULT_RATE);
-        Self { manipulator, motion, label, mode, rate, clearance: None }
+        let (clearance, indices) = (None, None);
+        Self { manipulator, motion, label, mode, rate, clearance, indices }
     }
 
     /// Selects another working mode.
@@ -59,6 +63,13 @@ impl<'a> MotionRequest<'a> {
     #[must_use]
     pub fn clearance(self, least: f64) -> Self {
         Self { clearance: Some(least), ..self }
+    }
+
+    /// Adds the indices that the mechanism has in a setup ([`Index`](opm_analysis::Index)) to recordings and tables and, with a
+    /// load, the efforts of the actuated and the imaginary joints, as `effort.NAME`.
+    #[must_use]
+    pub fn indices(self, setup: &'a Setup) -> Self {
+        Self { indices: Some(setup), ..self }
     }
 
     /// The trajectory, checked, before its first sample.

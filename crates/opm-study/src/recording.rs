@@ -4,6 +4,7 @@
 //! The same study gives the same bytes from every front end.
 
 mod describe;
+mod judged;
 mod linkage;
 mod motion;
 mod points;

@@ -3,10 +3,11 @@
 mod fit;
 
 use crate::columns::{PointChoice, PointOptions};
-use crate::error::{RequestError, StudyError};
+use crate::error::{RequestError, RequestOption, StudyError};
 use crate::kind::WorkspaceKind;
+use crate::setup::SetupOptions;
 use crate::workspace::{Clearance, Workspace};
-use opm_analysis::Index;
+use opm_analysis::{Index, Setup};
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
@@ -48,8 +49,8 @@ pub struct WorkspaceRequest {
     pub clearance: Option<f64>,
     /// The worst values of indices ([`Index`]) at which a pose counts, by their names.
     pub limits: Vec<(String, f64)>,
-    /// Characteristic length of condition numbers, metres; by default the spread of the joint axes.
-    pub length: Option<f64>,
+    /// What condition numbers and indices are computed with: characteristic length, load, springs.
+    pub setup: SetupOptions,
     /// Whether the global conditioning index is requested.
     pub conditioning: bool,
     /// Whether the boundary and the connected components are requested. All kinds except
@@ -103,7 +104,14 @@ impl WorkspaceRequest {
     /// Sets the characteristic length of condition numbers, metres.
     #[must_use]
     pub fn length(mut self, length: f64) -> Self {
-        self.length = Some(length);
+        self.setup.length = Some(length);
+        self
+    }
+
+    /// Sets what indices are computed with: characteristic length, load, springs.
+    #[must_use]
+    pub fn setup(mut self, setup: SetupOptions) -> Self {
+        self.setup = setup;
         self
     }
 
@@ -140,11 +148,20 @@ impl WorkspaceRequest {
         if self.conditioning && !kind.is_of_poses() {
             return Err(RequestError::NotOfPoses { kind });
         }
-        let length = characteristic_length(self.length, &manipulator)?;
-        let limit = pose_limit(self.max_condition, &self.limits, length, &manipulator)?;
+        let setup = Arc::new(self.setup.check(&manipulator)?);
+        // The distance of bodies is decided over boxes of poses, unlike other indices.
+        let (clearances, limits): (Vec<_>, Vec<_>) =
+            self.limits.into_iter().partition(|(name, _)| name == Index::Clearance.name());
+        let mut clearances =
+            self.clearance.into_iter().chain(clearances.iter().map(|limit| limit.1));
+        let clearance = clearances.next();
+        if clearances.next().is_some() {
+            return Err(RequestError::RepeatedLimit { name: Index::Clearance.name().to_owned() });
+        }
+        let limit = pose_limit(self.max_condition, &limits, &setup, &manipulator)?;
         let modes = self.modes.unwrap_or(Modes::One(manipulator.home_mode()));
-        check_kind(kind, &manipulator, modes, limit)?;
-        let clearance = match self.clearance {
+        check_kind(kind, &manipulator, modes, limit.as_ref())?;
+        let clearance = match clearance {
             Some(least) => {
                 check_clearance(least, kind, modes)?;
                 Some(Clearance::new(&manipulator, least))
@@ -155,7 +172,7 @@ impl WorkspaceRequest {
             true => None,
             false => Some(grid(kind, &manipulator, self.axes)?),
         };
-        let points = self.points.choose(kind, &manipulator)?;
+        let points = self.points.choose(kind, &manipulator, &setup)?;
         Ok(CheckedRequest {
             manipulator,
             kind,
@@ -163,8 +180,8 @@ impl WorkspaceRequest {
             modes,
             limit,
             clearance,
-            length,
-            length_given: self.length.is_some(),
+            setup,
+            length_given: self.setup.length.is_some(),
             conditioning: self.conditioning,
             shape: self.shape,
             points,
@@ -193,7 +210,7 @@ pub struct CheckedRequest {
     modes: Modes,
     limit: Option<PoseLimit>,
     clearance: Option<Clearance>,
-    length: f64,
+    setup: Arc<Setup>,
     length_given: bool,
     conditioning: bool,
     shape: bool,
@@ -221,7 +238,7 @@ impl CheckedRequest {
         &self.points
     }
 
-    /// Refuses a characteristic length if the request has no condition number that uses it.
+    /// Refuses a characteristic length if the request has no condition number or index that uses it.
     ///
     /// # Errors
     /// [`RequestError::UnusedLength`]
@@ -230,15 +247,36 @@ impl CheckedRequest {
         if self.length_given && !used { Err(RequestError::UnusedLength) } else { Ok(()) }
     }
 
+    /// Refuses a load or springs if the request has no number that uses them.
+    ///
+    /// # Errors
+    /// [`RequestError::UnusedLoad`], [`RequestError::UnusedSprings`]
+    pub fn refuse_unused_setup(&self) -> Result<(), RequestError> {
+        let limits = || self.limit.iter().flat_map(|limit| limit.indices.iter());
+        let uses = |test: fn(Index) -> bool| {
+            limits().any(|(index, _)| test(index)) || self.points.has_index(test)
+        };
+        let load = self.points.has_efforts() || uses(Index::depends_on_load);
+        if self.setup.load.is_some() && !load {
+            return Err(RequestError::UnusedLoad { option: RequestOption::Wrench });
+        }
+        if self.setup.gravity.is_some() && !load {
+            return Err(RequestError::UnusedLoad { option: RequestOption::Gravity });
+        }
+        if self.setup.springs.is_some() && !uses(Index::depends_on_springs) {
+            return Err(RequestError::UnusedSprings);
+        }
+        Ok(())
+    }
+
     /// Fits a grid to the workspace if none was given. The extent of the workspace of all poses is searched
     /// for.
     ///
     /// # Errors
     /// The work was cancelled.
     pub fn fit(self, progress: &Progress) -> Result<Workspace, Cancelled> {
-        let Self {
-            manipulator, kind, modes, limit, clearance, length, conditioning, shape, ..
-        } = self;
+        let Self { manipulator, kind, modes, limit, clearance, setup, conditioning, shape, .. } =
+            self;
         let (grid, unbounded) = match self.grid {
             Some(grid) => (grid, None),
             None => {
@@ -260,7 +298,7 @@ impl CheckedRequest {
             modes,
             limit,
             clearance,
-            length,
+            setup,
             conditioning,
             shape,
             unbounded,
@@ -284,10 +322,10 @@ pub fn characteristic_length(
 fn pose_limit(
     most: Option<f64>,
     limits: &[(String, f64)],
-    length: f64,
+    setup: &Arc<Setup>,
     manipulator: &Manipulator,
 ) -> Result<Option<PoseLimit>, RequestError> {
-    let mut limit = PoseLimit::none(length);
+    let mut limit = PoseLimit::of(Arc::clone(setup));
     match most {
         None => {}
         Some(most) if most >= 1.0 && most.is_finite() => limit.most = most,
@@ -305,10 +343,10 @@ fn pose_limit(
         if !bound.is_finite() {
             return Err(RequestError::LimitNotFinite { name: name(), bound: *bound });
         }
-        index.check(manipulator)?;
+        index.check(manipulator, setup)?;
         limit = limit.with_index(index, *bound);
     }
-    Ok((limit != PoseLimit::none(length)).then_some(limit))
+    Ok((!limit.is_none()).then_some(limit))
 }
 
 /// Refuses a clearance where it has no meaning.
@@ -330,7 +368,7 @@ fn check_kind(
     kind: WorkspaceKind,
     manipulator: &Manipulator,
     modes: Modes,
-    limit: Option<PoseLimit>,
+    limit: Option<&PoseLimit>,
 ) -> Result<(), RequestError> {
     let names = |list: &[TaskCoordinate]| list.iter().map(|c| c.name.to_owned()).collect();
     let dependent: Vec<String> = names(manipulator.dependent_coordinates());

@@ -4,6 +4,7 @@ use crate::error::{RequestError, StudyError};
 use crate::kind::WorkspaceKind;
 use crate::measure::{Measure, grid_measure};
 use crate::poses::PoseSource;
+use opm_analysis::Setup;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_interference::Interference;
@@ -26,7 +27,7 @@ pub struct Workspace {
     pub(crate) modes: Modes,
     pub(crate) clearance: Option<Clearance>,
     pub(crate) limit: Option<PoseLimit>,
-    pub(crate) length: f64,
+    pub(crate) setup: Arc<Setup>,
     pub(crate) conditioning: bool,
     pub(crate) shape: bool,
     pub(crate) unbounded: Option<Vec<String>>,
@@ -79,8 +80,8 @@ impl Workspace {
     }
 
     /// What a pose has to be like to count: its condition number and its indices.
-    pub fn limit(&self) -> Option<PoseLimit> {
-        self.limit
+    pub fn limit(&self) -> Option<&PoseLimit> {
+        self.limit.as_ref()
     }
 
     /// The least distance of bodies at which a pose counts.
@@ -90,12 +91,22 @@ impl Workspace {
 
     /// Characteristic length of condition numbers, metres.
     pub fn length(&self) -> f64 {
-        self.length
+        self.setup.length
+    }
+
+    /// What condition numbers and indices are computed with.
+    pub fn setup(&self) -> &Arc<Setup> {
+        &self.setup
+    }
+
+    /// The limit of the poses, or one that admits them all.
+    pub fn limit_or_none(&self) -> PoseLimit {
+        self.limit.clone().unwrap_or_else(|| PoseLimit::of(Arc::clone(&self.setup)))
     }
 
     /// Characteristic length of the conditioning index, if the index is requested.
     pub fn conditioning_length(&self) -> Option<f64> {
-        self.conditioning.then_some(self.length)
+        self.conditioning.then_some(self.setup.length)
     }
 
     /// The coordinates along which the workspace extends beyond a fitted grid; `None` for a
@@ -114,15 +125,15 @@ impl Workspace {
     /// their characteristic length: the same points, if it is one of the same mechanism.
     pub fn has_request_of(&self, other: &Self) -> bool {
         let clearance = |one: &Self| one.clearance.as_ref().map(|clearance| clearance.least);
-        let request = |one: &Self| (one.kind, one.modes, one.limit, one.length, clearance(one));
-        request(self) == request(other) && self.grid == other.grid
+        let request = |one: &Self| (one.kind, one.modes, one.setup.length, clearance(one));
+        request(self) == request(other) && self.limit == other.limit && self.grid == other.grid
     }
 
     /// The sweep of the grid.
     pub fn sweep(&self) -> Sweep<'_> {
         let sweep = Sweep::new(&self.manipulator, &self.grid, self.modes);
-        let sweep = match self.limit {
-            Some(limit) => sweep.with_limit(limit).expect("the request was checked"),
+        let sweep = match &self.limit {
+            Some(limit) => sweep.with_limit(limit.clone()).expect("the request was checked"),
             None => sweep,
         };
         match &self.clearance {

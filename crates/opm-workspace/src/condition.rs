@@ -4,21 +4,22 @@
 use crate::grid::{Grid, Sections};
 use crate::progress::Cancelled;
 use crate::sweep::Modes;
-use opm_analysis::{Index, IndexBounds, IndexError, Indices};
+use opm_analysis::{Index, IndexBounds, IndexError, Indices, Setup};
 use opm_core::manipulator::{AllModes, Manipulator, Solution};
 use opm_core::velocity::{ConditionBatch, ConditionQuery, Jacobians};
+use std::sync::Arc;
 
 /// Fewer poses than this are decided one by one: it takes longer to begin a block of them.
 const FEW: usize = 8;
 
 /// What a pose has to be like to count.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PoseLimit {
     /// The largest condition number, at least one; infinite if it is not limited.
     pub most: f64,
-    /// The characteristic length that condition numbers and indices are computed with, metres; usually
+    /// What condition numbers and indices are computed with; the characteristic length is usually
     /// [`Manipulator::characteristic_length`].
-    pub length: f64,
+    pub setup: Arc<Setup>,
     /// The worst values of indices. A manipulator that lacks one of these indices has no pose that counts.
     pub indices: IndexBounds,
 }
@@ -52,7 +53,22 @@ pub enum ConditionError {
 impl PoseLimit {
     /// A limit that admits every pose, for condition numbers with this characteristic length, metres.
     pub fn none(length: f64) -> Self {
-        Self { most: f64::INFINITY, length, indices: IndexBounds::default() }
+        Self::of(Arc::new(Setup::new(length)))
+    }
+
+    /// A limit that admits every pose, for indices in a setup.
+    pub fn of(setup: Arc<Setup>) -> Self {
+        Self { most: f64::INFINITY, setup, indices: IndexBounds::default() }
+    }
+
+    /// The characteristic length, metres.
+    pub fn length(&self) -> f64 {
+        self.setup.length
+    }
+
+    /// Whether it admits every pose.
+    pub fn is_none(&self) -> bool {
+        self.most == f64::INFINITY && self.indices.is_empty()
     }
 
     /// The same with a largest condition number.
@@ -81,10 +97,12 @@ impl PoseLimit {
         if grid.sections() != Sections::Whole {
             return Err(ConditionError::Section);
         }
-        if !(self.length > 0.0 && self.length.is_finite()) {
-            return Err(ConditionError::Length(self.length));
+        let length = self.length();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(ConditionError::Length(length));
         }
-        Ok(self.indices.iter().try_for_each(|(index, _)| index.check(manipulator))?)
+        let mut indices = self.indices.iter();
+        Ok(indices.try_for_each(|(index, _)| index.check(manipulator, &self.setup))?)
     }
 
     /// The condition number of a solution; `None` if it is beyond this limit or any joint limit.
@@ -98,7 +116,7 @@ impl PoseLimit {
         if !solution.within_limits() || manipulator.differentiate(solution, jacobians).is_err() {
             return None;
         }
-        let condition = manipulator.conditioning(jacobians, self.length).condition;
+        let condition = manipulator.conditioning(jacobians, self.length()).condition;
         let mut good = || {
             if self.indices.is_empty() {
                 return true;
@@ -152,7 +170,7 @@ impl<'a> Conditioned<'a> {
         let jacobians = manipulator.jacobians();
         let batch = manipulator.condition_batch();
         let bounded = limit.indices.iter().map(|(index, _)| index);
-        let indices = Indices::new(manipulator, limit.length, bounded).ok();
+        let indices = Indices::new(manipulator, &limit.setup, bounded).ok();
         let condition = f64::INFINITY;
         Self { manipulator, limit, all, solution, jacobians, condition, batch, indices }
     }
@@ -200,7 +218,8 @@ impl<'a> Conditioned<'a> {
     ) {
         let (manipulator, every) = (self.manipulator, used.is_some());
         let width = manipulator.task_coordinates().len();
-        let PoseLimit { most, length, indices: bounds } = self.limit;
+        let PoseLimit { most, ref setup, indices: bounds } = self.limit;
+        let length = setup.length;
         let query = ConditionQuery { mode: modes.one(), length, most, every };
         let blocks = poses.chunks(Manipulator::DECIDED * width);
         for (poses, conditions) in blocks.zip(conditions.chunks_mut(Manipulator::DECIDED)) {

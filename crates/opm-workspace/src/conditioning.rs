@@ -59,8 +59,8 @@ impl ConditioningIndex {
     pub fn of(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, ConditionError> {
         PoseLimit::none(length).check(sweep.manipulator(), sweep.grid())?;
         match sweep.limit() {
-            Some(limit) if limit.length != length => {
-                Err(ConditionError::Lengths { index: length, limit: limit.length })
+            Some(limit) if limit.length() != length => {
+                Err(ConditionError::Lengths { index: length, limit: limit.length() })
             }
             _ => Ok(Self::of_checked(sweep, length, progress)?),
         }
@@ -69,7 +69,7 @@ impl ConditioningIndex {
     fn of_checked(sweep: &Sweep<'_>, length: f64, progress: &Progress) -> Result<Self, Cancelled> {
         let mut all = Self::nothing(length);
         // What the sweep's limit admits is decided with the indices, once.
-        sweep.without_limit().points(
+        sweep.clone().without_limit().points(
             progress,
             |hits, made: &mut Option<Indexing<'_>>| {
                 made.get_or_insert_with(|| Indexing::new(sweep, length)).take(sweep, hits);
@@ -121,7 +121,7 @@ struct Indexing<'a> {
 
 impl<'a> Indexing<'a> {
     fn new(sweep: &Sweep<'a>, length: f64) -> Self {
-        let limit = sweep.limit().unwrap_or(PoseLimit::none(length));
+        let limit = sweep.limit().cloned().unwrap_or_else(|| PoseLimit::none(length));
         let conditioned = Conditioned::new(sweep.manipulator(), limit);
         Self { index: ConditioningIndex::nothing(length), conditioned, poses: Vec::new() }
     }

@@ -161,7 +161,7 @@ impl Hits<'_> {
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     manipulator: &'a Manipulator,
     grid: &'a Grid,
@@ -211,8 +211,8 @@ impl<'a> Sweep<'a> {
     }
 
     /// The limit on condition numbers and indices, if there is one.
-    pub fn limit(&self) -> Option<PoseLimit> {
-        self.limit
+    pub fn limit(&self) -> Option<&PoseLimit> {
+        self.limit.as_ref()
     }
 
     /// The same sweep without a limit on condition numbers and indices.

@@ -45,7 +45,11 @@ pub(super) struct Mechanism {
     along: Local,
     /// The number of its inputs.
     pub inputs: usize,
-    /// The inputs' wrenches on the unknowns, and the inverse beside it.
+    /// The numbers of the legs that constrain it, that with the most constraints first; the others repeat some of these.
+    pub constraining: Vec<usize>,
+    /// The number of constraints.
+    pub lacks: usize,
+    /// The wrenches of inputs and constraints on the unknowns, and the inverse beside it.
     system: DMatrix<f64>,
 }
 
@@ -98,10 +102,6 @@ impl Mechanism {
                     Section::Upper => members.insert(0, imaginary(named)),
                 }
             }
-            let input = members.iter().any(|member| member.input);
-            if input && members.len() != kind.dimension() {
-                return Err(NoTransmission::Constrains { leg: name(leg), section });
-            }
             // Without an imaginary joint, the lower section carries the upper one along.
             let along = section == Section::Lower && bridge == Some(Section::Upper) && named;
             let along = along.then(|| {
@@ -118,7 +118,11 @@ impl Mechanism {
             | (Section::Upper, Some(MotionType::Translation)) => 1,
             _ => 0,
         };
-        let freedoms = kind.dimension() - less + columns;
+        let lack = |leg: &usize| kind.dimension().saturating_sub(chains[*leg].members.len());
+        let mut constraining: Vec<usize> = (0..chains.len()).filter(|leg| lack(leg) > 0).collect();
+        constraining.sort_by_key(|leg| std::cmp::Reverse(lack(leg)));
+        let lacks = constraining.first().map_or(0, lack);
+        let freedoms = (kind.dimension() - less + columns).saturating_sub(lacks);
         // Dependent coordinates, and those that only lifts drive, have no inputs of their own.
         if inputs == 0 && (freedoms == 0 || kind == SubspaceKind::Identity) {
             return Ok(None);
@@ -127,9 +131,10 @@ impl Mechanism {
             return Err(NoTransmission::Inputs { section, inputs, freedoms });
         }
         let basis = vec![Local::zeros(); kind.dimension() - less];
-        let system = DMatrix::zeros(inputs, 2 * inputs);
+        let rows = inputs + lacks;
+        let system = DMatrix::zeros(rows, 2 * rows);
         let along = Local::zeros();
-        Ok(Some(Self { section, kind, chains, basis, along, inputs, system }))
+        Ok(Some(Self { section, kind, chains, basis, along, inputs, constraining, lacks, system }))
     }
 
     /// Takes the twists of all joints, and chooses those of the section's output.
@@ -159,24 +164,23 @@ impl Mechanism {
         }
     }
 
-    /// Adds the indices of all inputs.
-    pub fn indices(&mut self, found: &mut Vec<InputIndices>) {
-        let n = self.inputs;
+    /// Adds the indices of all inputs; returns the output constraint index, not a number unless there is one constraint.
+    pub fn indices(&mut self, found: &mut Vec<InputIndices>) -> f64 {
+        let n = self.inputs + self.lacks;
         self.system.fill(0.0);
         let mut row = 0;
         for chain in &self.chains {
             for (place, member) in chain.members.iter().enumerate().filter(|(_, m)| m.input) {
                 let wrench = chain.wrench(place, self.kind);
-                let scale = wrench.norm();
-                let scale = if scale > ZERO { scale.recip() } else { 0.0 };
-                for (column, twist) in self.basis.iter().enumerate() {
-                    self.system[(row, column)] = wrench.dot(twist) * scale;
-                }
-                if let Some(column) = chain.along {
-                    let column = self.basis.len() + column;
-                    self.system[(row, column)] = wrench.dot(&self.along) * scale;
-                }
-                self.system[(row, n + row)] = wrench.dot(&member.twist) * scale;
+                let of = Row { wrench, basis: &self.basis, along: (chain.along, &self.along) };
+                of.write(&mut self.system, row, wrench.dot(&member.twist));
+                row += 1;
+            }
+        }
+        if let Some(chain) = self.constraining.first().map(|&leg| &self.chains[leg]) {
+            for wrench in chain.constraints(self.kind).into_iter().take(self.lacks) {
+                let of = Row { wrench, basis: &self.basis, along: (chain.along, &self.along) };
+                of.write(&mut self.system, row, wrench.norm());
                 row += 1;
             }
         }
@@ -199,6 +203,17 @@ impl Mechanism {
                 column += 1;
             }
         }
+        if self.lacks != 1 {
+            return f64::NAN;
+        }
+        let each = self.constraining.iter().map(|&leg| {
+            let chain = &self.chains[leg];
+            let output = if regular { self.output(chain, column) } else { Local::zeros() };
+            let joint = chain.members.iter().rfind(|member| has_axis(self.kind, &member.twist));
+            let [wrench, ..] = chain.constraints(self.kind);
+            cosine(self.kind, &wrench, &output, joint.map(|member| member.twist))
+        });
+        each.fold(1.0, f64::min)
     }
 
     /// The twist of the last link of a leg for a unit rate of one input, whose solution is a column of the system.
@@ -223,15 +238,43 @@ impl Mechanism {
 }
 
 impl Chain {
-    /// The wrench that is reciprocal to all joints but one.
+    /// The wrench that is reciprocal to all joints but one, and perpendicular to those that are reciprocal to all.
     fn wrench(&self, place: usize, kind: SubspaceKind) -> Local {
+        let own = self.members[place].twist;
         let mut others =
             self.members.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, m)| m.twist);
         match (kind.dimension(), others.next(), others.next()) {
             (3, Some(a), Some(b)) => a.cross(&b),
-            (2, Some(a), None) => Local::new(-a.y, a.x, 0.0),
-            _ => Local::zeros(),
+            (2, Some(a), _) => Local::new(-a.y, a.x, 0.0),
+            (_, Some(other), None) => {
+                let at = Reference::on(kind, [&other, &own]);
+                let [own, other] = [own, other].map(|twist| at.twist(&twist));
+                at.wrench_back(&other.cross(&own.cross(&other)))
+            }
+            (_, None, _) => {
+                let at = Reference::on(kind, [&own, &own]);
+                at.wrench_back(&at.twist(&own))
+            }
+            (_, Some(_), Some(_)) => Local::zeros(),
         }
+    }
+
+    /// The wrenches that are reciprocal to all joints; of three, the first `d − m` count.
+    fn constraints(&self, kind: SubspaceKind) -> [Local; 3] {
+        let units = [Local::x(), Local::y(), Local::z()];
+        let twists = || self.members.iter().map(|member| member.twist);
+        let (mut all, mut rest) = (twists(), [Local::zeros(); 3]);
+        match (kind.dimension(), all.next(), all.next()) {
+            (2, Some(a), _) => rest[0] = Local::new(-a.y, a.x, 0.0),
+            (_, Some(a), Some(b)) => rest[0] = a.cross(&b),
+            (_, Some(a), None) => {
+                let unit = units[a.iamin()];
+                rest[0] = a.cross(&unit);
+                rest[1] = a.cross(&rest[0]);
+            }
+            (_, None, _) => rest = units,
+        }
+        rest
     }
 
     /// The joint on the wrench's axis that is next to an input, on the platform's side if two are.
@@ -246,6 +289,56 @@ impl Chain {
     fn last(&self, place: usize, kind: SubspaceKind) -> Option<&Member> {
         let others = self.members.iter().enumerate().filter(|(i, _)| *i != place);
         others.map(|(_, member)| member).rfind(|member| has_axis(kind, &member.twist))
+    }
+}
+
+/// A point of a plane that moments are taken about. Other subspaces need none.
+struct Reference {
+    x: f64,
+    y: f64,
+}
+
+impl Reference {
+    /// The point of the first of two joints that has an axis; the origin without one.
+    fn on(kind: SubspaceKind, joints: [&Local; 2]) -> Self {
+        let planar = |joint: &&&Local| kind == SubspaceKind::Planar && has_axis(kind, joint);
+        let joint = joints.iter().find(planar);
+        let (x, y) = joint.map_or((0.0, 0.0), |joint| (-joint.z / joint.x, joint.y / joint.x));
+        Self { x, y }
+    }
+
+    /// A twist with the velocity of this point.
+    fn twist(&self, t: &Local) -> Local {
+        Local::new(t.x, t.y - t.x * self.y, t.z + t.x * self.x)
+    }
+
+    /// A wrench with its moment about the origin, from the one with that about this point.
+    fn wrench_back(&self, w: &Local) -> Local {
+        Local::new(w.x + self.x * w.z - self.y * w.y, w.y, w.z)
+    }
+}
+
+/// What a wrench does to the unknowns.
+struct Row<'a> {
+    wrench: Local,
+    basis: &'a [Local],
+    /// The column of the rate along the intersection motion, and that motion.
+    along: (Option<usize>, &'a Local),
+}
+
+impl Row<'_> {
+    /// Writes the row of a system, with its power on the right.
+    fn write(&self, system: &mut DMatrix<f64>, row: usize, power: f64) {
+        let scale = self.wrench.norm();
+        let scale = if scale > ZERO { scale.recip() } else { 0.0 };
+        for (column, twist) in self.basis.iter().enumerate() {
+            system[(row, column)] = self.wrench.dot(twist) * scale;
+        }
+        if let (Some(column), along) = self.along {
+            system[(row, self.basis.len() + column)] = self.wrench.dot(along) * scale;
+        }
+        let unknowns = system.nrows();
+        system[(row, unknowns + row)] = power * scale;
     }
 }
 

@@ -1,10 +1,9 @@
 //! The shapes and the masses of bodies.
 
 use crate::color::{MATERIALS, color};
-use crate::mass::Mass;
 use crate::xml::Element;
 use nalgebra::{UnitQuaternion, Vector3};
-use opm_core::skeleton::{Body, Part, Solid};
+use opm_core::skeleton::{Body, Mass, Part, Solid};
 
 /// The shapes of a body.
 pub fn shapes(body: &Body) -> impl Iterator<Item = Element> {

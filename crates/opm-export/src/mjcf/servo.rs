@@ -5,12 +5,11 @@
 //! load a servo is critically damped. What it really moves is less, so that it follows at least as fast.
 
 use super::list;
-use crate::mass::Mass;
 use crate::xml::Element;
 use nalgebra::{Unit, Vector3};
 use opm_core::Quantity;
 use opm_core::mechanism::joint::{Joint, JointKind};
-use opm_core::skeleton::Body;
+use opm_core::skeleton::{Body, Mass};
 use std::f64::consts::TAU;
 
 /// The natural frequency of a servo on its load, radians per second: 20 Hz.

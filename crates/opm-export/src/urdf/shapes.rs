@@ -1,10 +1,9 @@
 //! The shapes and the masses of links.
 
 use super::joints::origin;
-use crate::mass::Mass;
 use crate::xml::Element;
 use nalgebra::{Point3, Unit, UnitQuaternion, Vector3};
-use opm_core::skeleton::{Body, Part, Solid};
+use opm_core::skeleton::{Body, Mass, Part, Solid};
 
 /// A link with the shapes of a body, whose frame is at `place`.
 pub fn link(name: &str, body: &Body, place: Point3<f64>) -> Element {

@@ -1,7 +1,8 @@
 //! The curves of a motion: those of one role and one unit are in one plot.
 
 use crate::trajectory::{
-    CONDITION_TOPIC, DEPENDENT_TOPIC, IMAGINARY_TOPIC, JOINTS_TOPIC, POSE_TOPIC, Role,
+    CONDITION_TOPIC, DEPENDENT_TOPIC, IMAGINARY_TOPIC, INDICES_TOPIC, JOINTS_TOPIC, POSE_TOPIC,
+    Role,
 };
 use crate::{Message, Metadata, Recording};
 use std::collections::BTreeMap;
@@ -90,6 +91,27 @@ impl Flats {
                 schema: schema.clone(),
                 curves: vec![(CONDITION.to_owned(), CONDITION.to_owned())],
             });
+        }
+        if let Some((schema, fields)) = self.topics.get(INDICES_TOPIC) {
+            let unit = |field: &String| units.get(field).map_or("", |unit| unit);
+            let mut each: Vec<&str> = fields.iter().map(unit).collect();
+            each.sort_unstable();
+            each.dedup();
+            plots.extend(each.into_iter().map(|own| {
+                Plot {
+                    title: if own.is_empty() {
+                        "Indices".into()
+                    } else {
+                        format!("Indices [{own}]")
+                    },
+                    unit: own.to_owned(),
+                    topic: INDICES_TOPIC.to_owned(),
+                    schema: schema.clone(),
+                    curves: (fields.iter().filter(|field| unit(field) == own))
+                        .map(|field| (field.clone(), field.clone()))
+                        .collect(),
+                }
+            }));
         }
         plots
     }

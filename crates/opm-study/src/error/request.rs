@@ -3,7 +3,7 @@
 use crate::kind::{PosePart, WorkspaceKind};
 use crate::names::{INVERSE_CONDITION, TIP};
 use crate::text::count;
-use opm_analysis::IndexError;
+use opm_analysis::{IndexError, SpringError};
 use opm_core::manipulator::FollowingCoordinate;
 use opm_workspace::{GridError, InscribedError, InscribedShape};
 use std::path::PathBuf;
@@ -36,6 +36,12 @@ pub enum RequestOption {
     Color,
     /// The file of a recording.
     Output,
+    /// What acts on the platform.
+    Wrench,
+    /// What makes bodies heavy.
+    Gravity,
+    /// The stiffness of links and actuators.
+    Stiffness,
     /// What rejects poses.
     Explain,
     /// The largest disc, ball or box.
@@ -58,6 +64,9 @@ impl RequestOption {
             Self::Scalars => "scalars",
             Self::Color => "color",
             Self::Output => "path",
+            Self::Wrench => "load",
+            Self::Gravity => "gravity",
+            Self::Stiffness => "springs",
             Self::Explain => "explain",
             Self::Inscribed => "inscribed",
         }
@@ -155,6 +164,29 @@ pub enum RequestError {
     Length(f64),
     /// A characteristic length is given, but no condition number uses it.
     UnusedLength,
+    /// A load is given, but no number uses it.
+    UnusedLoad {
+        /// The option.
+        option: RequestOption,
+    },
+    /// Springs are given, but no number uses them.
+    UnusedSprings,
+    /// The springs do not suit the manipulator.
+    Springs(SpringError),
+    /// A value of the points is an index that the manipulator does not have.
+    ColumnIndex {
+        /// The option that has the name.
+        option: RequestOption,
+        /// Why it does not.
+        error: IndexError,
+    },
+    /// A value of the points is an effort, but nothing acts on the mechanism.
+    NoLoad {
+        /// The option that has the name.
+        option: RequestOption,
+        /// The name.
+        name: String,
+    },
     /// The grid does not fit the manipulator.
     Grid(GridError),
     /// An axis has several values, but the kind of workspace holds its coordinate at one value.
@@ -314,6 +346,10 @@ impl RequestError {
             | Self::Index(_)
             | Self::SectionIndex { .. } => RequestOption::Limit,
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
+            Self::Springs(_) | Self::UnusedSprings => RequestOption::Stiffness,
+            Self::UnusedLoad { option }
+            | Self::ColumnIndex { option, .. }
+            | Self::NoLoad { option, .. } => *option,
             Self::Grid(_) | Self::Held { .. } | Self::TooManySlices { .. } => RequestOption::Grid,
             Self::SeveralModes { .. } => RequestOption::Mode,
             Self::ExplainKind { .. } => RequestOption::Explain,
@@ -386,6 +422,23 @@ impl RequestError {
                 spell(RequestOption::Conditioning),
                 spell(RequestOption::Scalars),
             ),
+            Self::UnusedLoad { .. } => format!(
+                "nothing uses it; {}, {} or {} of an effort or a payload does",
+                spell(RequestOption::Limit),
+                spell(RequestOption::Color),
+                spell(RequestOption::Scalars),
+            ),
+            Self::UnusedSprings => format!(
+                "nothing uses it; {}, {} or {} of a stiffness does",
+                spell(RequestOption::Limit),
+                spell(RequestOption::Color),
+                spell(RequestOption::Scalars),
+            ),
+            Self::Springs(error) => error.to_string(),
+            Self::ColumnIndex { error, .. } => error.to_string(),
+            Self::NoLoad { name, .. } => {
+                format!("{name}: nothing acts on the mechanism; give a wrench or gravity")
+            }
             Self::Grid(error) => error.to_string(),
             Self::Held { kind, axis, count } => {
                 let part = match kind {

@@ -2,6 +2,7 @@
 
 use super::{Attachment, PROGRAM, record};
 use crate::kind::WorkspaceKind;
+use crate::setup::{fields, of_fields};
 use crate::workspace::{Clearance, Workspace};
 use opm_analysis::Index;
 use opm_core::manipulator::Manipulator;
@@ -39,15 +40,17 @@ pub fn describe(workspace: &Workspace, mechanism: Attachment<'_>) -> Metadata {
         ("mode", workspace.mode_name()),
         ("poses", workspace.grid.poses().to_string()),
     ]);
-    if let Some(limit) = workspace.limit {
+    if let Some(limit) = &workspace.limit {
         if let Some(most) = limit.max_condition() {
             run.insert("max_condition".to_owned(), most.to_string());
         }
         for (index, bound) in limit.indices.iter() {
             run.insert(format!("{LIMIT}{index}"), bound.to_string());
         }
-        run.insert("characteristic_length".to_owned(), limit.length.to_string());
+        run.insert("characteristic_length".to_owned(), limit.length().to_string());
     }
+    let setup = fields(&workspace.setup, &workspace.manipulator);
+    run.extend(setup.into_iter().map(|(key, value)| (key.to_owned(), value)));
     if let Some(clearance) = &workspace.clearance {
         run.insert(CLEARANCE.to_owned(), clearance.least.to_string());
     }
@@ -83,10 +86,21 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
         signs => Modes::One(manipulator.parse_mode(signs).ok()?),
     };
     let number = |key: &str| run.get(key).map(|text| text.parse().ok());
-    let limit = match number("characteristic_length") {
+    let conditioning: Option<f64> = match number(CONDITIONING) {
         None => None,
-        Some(length) => {
-            let mut limit = PoseLimit::none(length?);
+        Some(length) => Some(length?),
+    };
+    let limited: Option<f64> = match number("characteristic_length") {
+        None => None,
+        Some(length) => Some(length?),
+    };
+    let length = limited.or(conditioning).unwrap_or_else(|| manipulator.characteristic_length());
+    let field = |key: &str| run.get(key).map(|text| &**text);
+    let setup = Arc::new(of_fields(field, length, &manipulator)?);
+    let limit = match limited {
+        None => None,
+        Some(_) => {
+            let mut limit = PoseLimit::of(Arc::clone(&setup));
             if let Some(most) = number("max_condition") {
                 limit.most = most?;
             }
@@ -98,16 +112,10 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
             Some(limit)
         }
     };
-    let conditioning: Option<f64> = match number(CONDITIONING) {
-        None => None,
-        Some(length) => Some(length?),
-    };
     let clearance = match number(CLEARANCE) {
         None => None,
         Some(least) => Some(Clearance::new(&manipulator, least?)),
     };
-    let length = limit.map(|limit| limit.length).or(conditioning);
-    let length = length.unwrap_or_else(|| manipulator.characteristic_length());
     let conditioning = conditioning.is_some();
     let (shape, unbounded) = (false, None);
     Some(Workspace {
@@ -117,7 +125,7 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
         modes,
         limit,
         clearance,
-        length,
+        setup,
         conditioning,
         shape,
         unbounded,

@@ -39,6 +39,7 @@ pub fn record_linkage(
         imaginary: imaginary_coordinates(cuts.imaginary),
         rates: false,
         measures: Vec::new(),
+        indices: Vec::new(),
         bodies: scene.bodies(),
         files: vec![(mechanism_file.name, mechanism_file.text.as_bytes())],
         run: record([

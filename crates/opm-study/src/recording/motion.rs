@@ -1,5 +1,6 @@
 //! The recording of a motion.
 
+use super::judged::Judged;
 use super::scene::{Scene, imaginary_coordinates, joint_coordinates};
 use super::{Attachment, PROGRAM, create, expect_mcap, record};
 use crate::error::StudyError;
@@ -26,6 +27,8 @@ pub struct MotionRecorder<'a> {
     /// Whether the upper and the lower section have a parallel singularity measure.
     parallel: [bool; 2],
     measures: Vec<f64>,
+    /// What the poses are judged by, if that is recorded.
+    judged: Option<Judged<'a>>,
     /// The pairs of bodies, if contacts are watched for.
     interference: Option<Interference>,
     /// The numbers of the scene's bodies that interfere at the present sample.
@@ -48,7 +51,10 @@ impl<'a> MotionRecorder<'a> {
         let file = create(path)?;
         let scene = Scene::of(request.manipulator);
         let parallel = parallel(request.manipulator);
-        let recorded = recorded(&request, files, &scene, parallel);
+        let judged = request.indices.and_then(|setup| Judged::new(request.manipulator, setup));
+        let names = judged.iter().flat_map(Judged::columns);
+        let mut recorded = recorded(&request, files, &scene, parallel);
+        recorded.indices = names.map(|(name, unit)| (name.to_owned(), unit)).collect();
         let recorder = TrajectoryRecorder::new(file, &recorded);
         let recorder = recorder.map_err(|error| StudyError::record(&place, error))?;
         let interference =
@@ -62,6 +68,7 @@ impl<'a> MotionRecorder<'a> {
             last,
             parallel,
             measures,
+            judged,
             interference,
             interfering,
         })
@@ -173,10 +180,13 @@ impl<'a> MotionRecorder<'a> {
                 self.measures.push(defined(measures.parallel.unwrap_or_default()));
             }
         }
+        let at = sample.reached.then_some(solution);
+        let indices = self.judged.as_mut().map_or(&[][..], |judged| judged.values(at));
         let recorded = Recorded {
             pose: &instant.pose,
             pose_velocities: &instant.velocity,
             measures: &self.measures,
+            indices,
             valid: sample.valid(),
             posture,
         };
@@ -253,6 +263,7 @@ fn recorded<'a>(
         imaginary: imaginary_coordinates(manipulator.imaginary()),
         rates: true,
         measures: measures(parallel),
+        indices: Vec::new(),
         bodies: scene.bodies(),
         files: files.map(|file| (file.name, file.text.as_bytes())).to_vec(),
         run: record([

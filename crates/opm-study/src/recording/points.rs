@@ -10,7 +10,7 @@ use opm_core::Quantity;
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Solution};
 use opm_core::nalgebra::Point3;
 use opm_mcap::{CloudLayout, Packer, RecordError, TableFormat};
-use opm_workspace::{Aspects, Conditioned, Count, Hits, Modes, PoseLimit, Poses, Progress};
+use opm_workspace::{Aspects, Conditioned, Count, Hits, Modes, Poses, Progress};
 use std::sync::{Mutex, PoisonError};
 
 /// The values of the points in a recording of poses.
@@ -68,7 +68,7 @@ impl<'a> Cloud<'a> {
     pub fn passes(&self) -> u64 {
         match self.shown.color.column {
             Column::Actuated(number) if self.limits(number).is_none() => 3,
-            Column::InverseCondition | Column::Index(_) => 3,
+            Column::InverseCondition | Column::Index(_) | Column::Effort(_) => 3,
             Column::Coordinate(_)
             | Column::Imaginary(_)
             | Column::Actuated(_)
@@ -116,6 +116,7 @@ impl<'a> Cloud<'a> {
             | Column::InverseCondition
             | Column::Aspect
             | Column::Index(_)
+            | Column::Effort(_)
             | Column::Share => unreachable!("axes are task coordinates, or the platform's point"),
         });
         let scale = scale(&self.shown, self.measures());
@@ -157,6 +158,7 @@ impl<'a> Cloud<'a> {
             }
             Column::InverseCondition
             | Column::Index(_)
+            | Column::Effort(_)
             | Column::Tip(_)
             | Column::Share
             | Column::Zero => None,
@@ -304,14 +306,19 @@ impl<'a> Points<'a> {
                 |column| if let Column::Index(index) = column { Some(*index) } else { None },
             )
             .collect();
-        let indices = match asked_indices.is_empty() {
+        let setup = &cloud.workspace.setup;
+        let efforts = columns.iter().any(|column| matches!(column, Column::Effort(_)));
+        let indices = match asked_indices.is_empty() && !efforts {
             true => None,
-            false => Indices::new(manipulator, cloud.workspace.length, asked_indices).ok(),
+            false => Indices::new(manipulator, setup, asked_indices).ok(),
         };
-        let given = cloud.workspace.limit;
-        let limit = given.unwrap_or(PoseLimit::none(cloud.workspace.length));
+        let indices = match efforts {
+            true => indices.map(|indices| indices.with_efforts(setup)),
+            false => indices,
+        };
+        let given = cloud.workspace.limit();
         let limited = || {
-            let conditioned = Conditioned::new(manipulator, limit);
+            let conditioned = Conditioned::new(manipulator, cloud.workspace.limit_or_none());
             Joints::Limited(Box::new((conditioned, manipulator.solution())))
         };
         let joints = match cloud.workspace.modes {
@@ -322,7 +329,7 @@ impl<'a> Points<'a> {
             Modes::Any => Joints::Any(Box::new((manipulator.all_modes(), manipulator.solution()))),
         };
         let conditions = condition.then(|| {
-            let conditioned = Conditioned::new(manipulator, limit);
+            let conditioned = Conditioned::new(manipulator, cloud.workspace.limit_or_none());
             Box::new(Conditions { conditioned, poses: Vec::new(), indices: Vec::new() })
         });
         Self {
@@ -461,8 +468,15 @@ impl<'a> Points<'a> {
                     let found = self.indices.as_ref().and_then(|indices| indices.value(index));
                     found.unwrap_or(f64::NAN)
                 }
+                (Column::Effort(number), Joints::Limited(_)) => {
+                    let efforts = self.indices.as_ref().map(Indices::efforts);
+                    efforts.and_then(|efforts| efforts.get(number).copied()).unwrap_or(f64::NAN)
+                }
                 (
-                    Column::Imaginary(_) | Column::Actuated(_) | Column::Index(_),
+                    Column::Imaginary(_)
+                    | Column::Actuated(_)
+                    | Column::Index(_)
+                    | Column::Effort(_),
                     Joints::Unused | Joints::One(_) | Joints::Any(_),
                 ) => {
                     unreachable!("Points::new has buffers for what columns ask for")

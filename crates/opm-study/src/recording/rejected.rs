@@ -118,7 +118,8 @@ impl Rejected<'_> {
                 | Column::Actuated(_)
                 | Column::InverseCondition
                 | Column::Aspect
-                | Column::Index(_) => 0.0,
+                | Column::Index(_)
+                | Column::Effort(_) => 0.0,
             }));
             if !row.iter().all(|value| value.is_finite()) {
                 // Without its dependent coordinates, a pose does not say where the platform is.

@@ -89,7 +89,8 @@ impl<'a> SetCloud<'a> {
             | Column::Tip(_)
             | Column::InverseCondition
             | Column::Aspect
-            | Column::Index(_) => [0.0, 0.0],
+            | Column::Index(_)
+            | Column::Effort(_) => [0.0, 0.0],
         };
         layout(&self.shown, color_range, "task", self.measures())
     }
@@ -142,7 +143,8 @@ impl<'a> SetCloud<'a> {
                     | Column::Tip(_)
                     | Column::InverseCondition
                     | Column::Aspect
-                    | Column::Index(_) => {
+                    | Column::Index(_)
+                    | Column::Effort(_) => {
                         unreachable!("points of a set are not poses")
                     }
                 };
@@ -177,7 +179,8 @@ impl<'a> SetCloud<'a> {
                 | Column::Tip(_)
                 | Column::InverseCondition
                 | Column::Aspect
-                | Column::Index(_) => None,
+                | Column::Index(_)
+                | Column::Effort(_) => None,
             })
             .collect();
         let coordinates = coordinates?;

@@ -1,11 +1,10 @@
 //! The table of a motion: a row for each sample, as CSV or as NPY.
 
+use super::judged::Judged;
 use super::{create, refuse_standard_output};
 use crate::error::{RequestError, StudyError};
 use crate::motion::{MotionRequest, MotionSummary};
-use opm_analysis::{Index, Indices};
 use opm_core::Quantity;
-use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Sample, Trajectory};
 use opm_mcap::{PartialFile, RecordError, Sink, TableRecorder};
@@ -19,8 +18,6 @@ pub struct TableOptions {
     pub rates: bool,
     /// The second derivatives by time, as `dd.NAME`.
     pub accelerations: bool,
-    /// The indices that the mechanism has ([`Index`]), by their names.
-    pub indices: bool,
     /// Units of a file, which the header then names: `S1 [mm]`. If not given, SI and radians without a name.
     pub units: Option<FileUnits>,
 }
@@ -36,17 +33,15 @@ enum Format {
 /// all of them but `t`, in the same order, and their accelerations; then indices.
 struct Columns<'a> {
     options: TableOptions,
-    indices: Option<Indices<'a>>,
+    indices: Option<Judged<'a>>,
     /// Names and quantities, without `t`.
     coordinates: Vec<(String, Quantity)>,
 }
 
 impl<'a> Columns<'a> {
-    fn new(manipulator: &'a Manipulator, options: TableOptions) -> Self {
-        let known = Index::ALL.into_iter().filter(|index| index.check(manipulator).is_ok());
-        let length = manipulator.characteristic_length();
-        let indices = options.indices.then(|| Indices::new(manipulator, length, known).ok());
-        let indices = indices.flatten();
+    fn new(request: &MotionRequest<'a>, options: TableOptions) -> Self {
+        let manipulator = request.manipulator;
+        let indices = request.indices.and_then(|setup| Judged::new(manipulator, setup));
         let tasks = manipulator.task_coordinates().iter();
         let tasks = tasks.chain(manipulator.dependent_coordinates());
         let joints = manipulator.coordinates().iter().map(|c| (c.name.clone(), c.quantity));
@@ -73,11 +68,10 @@ impl<'a> Columns<'a> {
                 None => format!("{prefix}{name}"),
             }));
         }
-        for index in self.indices.iter().flat_map(Indices::indices) {
-            let facts = index.facts();
-            names.push(match (units, facts.unit) {
-                (None, _) | (_, "") => facts.name.to_owned(),
-                (Some(_), unit) => format!("{} [{unit}]", facts.name),
+        for (name, unit) in self.indices.iter().flat_map(Judged::columns) {
+            names.push(match (units, unit) {
+                (None, _) | (_, "") => name.to_owned(),
+                (Some(_), unit) => format!("{name} [{unit}]"),
             });
         }
         names
@@ -118,11 +112,7 @@ impl<'a> Columns<'a> {
             }));
         }
         if let Some(indices) = &mut self.indices {
-            let blank = indices.indices().len();
-            match *reached {
-                true => row.extend(indices.evaluate(solution)),
-                false => row.extend(std::iter::repeat_n(f64::NAN, blank)),
-            }
+            row.extend(indices.values(reached.then_some(solution)));
         }
     }
 }
@@ -139,7 +129,7 @@ pub fn write_motion_csv(
     (place, output): (&str, &mut dyn Write),
     go_on: impl Fn(u64) -> bool,
 ) -> Result<MotionSummary, StudyError> {
-    let mut columns = Columns::new(request.manipulator, options);
+    let mut columns = Columns::new(&request, options);
     let failed = |error: io::Error| StudyError::record(place, RecordError::Io(error));
     let mut output = io::BufWriter::new(output);
     writeln!(output, "{}", columns.header().join(",")).map_err(failed)?;
@@ -188,7 +178,7 @@ pub fn write_motion_table(
             Ok(summary)
         }
         Format::Npy => {
-            let mut columns = Columns::new(request.manipulator, options);
+            let mut columns = Columns::new(&request, options);
             let header = columns.header();
             let names: Vec<&str> = header.iter().map(String::as_str).collect();
             let samples = trajectory.samples();

@@ -53,7 +53,7 @@ impl<'a> Together<'a> {
         Self {
             ranges,
             batch: sweep.manipulator.batch(),
-            limited: sweep.limit.map(limited),
+            limited: sweep.limit.clone().map(limited),
             clear: sweep.clear_poses(),
             digits: vec![0; axes],
             pose: vec![0.0; axes],

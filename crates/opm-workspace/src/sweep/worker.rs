@@ -194,7 +194,7 @@ impl<'a> Worker<'a> {
             asked: None,
             fixed: None,
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },
-            limit: sweep.limit.map(|limit| LimitedRows::new(manipulator, limit)),
+            limit: sweep.limit.clone().map(|limit| LimitedRows::new(manipulator, limit)),
             clear: sweep.clear_poses(),
             one: OnePose {
                 pose: pose(),

@@ -1,8 +1,8 @@
 //! Masses of solids of one density, their centres and their tensors of inertia.
 
+use super::{Body, Density, Skeleton, Solid};
+use crate::mechanism::{BodyMasses, Mechanism};
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
-use opm_core::mechanism::{BodyMasses, Mechanism};
-use opm_core::skeleton::{Body, Solid};
 use std::f64::consts::PI;
 
 /// A rigid body's mass.
@@ -16,21 +16,36 @@ pub struct Mass {
     pub inertia: Matrix3<f64>,
 }
 
-/// The masses of all bodies of a mechanism, in the order of its skeleton, each in its body's frame. Those that the
-/// mechanism does not give follow from the shapes and a density, kilograms per cubic metre.
-pub fn of_bodies(mechanism: &Mechanism, bodies: &[Body], density: f64) -> Vec<Mass> {
-    // The base, then the bodies that move in the order of their names.
-    let platform = bodies.len() - 2;
-    let given = mechanism.body_names().enumerate().map(|(number, name)| {
-        // A joint may be called as the platform is.
-        let other = name == BodyMasses::PLATFORM && number != platform;
-        mechanism.bodies.of(name).filter(|_| !other)
-    });
-    let weighed = bodies.iter().zip([None].into_iter().chain(given)).map(|(body, given)| {
-        let mass = Mass::of_body(body, density);
-        given.map_or(mass, |given| mass.share(given / mass.mass))
-    });
-    weighed.collect()
+impl Skeleton {
+    /// The masses of all bodies of the mechanism that this is the skeleton of, in the order of [`Skeleton::bodies`], each in
+    /// its body's frame. Those that the mechanism does not give follow from the shapes and a density.
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    /// use opm_core::skeleton::{Density, Skeleton};
+    ///
+    /// let manipulator = Manipulator::example("planar-3rrr")?;
+    /// let skeleton = Skeleton::new(manipulator.mechanism(), None);
+    /// let masses = skeleton.masses(manipulator.mechanism(), Density::default());
+    /// assert_eq!(masses.len(), skeleton.bodies().len());
+    /// # Ok::<(), opm_core::ReadError>(())
+    /// ```
+    pub fn masses(&self, mechanism: &Mechanism, density: Density) -> Vec<Mass> {
+        let density = density.of(mechanism);
+        // The base, then the bodies that move in the order of their names.
+        let platform = self.platform - 1;
+        let given = mechanism.body_names().enumerate().map(|(number, name)| {
+            // A joint may be called as the platform is.
+            let other = name == BodyMasses::PLATFORM && number != platform;
+            mechanism.bodies.of(name).filter(|_| !other)
+        });
+        let weighed = self.bodies.iter().zip([None].into_iter().chain(given));
+        let weighed = weighed.map(|(body, given)| {
+            let mass = Mass::of_body(body, density);
+            given.map_or(mass, |given| mass.share(given / mass.mass))
+        });
+        weighed.collect()
+    }
 }
 
 impl Mass {

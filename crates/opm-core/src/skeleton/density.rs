@@ -1,6 +1,6 @@
 //! The density of bodies whose masses are not given.
 
-use opm_core::mechanism::Mechanism;
+use crate::mechanism::Mechanism;
 
 /// The density of all bodies whose masses a mechanism does not give: that of the mechanism, unless another one is set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,23 +32,34 @@ impl Density {
     /// # Errors
     /// It is not a number from 0.001 to 1,000,000.
     pub fn new(given: Option<f64>) -> Result<Self, OutOfRange> {
-        given.map_or(Ok(()), |value| check("density", value, DENSITIES)).map(|()| Self(given))
+        let checked = given.map_or(Ok(()), |value| OutOfRange::check("density", value, DENSITIES));
+        checked.map(|()| Self(given))
     }
 
-    /// Kilograms per cubic metre.
-    pub(crate) fn of(self, mechanism: &Mechanism) -> f64 {
+    /// The density that was set instead of the mechanism's, kilograms per cubic metre.
+    pub fn given(self) -> Option<f64> {
+        self.0
+    }
+
+    /// Kilograms per cubic metre, for a mechanism.
+    pub fn of(self, mechanism: &Mechanism) -> f64 {
         self.0.or(mechanism.bodies.density).unwrap_or(Self::ALUMINIUM)
     }
 }
 
-/// Checks that an option is in its range.
-pub(crate) fn check(
-    option: &'static str,
-    value: f64,
-    [least, most]: [f64; 2],
-) -> Result<(), OutOfRange> {
-    match (least..=most).contains(&value) {
-        true => Ok(()),
-        false => Err(OutOfRange { option, value, least, most }),
+impl OutOfRange {
+    /// Checks that an option is in its range.
+    ///
+    /// # Errors
+    /// It is not.
+    pub fn check(
+        option: &'static str,
+        value: f64,
+        [least, most]: [f64; 2],
+    ) -> Result<(), OutOfRange> {
+        match (least..=most).contains(&value) {
+            true => Ok(()),
+            false => Err(OutOfRange { option, value, least, most }),
+        }
     }
 }

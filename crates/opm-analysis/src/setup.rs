@@ -1,0 +1,107 @@
+//! What a pose is judged by besides the pose itself: a load, springs, a length.
+
+use crate::efforts::{Balance, Efforts};
+use crate::statics::{Statics, Velocity};
+use crate::stiffness::Springs;
+use crate::weights::{Gravity, Weights};
+use crate::wrench::{Load, Wrench};
+use opm_core::manipulator::{Manipulator, Solution};
+
+/// What indices and efforts are computed with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The characteristic length, metres; usually [`Manipulator::characteristic_length`].
+    pub length: f64,
+    /// What acts on the platform.
+    pub load: Option<Load>,
+    /// What makes links and platform heavy.
+    pub gravity: Option<Gravity>,
+    /// How much the mechanism gives way.
+    pub springs: Option<Springs>,
+}
+
+impl Setup {
+    /// No load and no springs, with a characteristic length, metres.
+    pub fn new(length: f64) -> Self {
+        Self { length, load: None, gravity: None, springs: None }
+    }
+
+    /// Whether anything acts on the mechanism.
+    pub fn has_load(&self) -> bool {
+        self.load.is_some() || self.gravity.is_some()
+    }
+}
+
+/// What acts on a mechanism, at one pose after the other.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use opm_analysis::{Gravity, Loads, Setup, Statics};
+/// use opm_core::Manipulator;
+/// use opm_core::skeleton::Density;
+///
+/// let manipulator = Manipulator::example("planar-3rrr")?;
+/// let length = manipulator.characteristic_length();
+/// let gravity = Gravity { acceleration: -9.81 * Vector3::y(), density: Density::default() };
+/// let setup = Setup { gravity: Some(gravity), ..Setup::new(length) };
+/// let mut loads = Loads::new(&manipulator, &setup).expect("links are heavy");
+/// let mut statics = Statics::new(&manipulator, length);
+/// let (mut buffer, home) = (manipulator.solution(), manipulator.home_pose());
+/// let at = manipulator.inverse(&home, manipulator.home_mode(), &mut buffer)?;
+/// let at = at.expect("home is in reach");
+/// statics.update(at)?;
+/// let efforts = loads.efforts(&statics, at);
+/// assert!(efforts.actuated.iter().all(Option::is_some) && loads.mass() > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Loads<'a> {
+    manipulator: &'a Manipulator,
+    load: Load,
+    weights: Option<Weights<'a>>,
+}
+
+impl<'a> Loads<'a> {
+    /// The loads of a setup; `None` if it has none.
+    pub fn new(manipulator: &'a Manipulator, setup: &Setup) -> Option<Self> {
+        setup.has_load().then(|| Self {
+            manipulator,
+            load: setup.load.unwrap_or_default(),
+            weights: setup.gravity.map(|gravity| Weights::new(manipulator, &gravity)),
+        })
+    }
+
+    /// The mass of the bodies whose weights act, kilograms; 0 without gravity.
+    pub fn mass(&self) -> f64 {
+        self.weights.as_ref().map_or(0.0, Weights::mass)
+    }
+
+    /// What acts on the platform, its own weight left out, as a wrench at its reference point.
+    pub fn wrench(&self, at: &Solution) -> Wrench {
+        self.load.on(&self.manipulator.platform_at(&at.displacement(self.manipulator)))
+    }
+
+    /// The work of all loads for each independent velocity at a pose, of which `statics` has taken the solution. `None` where
+    /// the velocity of a link is not known.
+    pub fn work(&mut self, statics: &Statics<'_>, at: &Solution) -> Option<Velocity> {
+        let mut work = statics.work(&self.wrench(at));
+        if let Some(weights) = &mut self.weights {
+            let own = weights.work(statics, at)?;
+            work.iter_mut().zip(own).for_each(|(part, own)| *part += own);
+        }
+        Some(work)
+    }
+
+    /// The efforts that balance all loads.
+    pub fn efforts(&mut self, statics: &Statics<'_>, at: &Solution) -> Efforts {
+        let regular = statics.is_regular();
+        match regular.then(|| self.work(statics, at)).flatten() {
+            Some(work) => statics.efforts_for(&work),
+            None => Efforts {
+                balance: Balance::Singular,
+                actuated: vec![None; self.manipulator.actuated().len()],
+                imaginary: vec![None; self.manipulator.imaginary().len()],
+            },
+        }
+    }
+}
