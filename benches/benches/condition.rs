@@ -17,14 +17,14 @@ fn main() {
         let reachable = reachable.reachable;
         // A limit that some half of the poses keep.
         let limit = PoseLimit::none(length).with_condition(20.0);
-        let limited = sweep.with_limit(limit).expect("a grid of poses");
-        let admitted = by_pose(&manipulator, &grid, modes, limit);
+        let limited = sweep.clone().with_limit(limit.clone()).expect("a grid of poses");
+        let admitted = by_pose(&manipulator, &grid, modes, limit.clone());
         let timings = compare(vec![
             Contender::new("inverse kinematics, all joints, pose by pose", grid.poses(), || {
                 assert_eq!(by_inverse(&manipulator, &grid), reachable);
             }),
             Contender::new("a limit on the condition number, pose by pose", grid.poses(), || {
-                assert_eq!(by_pose(&manipulator, &grid, modes, limit), admitted);
+                assert_eq!(by_pose(&manipulator, &grid, modes, limit.clone()), admitted);
             }),
             Contender::new("a sweep with this limit", grid.poses(), || {
                 let count = pool.install(|| limited.count(&Progress::default()));

@@ -1,19 +1,17 @@
 //! Forces and transmission for arrays of poses.
 
 use crate::arguments;
+use crate::error::request;
 use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
-use crate::velocity::characteristic_length;
-use nalgebra::Vector3;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
-use opm_analysis::{Balance, Index, Indices, Load, LoadAxes, LoadPoint, Statics, Wrench};
+use crate::setup::{Given, WRENCH};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArrayMethods};
+use opm_analysis::{Balance, Compliant, Index, Indices, Load, Loads, Setup, Statics, Wrench};
 use pyo3::prelude::*;
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
-
-/// The components of a wrench.
-const WRENCH: [&str; 6] = ["FX", "FY", "FZ", "MX", "MY", "MZ"];
 
 /// Forces and transmission at many poses; NaN where a pose is out of reach, and where a number is not known.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
@@ -32,14 +30,36 @@ pub struct Analysis {
     oti: Py<PyArray1<f64>>,
     /// (n,), no unit: local transmission index, the least of both.
     lti: Py<PyArray1<f64>>,
+    /// (n,), no unit: output constraint index, of legs that constrain the platform.
+    oci: Py<PyArray1<f64>>,
     /// (n,), no unit: largest effort of an actuator for a unit force in the worst direction, torques over the characteristic
     /// length.
     effort_per_force: Py<PyArray1<f64>>,
     /// (n,), no unit: largest effort of an actuator for a unit moment in the worst direction, forces times the characteristic
     /// length.
     effort_per_moment: Py<PyArray1<f64>>,
-    /// (n,), N: largest force that the actuators bear in every direction, within their ``max_effort``.
+    /// (n,), N: largest effort of an actuator under the load, torques over the characteristic length.
+    effort: Py<PyArray1<f64>>,
+    /// (n,), no unit: largest share of its ``max_effort`` that an actuator needs under the load.
+    effort_share: Py<PyArray1<f64>>,
+    /// (n,), N: largest force that the actuators bear in every direction on top of the load, within their ``max_effort``.
     payload: Py<PyArray1<f64>>,
+    /// (n,), N m: largest moment that they bear about every axis, likewise.
+    payload_moment: Py<PyArray1<f64>>,
+    /// (n,), N m: radius of the largest ball in the wrench polytope around the load, a force with the characteristic length as
+    /// its lever.
+    payload_ball: Py<PyArray1<f64>>,
+    /// (n,), N/m: least force that displaces the platform by a unit of length along it.
+    stiffness: Py<PyArray1<f64>>,
+    /// (n,), N m/rad: least moment that turns the platform by a unit of angle about its axis.
+    rotational_stiffness: Py<PyArray1<f64>>,
+    /// (n,), m: distance of the nearest two bodies; negative where they overlap.
+    clearance: Py<PyArray1<f64>>,
+    /// (n, 6, 6): force and moment on the platform at its reference point, by its translations along x, y and z of the base and
+    /// its rotations about them; None without stiffnesses.
+    stiffness_matrix: Option<Py<PyArray3<f64>>>,
+    /// (n, legs, 6, 6): the same for each leg, whose sum it is: what a leg carries is this times the platform's displacement.
+    leg_stiffness: Option<Py<PyArray4<f64>>>,
     /// (n,): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArray1<bool>>,
     /// (n,): whether the actuators balance the load.
@@ -55,7 +75,17 @@ pickled!(Analysis {
     lti,
     effort_per_force,
     effort_per_moment,
+    oci,
+    effort,
+    effort_share,
     payload,
+    payload_moment,
+    payload_ball,
+    stiffness,
+    rotational_stiffness,
+    clearance,
+    stiffness_matrix,
+    leg_stiffness,
     reachable,
     balanced,
 });
@@ -72,27 +102,21 @@ impl Analysis {
     }
 }
 
-/// Where a force acts, as Python gives it.
-fn load_point(given: &Bound<'_, PyAny>) -> PyResult<LoadPoint> {
-    if let Ok(name) = given.extract::<String>() {
-        match &*name {
-            "platform" => return Ok(LoadPoint::Platform),
-            "base" => return Ok(LoadPoint::Base),
-            _ => {}
-        }
-    } else {
-        let [x, y, z] = arguments::row(given, "at", &["x", "y", "z"])?[..] else {
-            return Err(wrong("at is not three numbers"));
-        };
-        return Ok(LoadPoint::From(Vector3::new(x, y, z)));
-    }
-    let found = given.repr()?;
-    Err(wrong(format!("at is {found}, expected \"platform\", \"base\" or a point (x, y, z)")))
+/// The number of tables before those of the indices.
+const TABLES: usize = 5;
+
+/// What a thread computes with.
+struct Buffers<'a> {
+    solution: opm_core::manipulator::Solution,
+    statics: Statics<'a>,
+    loads: Option<Loads<'a>>,
+    indices: Option<Indices<'a>>,
+    compliant: Option<Compliant<'a>>,
 }
 
 #[pymethods]
 impl Manipulator {
-    /// Forces and transmission at many poses: efforts of the actuators, transmission indices, payload.
+    /// Forces and transmission at many poses: efforts of the actuators, payload, transmission indices, stiffness, clearance.
     ///
     /// Parameters
     /// ----------
@@ -105,6 +129,15 @@ impl Manipulator {
     ///     metres from the reference point along the axes of `frame`.
     /// frame : str
     ///     The axes of `wrench` and `at`: ``"base"``, or ``"platform"`` for those that the platform carries.
+    /// gravity : (3,) array_like, optional
+    ///     How a body falls, m/s², base directions: the weight of links and platform acts, whose masses are those of
+    ///     :meth:`to_mjcf`.
+    /// density : float, optional
+    ///     Density of bodies whose masses the mechanism does not give, kg/m³, instead of the mechanism's.
+    /// link_stiffness : (float, float), optional
+    ///     Stiffness of each link against translations of its end, N/m, and against rotations, N m/rad.
+    /// joint_stiffness : dict of str to float, optional
+    ///     Stiffness of actuated joints, N/m and N m/rad; others are rigid.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// length : float, optional
@@ -126,7 +159,8 @@ impl Manipulator {
     /// >>> found.efforts.round(3).tolist(), found.lti.round(3).tolist()
     /// ([[0.515, 0.515, 0.515]], [0.697])
     #[pyo3(signature = (
-        poses, *, wrench = None, at = None, frame = "base", mode = "home", length = None, threads = None
+        poses, *, wrench = None, at = None, frame = "base", gravity = None, density = None,
+        link_stiffness = None, joint_stiffness = None, mode = "home", length = None, threads = None
     ))]
     #[allow(clippy::too_many_arguments)]
     fn analyze<'py>(
@@ -136,17 +170,16 @@ impl Manipulator {
         wrench: Option<&Bound<'py, PyAny>>,
         at: Option<&Bound<'py, PyAny>>,
         frame: &str,
+        gravity: Option<&Bound<'py, PyAny>>,
+        density: Option<f64>,
+        link_stiffness: Option<[f64; 2]>,
+        joint_stiffness: Option<BTreeMap<String, f64>>,
         mode: &str,
         length: Option<f64>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Analysis> {
         let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
         let poses = Rows::new(&poses)?;
-        let length = characteristic_length(&self.inner, length)?;
-        let Some(axes) = LoadAxes::from_name(frame) else {
-            return Err(wrong(format!("frame is {frame:?}, expected \"base\" or \"platform\"")));
-        };
-        let at = at.map(load_point).transpose()?.unwrap_or_default();
         let given = wrench.map(|given| arguments::one_or_rows(given, "wrench", &WRENCH));
         let given = given.transpose()?;
         let given = given.as_ref().map(Rows::new).transpose()?;
@@ -160,32 +193,66 @@ impl Manipulator {
             }
         }
         let inner = &self.inner;
+        let springs = link_stiffness.is_some();
+        let options = Given {
+            wrench: None,
+            at,
+            frame,
+            gravity,
+            density,
+            link_stiffness,
+            joint_stiffness,
+            length,
+        };
+        // Without a load, that of no force is balanced by no effort.
+        let options = options.options_with(Some(Wrench::default()))?;
+        let setup = options.check(inner).map_err(|error| request(&error))?;
+        let loaded = setup.gravity.is_some() || given.is_some();
+        let judged = match loaded {
+            true => setup.clone(),
+            false => Setup { load: None, ..setup.clone() },
+        };
+        let load = setup.load.unwrap_or_default();
         let (actuated, imaginary) = (inner.actuated().len(), inner.imaginary().len());
-        let known: Vec<Index> =
-            Index::ALL.into_iter().filter(|index| index.check(inner).is_ok()).collect();
-        let one = Index::ALL.map(|_| 1);
-        let [a, b, c, d, e, f] = one;
+        let known = Index::known(inner, &judged);
+        let legs = inner.mechanism().legs.len();
+        let square = if springs { 36 } else { 0 };
+        let mut widths = [1; TABLES + Index::ALL.len()];
+        widths[..TABLES].copy_from_slice(&[
+            actuated,
+            imaginary,
+            6 * actuated,
+            square,
+            square * legs,
+        ]);
         let mut tables = Tables::fill(
             py,
             poses.count,
-            [actuated, imaginary, 6 * actuated, a, b, c, d, e, f],
+            widths,
             threads,
-            || {
-                let indices = Indices::new(inner, length, known.iter().copied());
-                (inner.solution(), Statics::new(inner, length), indices.ok())
+            || Buffers {
+                solution: inner.solution(),
+                statics: Statics::new(inner, setup.length),
+                loads: Loads::new(inner, &setup),
+                indices: Indices::new(inner, &judged, known.iter().copied()).ok(),
+                compliant: setup.springs.clone().and_then(|of| Compliant::new(inner, of).ok()),
             },
-            |(solution, statics, indices), row, [efforts, between, units, numbers @ ..]| {
+            |buffers, row, [efforts, between, units, matrix, of_legs, numbers @ ..]| {
+                let Buffers { solution, statics, loads, indices, compliant } = buffers;
                 let found = inner.inverse(poses.row(row), mode, solution);
                 if found.map_err(|error| error.to_string())?.is_none() {
                     return Ok([false; 2]);
                 }
                 statics.update(solution).map_err(|error| error.to_string())?;
-                let wrench = given.as_ref().map_or(Wrench::default(), |rows| {
+                if let Some(rows) = &given {
                     let row = rows.row(row.min(rows.count - 1));
-                    Wrench::from_components(std::array::from_fn(|i| row[i]))
-                });
-                let platform = inner.platform_at(&solution.displacement(inner));
-                let found = statics.efforts(&Load { wrench, at, axes }.on(&platform));
+                    let wrench = Wrench::from_components(std::array::from_fn(|i| row[i]));
+                    let load = Load { wrench, ..load };
+                    loads.iter_mut().for_each(|loads| loads.set_load(load));
+                    indices.iter_mut().for_each(|indices| indices.set_load(load));
+                }
+                let Some(loads) = loads else { return Ok([true, false]) };
+                let found = loads.efforts(statics, solution);
                 let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
                 for (out, found) in [(efforts, &found.actuated), (between, &found.imaginary)] {
                     out.iter_mut().zip(found).for_each(|(out, &found)| *out = number(found));
@@ -193,6 +260,13 @@ impl Manipulator {
                 for (joint, out) in units.chunks_exact_mut(6).enumerate() {
                     if let Some(row) = statics.per_wrench(joint) {
                         out.copy_from_slice(&row);
+                    }
+                }
+                if let Some(found) = compliant.as_mut().and_then(|own| own.stiffness(solution)) {
+                    // The matrices are symmetric.
+                    matrix.copy_from_slice(found.platform.as_slice());
+                    for (out, leg) in of_legs.chunks_exact_mut(36).zip(&found.legs) {
+                        out.copy_from_slice(leg.as_slice());
                     }
                 }
                 if let Some(indices) = indices {
@@ -206,7 +280,8 @@ impl Manipulator {
         )?;
         let [reachable, balanced] =
             std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
-        let index = |index: Index| frozen(tables.table(3 + index as usize).reshape([poses.count])?);
+        let index =
+            |index: Index| frozen(tables.table(TABLES + index as usize).reshape([poses.count])?);
         Ok(Analysis {
             efforts: frozen(tables.table(0))?,
             imaginary_efforts: frozen(tables.table(1))?,
@@ -216,7 +291,23 @@ impl Manipulator {
             lti: index(Index::Lti)?,
             effort_per_force: index(Index::EffortPerForce)?,
             effort_per_moment: index(Index::EffortPerMoment)?,
+            oci: index(Index::Oci)?,
+            effort: index(Index::Effort)?,
+            effort_share: index(Index::EffortShare)?,
             payload: index(Index::Payload)?,
+            payload_moment: index(Index::PayloadMoment)?,
+            payload_ball: index(Index::PayloadBall)?,
+            stiffness: index(Index::Stiffness)?,
+            rotational_stiffness: index(Index::RotationalStiffness)?,
+            clearance: index(Index::Clearance)?,
+            stiffness_matrix: match springs {
+                true => Some(frozen(tables.table(3).reshape([poses.count, 6, 6])?)?),
+                false => None,
+            },
+            leg_stiffness: match springs {
+                true => Some(frozen(tables.table(4).reshape([poses.count, legs, 6, 6])?)?),
+                false => None,
+            },
             reachable: frozen(reachable)?,
             balanced: frozen(balanced)?,
         })

@@ -29,6 +29,7 @@ mod pickle;
 mod place;
 mod rows;
 mod screws;
+mod setup;
 mod snap;
 mod solids;
 mod solutions;
@@ -71,7 +72,7 @@ mod _native {
     #[pymodule_export]
     use crate::sweep::{Aspect, Conditioning, Inscribed, Outline, Rejection, Sweep, sweep};
     #[pymodule_export]
-    use crate::trajectory::{Trajectory, Violation, trajectory};
+    use crate::trajectory::{Contact, Trajectory, Violation, trajectory};
     #[pymodule_export]
     use crate::velocity::{Motion, Singularity};
     use pyo3::prelude::*;

@@ -23,6 +23,7 @@ use crate::error::request;
 use crate::html;
 use crate::manipulator::Manipulator;
 use crate::parts::Parts;
+use crate::setup::Given;
 use numpy::IntoPyArray;
 use opm_study::{Workspace, WorkspaceRequest};
 use opm_workspace::{Aspects, Axis, Count, Shard};
@@ -72,6 +73,12 @@ pub struct Sweep {
 /// limits : dict of str to float, optional
 ///     Only poses whose indices are as good as these values, in a mode in which they are: ``{"lti": 0.7}``. The names are
 ///     those of :class:`Analysis`.
+/// clearance : float, optional
+///     Only poses count at which all bodies are at least this far apart, metres (:meth:`Manipulator.clearance`), in one working
+///     mode.
+/// wrench, at, frame, gravity, density, link_stiffness, joint_stiffness : optional
+///     What indices are computed with, as for :meth:`Manipulator.analyze`, with one wrench for all poses: for `limits` and for
+///     the values of a recording, such as ``"effort.S1"``.
 /// length : float, optional
 ///     Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
 /// threads : int, optional
@@ -103,8 +110,9 @@ pub struct Sweep {
 /// >>> opm.sweep(m, kind="dexterous", x=(-0.1, 0.1, 41), y=(-0.1, 0.1, 41), zeta=tilt, xi=tilt, psi=tilt)
 #[pyfunction]
 #[pyo3(signature = (
-    manipulator, /, *, kind = "grid", mode = "home", max_condition = None, limits = None, length = None,
-    threads = None, executor = None, shards = None, **axes
+    manipulator, /, *, kind = "grid", mode = "home", max_condition = None, limits = None, clearance = None,
+    wrench = None, at = None, frame = "base", gravity = None, density = None, link_stiffness = None,
+    joint_stiffness = None, length = None, threads = None, executor = None, shards = None, **axes
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn sweep(
@@ -114,6 +122,14 @@ pub fn sweep(
     mode: &str,
     max_condition: Option<f64>,
     limits: Option<BTreeMap<String, f64>>,
+    clearance: Option<f64>,
+    wrench: Option<Bound<'_, PyAny>>,
+    at: Option<Bound<'_, PyAny>>,
+    frame: &str,
+    gravity: Option<Bound<'_, PyAny>>,
+    density: Option<f64>,
+    link_stiffness: Option<[f64; 2]>,
+    joint_stiffness: Option<BTreeMap<String, f64>>,
     length: Option<f64>,
     #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     executor: Option<Bound<'_, PyAny>>,
@@ -122,7 +138,12 @@ pub fn sweep(
 ) -> PyResult<Sweep> {
     let mut query = WorkspaceRequest::new(named(kind)?);
     query.axes = query::axes(axes.unwrap_or_default())?;
-    (query.max_condition, query.length) = (max_condition, length);
+    query.max_condition = max_condition;
+    query.clearance = clearance;
+    let (wrench, at, gravity) = (wrench.as_ref(), at.as_ref(), gravity.as_ref());
+    let given =
+        Given { wrench, at, frame, gravity, density, link_stiffness, joint_stiffness, length };
+    query.setup = given.options()?;
     query.limits = limits.unwrap_or_default().into_iter().collect();
     let parts = Parts::new(executor, shards)?;
     let planned = Sweep::planned(py, manipulator, query, mode.to_owned(), threads)?;
@@ -163,6 +184,12 @@ impl Sweep {
         let limit = self.workspace.limit();
         let each = limit.iter().flat_map(|limit| limit.indices.iter());
         each.map(|(index, bound)| (index.name().to_owned(), bound)).collect()
+    }
+
+    /// The least distance of bodies at which a pose counts, metres, if it is limited.
+    #[getter]
+    fn clearance(&self) -> Option<f64> {
+        self.workspace.clearance().map(|clearance| clearance.least)
     }
 
     /// Characteristic length of condition numbers, metres.

@@ -11,10 +11,12 @@ use crate::pickle::{attribute, attributes, equal, frozen, pickled};
 use crate::rows::{Rows, no_memory};
 use crate::solutions::units;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use opm_analysis::Setup;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism;
 use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
 use opm_core::trajectory::{self as core_trajectory, Change, Sample, ViolationReport};
+use opm_interference::{Distances, Interference, Nearest, Watch, Watched};
 use opm_study::recording::{Attachment, MotionRecorder, TableOptions, write_motion_table};
 use opm_study::{DEFAULT_RATE, MotionRequest};
 use pyo3::prelude::*;
@@ -81,6 +83,12 @@ pub struct Trajectory {
     /// What the mechanism cannot follow, also between the samples, in the order of time.
     #[pyo3(get)]
     violations: Vec<Violation>,
+    /// Where two bodies are nearer than `clearance`, also between the samples, in the order of time; None if that was not given.
+    #[pyo3(get)]
+    contacts: Option<Vec<Contact>>,
+    /// The two bodies that are nearest at a sample of the whole motion, their distance in metres and the time in seconds.
+    #[pyo3(get)]
+    nearest: Option<(String, String, f64, f64)>,
     /// Names of the columns of `joints`.
     #[pyo3(get)]
     joint_names: Vec<String>,
@@ -115,6 +123,8 @@ struct Source {
     ends: Ends,
     /// Whether the motion has the fastest timing instead of its own.
     time_optimal: bool,
+    /// The least distance of two bodies that is no contact, metres.
+    clearance: Option<f64>,
 }
 
 /// A part of a motion that the mechanism cannot follow, or a singularity on its way.
@@ -147,6 +157,24 @@ pub struct Violation {
     message: String,
 }
 
+/// A part of a motion in which two bodies are nearer than the clearance.
+#[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
+#[derive(Clone)]
+pub struct Contact {
+    /// The name of one body.
+    one: String,
+    /// The name of the other.
+    other: String,
+    /// Time at which it begins, seconds.
+    start: f64,
+    /// Time at which it ends, seconds.
+    end: f64,
+    /// Time at which the two are nearest, seconds.
+    worst: f64,
+    /// Their distance then, metres; negative where they overlap.
+    distance: f64,
+}
+
 /// Follow a motion of the platform.
 ///
 /// Parameters
@@ -169,6 +197,9 @@ pub struct Violation {
 /// time_optimal : bool, optional
 ///     The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
 ///     joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.
+/// clearance : float, optional
+///     Least distance of two bodies, metres: where it is less, they are in contact (:attr:`Trajectory.contacts`); 0 for
+///     overlaps.
 ///
 /// Raises
 /// ------
@@ -178,7 +209,7 @@ pub struct Violation {
 ///     Lists every problem of the file with its line and column; or waypoints are not poses, or times do not increase (the
 ///     message gives the index of the waypoint, counted from zero).
 #[pyfunction]
-#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None, time_optimal = false))]
+#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None, time_optimal = false, clearance = None))]
 #[allow(clippy::too_many_arguments)]
 pub fn trajectory(
     py: Python<'_>,
@@ -189,7 +220,11 @@ pub fn trajectory(
     mode: Option<&str>,
     ends: Option<&str>,
     time_optimal: bool,
+    clearance: Option<f64>,
 ) -> PyResult<Trajectory> {
+    if let Some(odd) = clearance.filter(|least| !(*least >= 0.0 && least.is_finite())) {
+        return Err(wrong(format!("clearance is {odd:?} m, expected a length of 0 or more")));
+    }
     let (owner, manipulator) = (manipulator, manipulator.get());
     let ends = ends.map(spline_ends).transpose()?;
     let (motion, file_name, text) = match times {
@@ -217,12 +252,19 @@ pub fn trajectory(
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
     let followed = followed.map_err(|error| failed(&error))?;
     let stop = AtomicBool::new(false);
-    let work = || Record::follow(inner, followed, &stop);
+    let interference = clearance.map(|_| Interference::new(inner.mechanism()));
+    let motion_of = &motion;
+    let watch = clearance.zip(interference.as_ref()).map(|(clearance, interference)| {
+        let of = Watched { manipulator: inner, motion: motion_of, mode, clearance };
+        (Watch::new(of, Distances::new(interference)), 1.0 / rate)
+    });
+    let work = || Record::follow(inner, followed, watch, &stop);
     let record =
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))??;
     let manipulator = owner.clone().unbind();
-    record
-        .finish(py, Source { manipulator, motion, file_name, text, mode, rate, ends, time_optimal })
+    let source =
+        Source { manipulator, motion, file_name, text, mode, rate, ends, time_optimal, clearance };
+    record.finish(py, source, interference.as_ref())
 }
 
 /// A motion, the name of its file, and the text of that.
@@ -332,12 +374,15 @@ struct Record {
     /// Reachable, within limits, regular.
     answers: [Vec<bool>; 3],
     violations: Vec<core_trajectory::Violation>,
+    /// The contacts, and the nearest pair with its time.
+    contacts: (Vec<opm_interference::Contact>, Option<(Nearest, f64)>),
 }
 
 impl Record {
     fn follow(
         manipulator: &core::Manipulator,
         mut followed: core_trajectory::Trajectory<'_>,
+        mut watch: Option<(Watch<'_>, f64)>,
         stop: &AtomicBool,
     ) -> PyResult<Self> {
         let mut record = Self::default();
@@ -351,7 +396,12 @@ impl Record {
         let whole = room.filter(|&room| Vec::<f64>::new().try_reserve_exact(room).is_ok());
         whole.ok_or_else(|| no_memory(format_args!("{samples} samples")))?;
         while !stop.load(Ordering::Relaxed) && followed.advance().map_err(|e| failed(&e))? {
-            record.add(followed.sample());
+            let sample = followed.sample();
+            record.add(sample);
+            if let Some((watch, step)) = &mut watch {
+                let solution = sample.reached.then_some(&sample.solution);
+                watch.advance(sample.time, *step, solution).map_err(|error| failed(&error))?;
+            }
             for change in followed.changes() {
                 if let Change::Ends(violation) = change {
                     record.violations.push(*violation);
@@ -360,6 +410,9 @@ impl Record {
         }
         record.violations.extend(followed.open());
         record.violations.sort_by(|a, b| a.start.total_cmp(&b.start));
+        if let Some((watch, _)) = watch {
+            record.contacts = watch.finish();
+        }
         Ok(record)
     }
 
@@ -390,7 +443,12 @@ impl Record {
         }
     }
 
-    fn finish(self, py: Python<'_>, source: Source) -> PyResult<Trajectory> {
+    fn finish(
+        self,
+        py: Python<'_>,
+        source: Source,
+        interference: Option<&Interference>,
+    ) -> PyResult<Trajectory> {
         let manipulator = &*source.manipulator.get().inner;
         let rows = self.times.len();
         let widths = [
@@ -425,6 +483,12 @@ impl Record {
             within_limits: within_limits?,
             regular: regular?,
             violations: self.violations.iter().map(|v| Violation::new(v, manipulator)).collect(),
+            contacts: interference
+                .map(|of| self.contacts.0.iter().map(|found| Contact::new(found, of)).collect()),
+            nearest: interference.zip(self.contacts.1).map(|(of, (nearest, time))| {
+                let [one, other] = of.names_of(nearest.pair).map(str::to_owned);
+                (one, other, nearest.distance, time)
+            }),
             joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
             imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
             units: units(manipulator),
@@ -433,6 +497,25 @@ impl Record {
             rows,
             source,
         })
+    }
+}
+
+impl Contact {
+    fn new(found: &opm_interference::Contact, of: &Interference) -> Self {
+        let opm_interference::Contact { pair, start, end, worst, distance } = *found;
+        let [one, other] = of.names_of(pair).map(str::to_owned);
+        Self { one, other, start, end, worst, distance }
+    }
+}
+
+pickled!(Contact { one, other, start, end, worst, distance });
+
+#[pymethods]
+impl Contact {
+    fn __repr__(&self) -> String {
+        let Self { one, other, .. } = self;
+        let [start, end, distance] = [self.start, self.end, self.distance].map(digits);
+        format!("<Contact of {one} and {other} from {start} to {end} s: {distance} m>")
     }
 }
 
@@ -474,7 +557,7 @@ pickled!(Violation {
 columns!(Trajectory);
 
 /// The parts of a trajectory in the form that Python sees.
-const ATTRIBUTES: [&str; 24] = [
+const ATTRIBUTES: [&str; 26] = [
     "times",
     "poses",
     "pose_rates",
@@ -493,6 +576,8 @@ const ATTRIBUTES: [&str; 24] = [
     "within_limits",
     "regular",
     "violations",
+    "contacts",
+    "nearest",
     "joint_names",
     "imaginary_names",
     "units",
@@ -501,12 +586,12 @@ const ATTRIBUTES: [&str; 24] = [
     "rows",
 ];
 
-/// The pickled input of a trajectory: manipulator, name and text of the file, rate, ends of a table, and whether it has
-/// the fastest timing.
-type Followable = (Py<Manipulator>, String, String, f64, &'static str, bool);
+/// The pickled input of a trajectory: manipulator, name and text of the file, rate, ends of a table, whether it has the
+/// fastest timing, and the clearance.
+type Followable = (Py<Manipulator>, String, String, f64, &'static str, bool, Option<f64>);
 
 /// The same, as it is read.
-type Restored = (Py<Manipulator>, String, String, f64, String, bool);
+type Restored = (Py<Manipulator>, String, String, f64, String, bool, Option<f64>);
 
 #[pymethods]
 impl Violation {
@@ -526,18 +611,18 @@ impl Trajectory {
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<Pickled<'py, (Bound<'py, PyDict>, Followable)>> {
-        let Source { manipulator, file_name, text, rate, ends, time_optimal, .. } =
+        let Source { manipulator, file_name, text, rate, ends, time_optimal, clearance, .. } =
             &slf.get().source;
         let manipulator = manipulator.clone_ref(slf.py());
-        let source =
-            (manipulator, file_name.clone(), text.clone(), *rate, ends.name(), *time_optimal);
+        let (file_name, text, ends) = (file_name.clone(), text.clone(), ends.name());
+        let source = (manipulator, file_name, text, *rate, ends, *time_optimal, *clearance);
         let attributes = attributes(slf.as_any(), &ATTRIBUTES)?;
         Ok((slf.get_type().getattr("_restored")?, (attributes, source)))
     }
 
     #[staticmethod]
     fn _restored(attributes: &Bound<'_, PyDict>, source: Restored) -> PyResult<Self> {
-        let (manipulator, file_name, text, rate, ends, time_optimal) = source;
+        let (manipulator, file_name, text, rate, ends, time_optimal, clearance) = source;
         let ends = spline_ends(&ends)?;
         let csv = file_name.to_ascii_lowercase().ends_with(".csv").then_some(ends);
         let motion = parse(manipulator.get(), &text, (&file_name, &file_name), csv)?;
@@ -568,6 +653,8 @@ impl Trajectory {
             within_limits: attribute(attributes, "within_limits")?,
             regular: attribute(attributes, "regular")?,
             violations: attribute(attributes, "violations")?,
+            contacts: attribute(attributes, "contacts")?,
+            nearest: attribute(attributes, "nearest")?,
             joint_names: attribute(attributes, "joint_names")?,
             imaginary_names: attribute(attributes, "imaginary_names")?,
             units: attribute(attributes, "units")?,
@@ -583,6 +670,7 @@ impl Trajectory {
                 rate,
                 ends,
                 time_optimal,
+                clearance,
             },
         })
     }
@@ -593,17 +681,22 @@ impl Trajectory {
     /// ----------
     /// path : path
     ///     The file appears when it is complete.
+    /// indices : bool, optional
+    ///     Also the indices of :class:`Analysis` that the mechanism has.
     ///
     /// Raises
     /// ------
     /// OpmError
     ///     The file cannot be written.
+    #[pyo3(signature = (path, *, indices = false))]
     fn write_mcap(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        indices: bool,
     ) -> PyResult<()> {
-        let Source { manipulator, motion, file_name, text, mode, rate, .. } = &self.source;
+        let Source { manipulator, motion, file_name, text, mode, rate, clearance, .. } =
+            &self.source;
         let manipulator = manipulator.get();
         let name = manipulator.file_name();
         let files = [
@@ -611,7 +704,9 @@ impl Trajectory {
             Attachment { name: file_name, text },
         ];
         let request = MotionRequest::new(&manipulator.inner, motion, file_name);
-        let request = request.mode(*mode).rate(*rate).clearance(0.0);
+        let request = request.mode(*mode).rate(*rate).clearance(clearance.unwrap_or(0.0));
+        let setup = Setup::new(manipulator.inner.characteristic_length());
+        let request = if indices { request.indices(&setup) } else { request };
         let stop = AtomicBool::new(false);
         let work = || {
             let trajectory = request.trajectory()?;
@@ -664,9 +759,11 @@ impl Trajectory {
             ),
             other => return Err(wrong(format!("units: {other:?}, expected \"si\" or \"file\""))),
         };
-        let options = TableOptions { rates, accelerations, indices, units };
+        let options = TableOptions { rates, accelerations, units };
+        let setup = Setup::new(manipulator.inner.characteristic_length());
         let request = MotionRequest::new(&manipulator.inner, motion, file_name);
         let request = request.mode(*mode).rate(*rate);
+        let request = if indices { request.indices(&setup) } else { request };
         let stop = AtomicBool::new(false);
         let work = || {
             let trajectory = request.trajectory()?;

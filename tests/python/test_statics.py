@@ -18,6 +18,19 @@ def exported(opm, tmp_path_factory, request):
     return Exported(opm, tmp_path_factory.mktemp("statics"), request.param)
 
 
+GRAVITY = [1.0, -2.0, -9.81]
+
+
+def weight(exported):
+    """What the model's weight does for a rate of each joint."""
+    model, data = exported.model, exported.data
+    model.opt.gravity[:] = GRAVITY
+    data.qvel[:] = 0
+    mujoco.mj_forward(model, data)
+    # The bias is what has to be overcome: at rest, that is the weight.
+    return -data.qfrc_bias.copy()
+
+
 def motions(exported):
     """Velocities of the joints that the constraints allow, as columns; and what of them is the platform's, as (v; w)."""
     model, data = exported.model, exported.data
@@ -62,5 +75,14 @@ def test_efforts_are_those_of_the_model(exported):
             continue
         assert found["balance"] == "balanced"
         assert np.abs(rates.T @ efforts + work).max() < CLOSE * np.abs(work).max()
+        own = free.T @ weight(exported)
+        heavy = ["--gravity", ",".join(map(str, GRAVITY))]
+        for wrench, work in [([], own), (["--wrench", wrench], own + work)]:
+            found = answer(exported.opm, "analyze", exported.name, "--pose", pose, *wrench, *heavy)
+            assert found["balance"] == "balanced"
+            efforts = list(found["efforts"].values())
+            assert np.abs(rates.T @ efforts + work).max() < CLOSE * max(np.abs(work).max(), np.abs(own).max())
+        masses = model.body_mass.sum() - model.body("base").mass[0]
+        assert found["gravity"]["mass"] == pytest.approx(masses, rel=1e-9)
         compared += 1
     assert compared == 4 or found["internal_efforts"]

@@ -117,7 +117,7 @@ fn counts_are_those_of_a_distance_at_every_pose() {
             let all = sweep.count(&Progress::default()).unwrap();
             for least in [0.0, 0.02 * manipulator.characteristic_length()] {
                 let limit = ClearanceLimit { interference: &interference, least };
-                let sweep = sweep.with_clearance(limit).unwrap();
+                let sweep = sweep.clone().with_clearance(limit).unwrap();
                 let (expected, numbers) = plain(&manipulator, &grid, limit);
                 let found = sweep.count(&Progress::default()).unwrap();
                 assert_eq!(found.reachable, expected.reachable, "{}, {least}", example.name);

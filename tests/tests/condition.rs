@@ -31,7 +31,7 @@ fn by_modes(
             continue;
         }
         manipulator.differentiate(solution, &mut jacobians).unwrap();
-        let condition = manipulator.conditioning(&jacobians, limit.length).condition;
+        let condition = manipulator.conditioning(&jacobians, limit.length()).condition;
         if condition > limit.most {
             continue;
         }
@@ -64,7 +64,7 @@ fn compare(
     let width = manipulator.task_coordinates().len();
     let mut batch = manipulator.condition_batch();
     for every in [false, true] {
-        let query = ConditionQuery { mode, length: limit.length, most: limit.most, every };
+        let query = ConditionQuery { mode, length: limit.length(), most: limit.most, every };
         for block in poses.chunks(Manipulator::DECIDED * width) {
             let count = block.len() / width;
             let mut conditions = vec![0.0; count];
@@ -78,7 +78,7 @@ fn compare(
                 if open >> i & 1 == 1 {
                     continue;
                 }
-                let (first, of_pose) = by_modes(manipulator, pose, mode, limit);
+                let (first, of_pose) = by_modes(manipulator, pose, mode, limit.clone());
                 let found = Some(conditions[i]).filter(|condition| !condition.is_nan());
                 assert_eq!(found, first, "{pose:?} {mode:?} {limit:?}");
                 for (range, [low, high]) in expected_ranges.iter_mut().zip(of_pose) {

@@ -49,7 +49,7 @@ fn shards_are_the_whole_one_after_the_other() {
             let (count, all) = (whole.count(&Progress::default()).unwrap(), runs(&whole));
             for of in [1, 2, 3, 8, 1000] {
                 let shards: Vec<Sweep<'_>> =
-                    (1..=of).map(|i| whole.shard(Shard::new(i, of).unwrap())).collect();
+                    (1..=of).map(|i| whole.clone().shard(Shard::new(i, of).unwrap())).collect();
                 let parts: Vec<Count> =
                     shards.iter().map(|shard| shard.count(&Progress::default()).unwrap()).collect();
                 for (shard, part) in shards.iter().zip(&parts) {

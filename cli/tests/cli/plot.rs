@@ -586,6 +586,7 @@ fn unknown_motion_with(
         imaginary: vec![],
         rates: false,
         measures: vec![],
+        indices: Vec::new(),
         bodies: vec![],
         files: vec![("nonsense.toml", b"nonsense")],
         run: Metadata::new(),

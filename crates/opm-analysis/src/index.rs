@@ -6,6 +6,7 @@ use crate::setup::{Loads, Setup};
 use crate::statics::{MOST, Statics, Velocity};
 use crate::stiffness::{Compliant, SpringError};
 use crate::transmission::{NoTransmission, Transmissions};
+use crate::wrench::Load;
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_interference::{Distances, Interference};
@@ -306,6 +307,13 @@ impl<'a> Indices<'a> {
         self.efforts = vec![f64::NAN; count];
         self.statics.get_or_insert_with(|| Statics::new(self.manipulator, setup.length));
         self
+    }
+
+    /// Takes another load on the platform, if the setup has one.
+    pub fn set_load(&mut self, load: Load) {
+        if let Some(loads) = &mut self.loads {
+            loads.set_load(load);
+        }
     }
 
     /// The effort of every actuated, then of every imaginary joint at the pose that was evaluated last, N and N m; not a

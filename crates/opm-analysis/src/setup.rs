@@ -76,6 +76,11 @@ impl<'a> Loads<'a> {
         self.weights.as_ref().map_or(0.0, Weights::mass)
     }
 
+    /// The same with another load on the platform.
+    pub fn set_load(&mut self, load: Load) {
+        self.load = load;
+    }
+
     /// What acts on the platform, its own weight left out, as a wrench at its reference point.
     pub fn wrench(&self, at: &Solution) -> Wrench {
         self.load.on(&self.manipulator.platform_at(&at.displacement(self.manipulator)))

@@ -1,9 +1,11 @@
 //! Indices of a pose allocate nothing. It counts what its process allocates.
 
-use opm_analysis::{Index, Indices};
+use nalgebra::Vector3;
+use opm_analysis::{Gravity, Index, Indices, Load, Setup, Wrench};
 use opm_core::Manipulator;
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::mechanism::file;
+use opm_core::skeleton::Density;
 
 #[test]
 fn indices_of_a_pose_allocate_nothing() {
@@ -15,8 +17,12 @@ fn indices_of_a_pose_allocate_nothing() {
         let text = text.replace("actuated = true", "actuated = true, max_effort = 5");
         let Ok(manipulator) = Manipulator::read(&text) else { continue };
         let length = manipulator.characteristic_length();
-        let known = Index::ALL.into_iter().filter(|index| index.check(&manipulator).is_ok());
-        let mut indices = Indices::new(&manipulator, length, known).unwrap();
+        let wrench = Wrench::from_components([1.0, 2.0, 3.0, 0.1, 0.2, 0.3]);
+        let load = Some(Load { wrench, ..Load::default() });
+        let gravity = Gravity { acceleration: Vector3::z() * -9.81, density: Density::default() };
+        let setup = Setup { load, gravity: Some(gravity), ..Setup::new(length) };
+        let known = Index::known(&manipulator, &setup);
+        let mut indices = Indices::new(&manipulator, &setup, known).unwrap();
         let (mut at, mode) = (manipulator.solution(), manipulator.home_mode());
         let mut pose = manipulator.home_pose();
         for step in 0..3 {

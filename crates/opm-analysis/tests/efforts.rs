@@ -3,11 +3,12 @@
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, Vector3};
-use opm_analysis::{Balance, Statics, Wrench};
+use opm_analysis::{Balance, Gravity, Load, Loads, Setup, Statics, Wrench};
 use opm_core::Manipulator;
 use opm_core::manipulator::{Mode, Solution};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::skeleton::{Configuration, Density, Skeleton};
 use opm_tests::differences::derivatives;
 use opm_tests::random::{Options, PAIRS, constrained, mechanism};
 
@@ -23,6 +24,8 @@ struct Motions {
     imaginary: DMatrix<f64>,
     platform: DMatrix<f64>,
     lower: DMatrix<f64>,
+    /// Of the sum of all masses times their places.
+    moment: DMatrix<f64>,
 }
 
 /// `None` where a difference is not sure.
@@ -33,7 +36,16 @@ fn motions(manipulator: &Manipulator, at: &Solution, mode: Mode) -> Option<Motio
         [platform, at.lower_displacement(manipulator)]
     };
     let home = places(at);
-    let count = [manipulator.actuated().len(), manipulator.imaginary().len(), 6, 6];
+    let skeleton = Skeleton::new(manipulator.mechanism(), None);
+    let masses = skeleton.masses(manipulator.mechanism(), Density::default());
+    let moment = |at: &Solution| {
+        let platform = at.displacement(manipulator);
+        let of = Configuration { joints: at.joints(), imaginary: &[], platform };
+        let placed = skeleton.place_in_base(&of).unwrap();
+        let each = placed.iter().zip(&masses).map(|(at, own)| (at * own.centre).coords * own.mass);
+        each.sum::<Vector3<f64>>()
+    };
+    let count = [manipulator.actuated().len(), manipulator.imaginary().len(), 6, 6, 3];
     let mut tables = count.map(|rows| DMatrix::zeros(rows, pose.len()));
     for column in 0..pose.len() {
         let through = |t: f64| {
@@ -47,6 +59,7 @@ fn motions(manipulator: &Manipulator, at: &Solution, mode: Mode) -> Option<Motio
                 values.extend((now.rotation * then.rotation.inverse()).scaled_axis().iter());
                 values.extend(now.translation.vector.iter());
             }
+            values.extend(moment(&moved).iter());
             Some(values)
         };
         let found = derivatives(1e-3, through)?;
@@ -60,8 +73,8 @@ fn motions(manipulator: &Manipulator, at: &Solution, mode: Mode) -> Option<Motio
             }
         }
     }
-    let [actuated, imaginary, platform, lower] = tables;
-    Some(Motions { actuated, imaginary, platform, lower })
+    let [actuated, imaginary, platform, lower, moment] = tables;
+    Some(Motions { actuated, imaginary, platform, lower, moment })
 }
 
 fn wrench(rng: &mut Rng) -> Wrench {
@@ -156,6 +169,25 @@ fn check(manipulator: &Manipulator, at: &Solution, mode: Mode, rng: &mut Rng, co
         assert!((own + work[column]).abs() < WORK * size, "{own} {} {size}", work[column]);
     }
     counts.balanced += 1;
+    // The weight of all bodies on top of the load.
+    let acceleration = Vector3::new(1.0, -4.0, -9.0);
+    let gravity = Some(Gravity { acceleration, density: Density::default() });
+    let wrench = Wrench::from_components(components);
+    let load = Some(Load { wrench, ..Load::default() });
+    let setup = Setup { load, gravity, ..Setup::new(length) };
+    let mut loads = Loads::new(manipulator, &setup).unwrap();
+    let weighed = loads.efforts(&statics, at).actuated;
+    for column in 0..motions.platform.ncols() {
+        let rates = motions.actuated.column(column);
+        let parts = rates.iter().zip(&weighed).map(|(rate, effort)| rate * effort.unwrap());
+        let parts: Vec<f64> = parts.collect();
+        let weight = motions.moment.column(column).dot(&acceleration);
+        let size = parts.iter().map(|part| part.abs()).sum::<f64>()
+            + motions.moment.column(column).norm() * acceleration.norm()
+            + motions.platform.column(column).norm() * wrench.force.norm();
+        let own: f64 = parts.iter().sum();
+        assert!((own + work[column] + weight).abs() < WORK * size, "{own} {weight} {size}");
+    }
     // Where the lower section stands still, what its actuators do is what the imaginary joints do.
     let (lower, in_lower) = (manipulator.lower_coordinates(), in_lower(manipulator));
     let Some(imaginary) = efforts.imaginary.iter().copied().collect::<Option<Vec<_>>>() else {

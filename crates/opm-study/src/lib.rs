@@ -105,7 +105,9 @@ pub use poses::PoseSource;
 #[cfg(feature = "recording")]
 pub use poses::ShardPoses;
 pub use request::{CheckedRequest, WorkspaceRequest, characteristic_length};
-pub use setup::{SetupOptions, SpringOptions, fields as setup_fields};
+pub use setup::{
+    SetupOptions, SpringOptions, fields as setup_fields, of_fields as setup_of_fields,
+};
 pub use tracker::Tracker;
 pub use workspace::Workspace;
 

@@ -22,7 +22,7 @@ fn a_section_alone_has_no_condition_numbers() {
     assert_eq!(sweep(&lower).with_limit(limit(0.1)).err(), Some(ConditionError::Section));
     let wrong = sweep(&whole).with_limit(limit(-1.0));
     assert_eq!(wrong.err(), Some(ConditionError::Length(-1.0)));
-    assert_eq!(sweep(&whole).with_limit(limit(0.1)).unwrap().limit(), Some(limit(0.1)));
+    assert_eq!(sweep(&whole).with_limit(limit(0.1)).unwrap().limit(), Some(&limit(0.1)));
 
     let progress = Progress::default();
     let index = ConditioningIndex::of(&sweep(&lower), 0.1, &progress);

@@ -987,11 +987,15 @@ class Manipulator:
         wrench: ArrayLike | None = None,
         at: str | ArrayLike | None = None,
         frame: str = "base",
+        gravity: ArrayLike | None = None,
+        density: float | None = None,
+        link_stiffness: Sequence[float] | None = None,
+        joint_stiffness: Mapping[str, float] | None = None,
         mode: str = "home",
         length: float | None = None,
         threads: int | None = None,
     ) -> Analysis:
-        """Forces and transmission at many poses: efforts of the actuators, transmission indices, payload.
+        """Forces and transmission at many poses: efforts of the actuators, payload, transmission indices, stiffness, clearance.
 
         Parameters
         ----------
@@ -1004,6 +1008,15 @@ class Manipulator:
             metres from the reference point along the axes of `frame`.
         frame : str
             The axes of `wrench` and `at`: ``"base"``, or ``"platform"`` for those that the platform carries.
+        gravity : (3,) array_like, optional
+            How a body falls, m/s², base directions: the weight of links and platform acts, whose masses are those of
+            :meth:`to_mjcf`.
+        density : float, optional
+            Density of bodies whose masses the mechanism does not give, kg/m³, instead of the mechanism's.
+        link_stiffness : (float, float), optional
+            Stiffness of each link against translations of its end, N/m, and against rotations, N m/rad.
+        joint_stiffness : dict of str to float, optional
+            Stiffness of actuated joints, N/m and N m/rad; others are rigid.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         length : float, optional
@@ -1195,6 +1208,9 @@ class Analysis:
     def lti(self) -> NDArray[np.float64]:
         """(n,), no unit: local transmission index, the least of both."""
     @property
+    def oci(self) -> NDArray[np.float64]:
+        """(n,), no unit: output constraint index, of legs that constrain the platform."""
+    @property
     def effort_per_force(self) -> NDArray[np.float64]:
         """(n,), no unit: largest effort of an actuator for a unit force in the worst direction, torques over the characteristic
         length."""
@@ -1203,8 +1219,37 @@ class Analysis:
         """(n,), no unit: largest effort of an actuator for a unit moment in the worst direction, forces times the characteristic
         length."""
     @property
+    def effort(self) -> NDArray[np.float64]:
+        """(n,), N: largest effort of an actuator under the load, torques over the characteristic length."""
+    @property
+    def effort_share(self) -> NDArray[np.float64]:
+        """(n,), no unit: largest share of its ``max_effort`` that an actuator needs under the load."""
+    @property
     def payload(self) -> NDArray[np.float64]:
-        """(n,), N: largest force that the actuators bear in every direction, within their ``max_effort``."""
+        """(n,), N: largest force that the actuators bear in every direction on top of the load, within their ``max_effort``."""
+    @property
+    def payload_moment(self) -> NDArray[np.float64]:
+        """(n,), N m: largest moment that they bear about every axis, likewise."""
+    @property
+    def payload_ball(self) -> NDArray[np.float64]:
+        """(n,), N m: radius of the largest ball in the wrench polytope around the load, a force with the characteristic length as
+        its lever."""
+    @property
+    def stiffness(self) -> NDArray[np.float64]:
+        """(n,), N/m: least force that displaces the platform by a unit of length along it."""
+    @property
+    def rotational_stiffness(self) -> NDArray[np.float64]:
+        """(n,), N m/rad: least moment that turns the platform by a unit of angle about its axis."""
+    @property
+    def clearance(self) -> NDArray[np.float64]:
+        """(n,), m: distance of the nearest two bodies; negative where they overlap."""
+    @property
+    def stiffness_matrix(self) -> NDArray[np.float64] | None:
+        """(n, 6, 6): force and moment on the platform at its reference point, by its translations along x, y and z of the base and
+        its rotations about them; None without stiffnesses."""
+    @property
+    def leg_stiffness(self) -> NDArray[np.float64] | None:
+        """(n, legs, 6, 6): the same for each leg, whose sum it is: what a leg carries is this times the platform's displacement."""
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,): whether the pose is in reach, joint limits not considered."""
@@ -1568,6 +1613,9 @@ class Sweep:
     def max_condition(self) -> float | None:
         """The largest condition number at which a pose counts, if it is limited."""
     @property
+    def clearance(self) -> float | None:
+        """The least distance of bodies at which a pose counts, metres, if it is limited."""
+    @property
     def limits(self) -> dict[str, float]:
         """The worst values of indices at which a pose counts, by name."""
     @property
@@ -1922,6 +1970,14 @@ def sweep(
     mode: str = "home",
     max_condition: float | None = None,
     limits: Mapping[str, float] | None = None,
+    clearance: float | None = None,
+    wrench: ArrayLike | None = None,
+    at: str | ArrayLike | None = None,
+    frame: str = "base",
+    gravity: ArrayLike | None = None,
+    density: float | None = None,
+    link_stiffness: Sequence[float] | None = None,
+    joint_stiffness: Mapping[str, float] | None = None,
     length: float | None = None,
     threads: int | None = None,
     executor: _Executor | None = None,
@@ -1952,6 +2008,12 @@ def sweep(
     limits : dict of str to float, optional
         Only poses whose indices are as good as these values, in a mode in which they are: ``{"lti": 0.7}``. The names are
         those of :class:`Analysis`.
+    clearance : float, optional
+        Only poses count at which all bodies are at least this far apart, metres (:meth:`Manipulator.clearance`), in one working
+        mode.
+    wrench, at, frame, gravity, density, link_stiffness, joint_stiffness : optional
+        What indices are computed with, as for :meth:`Manipulator.analyze`, with one wrench for all poses: for `limits` and for
+        the values of a recording, such as ``"effort.S1"``.
     length : float, optional
         Characteristic length of condition numbers, metres. The spread of the joint axes if not given.
     threads : int, optional
@@ -2093,6 +2155,12 @@ class Trajectory:
     def violations(self) -> list[Violation]:
         """What the mechanism cannot follow, also between the samples, in the order of time."""
     @property
+    def contacts(self) -> list[Contact] | None:
+        """Where two bodies are nearer than `clearance`, also between the samples, in the order of time; None if that was not given."""
+    @property
+    def nearest(self) -> tuple[str, str, float, float] | None:
+        """The two bodies that are nearest at a sample of the whole motion, their distance in metres and the time in seconds."""
+    @property
     def joint_names(self) -> list[str]:
         """Names of the columns of `joints`."""
     @property
@@ -2108,13 +2176,15 @@ class Trajectory:
     def __len__(self) -> int: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
         """The values of one joint or imaginary joint, (n,): a view."""
-    def write_mcap(self, path: str | PathLike[str]) -> None:
+    def write_mcap(self, path: str | PathLike[str], *, indices: bool = False) -> None:
         """Record the motion as ``opm trajectory -o`` does, byte for byte: it plays in Foxglove, Lichtblick and Rerun.
 
         Parameters
         ----------
         path : path
             The file appears when it is complete.
+        indices : bool, optional
+            Also the indices of :class:`Analysis` that the mechanism has.
 
         Raises
         ------
@@ -2154,6 +2224,31 @@ class Trajectory:
         OpmError
             The file cannot be written, or its name ends otherwise.
         """
+
+@final
+class Contact:
+    """A part of a motion in which two bodies are nearer than the clearance."""
+
+    @property
+    def one(self) -> str:
+        """The name of one body."""
+    @property
+    def other(self) -> str:
+        """The name of the other."""
+    @property
+    def start(self) -> float:
+        """Time at which it begins, seconds."""
+    @property
+    def end(self) -> float:
+        """Time at which it ends, seconds."""
+    @property
+    def worst(self) -> float:
+        """Time at which the two are nearest, seconds."""
+    @property
+    def distance(self) -> float:
+        """Their distance then, metres; negative where they overlap."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Violation:
@@ -2208,6 +2303,7 @@ def trajectory(
     mode: str | None = None,
     ends: str | None = None,
     time_optimal: bool = False,
+    clearance: float | None = None,
 ) -> Trajectory:
     """Follow a motion of the platform.
 
@@ -2231,6 +2327,9 @@ def trajectory(
     time_optimal : bool, optional
         The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
         joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.
+    clearance : float, optional
+        Least distance of two bodies, metres: where it is less, they are in contact (:attr:`Trajectory.contacts`); 0 for
+        overlaps.
 
     Raises
     ------

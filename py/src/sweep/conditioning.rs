@@ -10,7 +10,7 @@ use crate::parts::Parts;
 use crate::pickle::pickled;
 use crate::rows::no_memory;
 use numpy::{IntoPyArray, PyArray1};
-use opm_workspace::{Conditioned, ConditioningIndex, PoseLimit, Progress, Shard};
+use opm_workspace::{Conditioned, ConditioningIndex, Progress, Shard};
 use pyo3::prelude::*;
 use std::num::NonZeroU64;
 
@@ -153,13 +153,13 @@ impl Sweep {
         all.try_reserve_exact(poses).map_err(short)?;
         all.resize(poses, f64::NAN);
         let manipulator = self.workspace.manipulator();
-        let limit = self.workspace.limit().unwrap_or(PoseLimit::none(self.length()));
+        let limit = self.workspace.limit_or_none();
         self.visit(
             py,
             shard,
             |hits, (made, conditioned): &mut (Vec<(u64, f64)>, Option<Conditioned<'_>>)| {
                 let conditioned =
-                    conditioned.get_or_insert_with(|| Conditioned::new(manipulator, limit));
+                    conditioned.get_or_insert_with(|| Conditioned::new(manipulator, limit.clone()));
                 let mut poses = Vec::with_capacity(hits.first.len() * (1 + hits.others.len()));
                 for &first in hits.first {
                     poses.push(first);

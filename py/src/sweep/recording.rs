@@ -61,7 +61,7 @@ impl Sweep {
             wrong(format!("scale {scale:?}, expected \"comparable\" or \"none\""))
         })?;
         let points = PointOptions { axes: axes.unwrap_or_default(), scalars, color, scale };
-        let points = points.choose(workspace.kind(), workspace.manipulator());
+        let points = points.choose(workspace.kind(), workspace.manipulator(), workspace.setup());
         let points = points.map_err(|error| request(&error))?;
         let is_mcap = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"));
         if !is_mcap && (explain || inscribed.is_some()) {

@@ -2,11 +2,11 @@
 
 use super::Sweep;
 use super::query::named;
-use crate::error::failed;
+use crate::error::{failed, wrong};
 use crate::interrupt::{self, few};
 use crate::manipulator::Manipulator;
 use crate::parts::{Parts, Pickled};
-use opm_study::WorkspaceRequest;
+use opm_study::{WorkspaceRequest, setup_fields, setup_of_fields};
 use opm_workspace::{Axis, Count, Progress, Shard};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -18,12 +18,14 @@ const LEAST_PART: u64 = 1 << 15;
 /// A pickled [`Count`]: the number of poses, the number of reachable ones, ranges of the imaginary joints.
 pub type Counted = (u64, u64, Vec<Option<[f64; 2]>>);
 
-/// A sweep before it is done, as it is pickled: axes, kind, mode, largest condition number and limits of indices,
-/// characteristic length, threads.
-type Spec = (Vec<(String, f64, f64, u64)>, String, String, Limits, f64, Option<NonZeroUsize>);
+/// A sweep before it is done, as it is pickled: axes, kind, mode, limits, setup, threads.
+type Spec = (Vec<(String, f64, f64, u64)>, String, String, Limits, Judged, Option<NonZeroUsize>);
 
-/// The largest condition number, and the worst values of indices by name.
-type Limits = (Option<f64>, BTreeMap<String, f64>);
+/// The largest condition number, the worst values of indices by name, and the least distance of bodies.
+type Limits = (Option<f64>, BTreeMap<String, f64>, Option<f64>);
+
+/// The characteristic length, and what else poses are judged by, as words.
+type Judged = (f64, BTreeMap<String, String>);
 
 /// The result of `task` for each part of a sweep, in their order; or their combination by `fold`.
 pub fn spread<'py>(
@@ -58,8 +60,10 @@ impl Sweep {
         let axes = axes.map(|a| (a.name.clone(), a.min, a.max, a.count)).collect();
         let Count { poses, reachable, imaginary } = this.count.clone();
         let (kind, mode) = (this.kind().to_owned(), this.mode.clone());
-        let limits = (this.max_condition(), this.limits());
-        let spec = (axes, kind, mode, limits, this.length(), this.threads);
+        let limits = (this.max_condition(), this.limits(), this.clearance());
+        let setup = setup_fields(this.workspace.setup(), this.workspace.manipulator());
+        let setup = setup.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+        let spec = (axes, kind, mode, limits, (this.length(), setup), this.threads);
         let of = this.of.clone_ref(slf.py());
         Ok((slf.get_type().getattr("_restored")?, (of, spec, (poses, reachable, imaginary))))
     }
@@ -71,11 +75,14 @@ impl Sweep {
         spec: Spec,
         count: Counted,
     ) -> PyResult<Self> {
-        let (axes, kind, mode, (most, limits), length, threads) = spec;
+        let (axes, kind, mode, (most, limits, clearance), (length, setup), threads) = spec;
         let axes = axes.into_iter().map(|(name, min, max, count)| Axis::new(name, min, max, count));
         let mut query = WorkspaceRequest::new(named(&kind)?);
         query.axes = axes.collect();
-        (query.max_condition, query.length) = (most, Some(length));
+        (query.max_condition, query.clearance) = (most, clearance);
+        let field = |name: &str| setup.get(name).map(|value| &**value);
+        query.setup =
+            setup_of_fields(field, length).ok_or_else(|| wrong("a pickle of another version"))?;
         query.limits = limits.into_iter().collect();
         let planned = Self::planned(py, manipulator, query, mode, threads)?;
         Ok(Self { count: count_of(count), ..planned })

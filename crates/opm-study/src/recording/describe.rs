@@ -96,7 +96,7 @@ pub fn described(run: &Metadata, manipulator: Arc<Manipulator>) -> Option<Worksp
     };
     let length = limited.or(conditioning).unwrap_or_else(|| manipulator.characteristic_length());
     let field = |key: &str| run.get(key).map(|text| &**text);
-    let setup = Arc::new(of_fields(field, length, &manipulator)?);
+    let setup = Arc::new(of_fields(field, length)?.check(&manipulator).ok()?);
     let limit = match limited {
         None => None,
         Some(_) => {
