@@ -1,5 +1,7 @@
 """Forces and transmission for arrays of poses, against virtual work and linear programs."""
 
+import pickle
+
 import numpy as np
 import opm_kinematics as opm
 import pytest
@@ -140,6 +142,12 @@ def test_what_is_not_determined_is_not_a_number():
         ({"frame": "tool"}, "frame is \"tool\", expected \"base\" or \"platform\""),
         ({"at": "tip"}, "at is 'tip', expected"),
         ({"at": [1, 2]}, "at"),
+        ({"gravity": [1, 2]}, "gravity"),
+        ({"density": 7800.0}, "density needs gravity"),
+        ({"gravity": [0, 0, -9.81], "density": 0.0}, "density is 0"),
+        ({"joint_stiffness": {"S1": 1e6}}, "joint_stiffness needs link_stiffness"),
+        ({"link_stiffness": (1e6, -1.0)}, "link_stiffness: a stiffness is -1"),
+        ({"link_stiffness": (1e6, 1e3), "joint_stiffness": {"Q": 1.0}}, "no actuated joint \"Q\", expected one of S1"),
         ({"length": 0.0}, "length is 0.0"),
     ],
 )
@@ -159,3 +167,75 @@ def test_bad_input_is_refused(manipulator, given, message):
 def test_limits_that_make_no_sense_are_refused(manipulator, limits, message):
     with pytest.raises(opm.OpmError, match=message):
         opm.sweep(manipulator, limits=limits, x=0.1)
+
+
+SETUP = {
+    "wrench": [10, 0, -3, 0, 0, 0.5],
+    "at": [0.01, 0, 0.02],
+    "frame": "platform",
+    "gravity": [0, 0, -9.81],
+    "link_stiffness": (1e7, 1e4),
+    "joint_stiffness": {"S1": 1e6},
+}
+
+
+def test_stiffness_displaces_the_platform_by_what_the_legs_carry(manipulator):
+    found = manipulator.analyze([manipulator.home, [9, 9, 0, 0, 0]], link_stiffness=(1e7, 1e4))
+    matrix, legs = found.stiffness_matrix, found.leg_stiffness
+    assert matrix.shape == (2, 6, 6) and legs.shape == (2, 4, 6, 6) and np.isnan(matrix[1]).all()
+    np.testing.assert_allclose(legs[0].sum(axis=0), matrix[0], rtol=1e-9, atol=1e-3)
+    np.testing.assert_allclose(matrix[0], matrix[0].T, rtol=1e-9, atol=1e-3)
+    # A force, and a moment, in the worst direction.
+    compliance = np.linalg.inv(matrix[0])
+    for least, block in [(found.stiffness, compliance[:3, :3]), (found.rotational_stiffness, compliance[3:, 3:])]:
+        assert least[0] == pytest.approx(1 / np.linalg.norm(block, 2), rel=1e-6)
+    assert manipulator.analyze([manipulator.home]).stiffness_matrix is None
+
+
+def test_a_sweep_is_limited_by_loads_springs_and_clearance(manipulator, tmp_path):
+    swept = opm.sweep(manipulator, **GRID)
+    found = manipulator.analyze(swept.points(), **SETUP)
+    clearance = manipulator.clearance(swept.points()).distance
+    np.testing.assert_array_equal(found.clearance, clearance)
+    effort, stiff, apart = np.median(found.effort), np.median(found.stiffness), np.quantile(clearance, 0.3)
+    limits = {"effort": effort, "stiffness": stiff}
+    limited = opm.sweep(manipulator, limits=limits, clearance=apart, **SETUP, **GRID)
+    good = (found.effort <= effort) & (found.stiffness >= stiff) & (clearance >= apart)
+    assert 0 < good.sum() == limited.count
+    np.testing.assert_array_equal(limited.points(), swept.points()[good])
+    assert limited.clearance == apart and swept.clearance is None
+    assert opm.sweep(manipulator, limits={**limits, "clearance": apart}, **SETUP, **GRID).count == limited.count
+    # The points of a recording have the efforts of joints.
+    limited.write(tmp_path / "points.npy", scalars=["effort.S1", "clearance"], color="effort.theta11")
+    points = np.load(tmp_path / "points.npy")
+    np.testing.assert_array_equal(points["effort.S1"], found.efforts[good, 0])
+    np.testing.assert_array_equal(points["effort.theta11"], found.imaginary_efforts[good, 0])
+    np.testing.assert_array_equal(points["clearance"], clearance[good])
+    # It is the same after a journey to another process.
+    assert pickle.loads(pickle.dumps(limited)) == limited
+    assert opm.sweep(manipulator, limits=limits, **SETUP, **GRID) != limited
+
+
+def test_weights_are_loads(manipulator):
+    found = manipulator.analyze([manipulator.home, [0.01, 0, 0, 0.1, 0]], gravity=[0, -9.81, 0])
+    heavy = manipulator.analyze([manipulator.home, [0.01, 0, 0, 0.1, 0]], gravity=[0, -9.81, 0], density=5400)
+    # All bodies of the shipped mechanism have masses by density, 2700 kg/m³ unless said otherwise.
+    np.testing.assert_allclose(heavy.efforts, 2 * found.efforts, rtol=1e-9, atol=1e-12)
+    assert (np.abs(found.efforts) > 1e-3).any()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"limits": {"effort": 3.0}}, "limits: effort: nothing acts on the mechanism"),
+        ({"limits": {"stiffness": 3.0}}, "limits: stiffness: nothing gives way"),
+        ({"limits": {"oci": 0.5}}, "limits: oci: no leg constrains the platform"),
+        ({"clearance": -1.0}, "clearance: -1.0 m, expected a length of 0 or more"),
+        ({"clearance": 0.001, "limits": {"clearance": 0.002}}, "clearance is given twice"),
+        ({"clearance": 0.001, "mode": "any"}, "clearance"),
+        ({"at": "base"}, "at and frame need wrench"),
+    ],
+)
+def test_setups_that_make_no_sense_are_refused(manipulator, given, message):
+    with pytest.raises(opm.OpmError, match=message):
+        opm.sweep(manipulator, x=0.1, **given)

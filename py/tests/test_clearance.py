@@ -1,5 +1,7 @@
 """Distances of bodies at many poses."""
 
+import pickle
+
 import numpy as np
 import opm_kinematics as opm
 import pytest
@@ -45,3 +47,23 @@ def test_threads_and_order_do_not_matter(manipulator):
 def test_what_is_wrong_is_named(manipulator):
     with pytest.raises(opm.OpmError):
         manipulator.clearance([manipulator.home], mode="+")
+
+
+def test_contacts_of_a_motion_are_found_between_samples(tmp_path):
+    m = opm.examples.load("plano-spherical-5dof")
+    motion = "plano-spherical-sinusoids"
+    found = opm.trajectory(m, motion, clearance=0.002)
+    assert opm.trajectory(m, motion).contacts is None and opm.trajectory(m, motion).nearest is None
+    apart = m.clearance(found.poses)
+    one, other, distance, time = found.nearest
+    assert distance == apart.distance.min() and time == found.times[apart.distance.argmin()]
+    assert (one, other) in apart.pairs
+    # Some pair is in contact at just those samples at which the nearest two are too near.
+    near = np.any([(c.start <= found.times) & (found.times <= c.end) for c in found.contacts], axis=0)
+    np.testing.assert_array_equal(near, apart.distance < 0.002)
+    for contact in found.contacts:
+        assert contact.start <= contact.worst <= contact.end and contact.distance < 0.002
+    assert pickle.loads(pickle.dumps(found)) == found
+    found.write_mcap(tmp_path / "motion.mcap", indices=True)
+    with pytest.raises(opm.OpmError, match="clearance is -1.0 m"):
+        opm.trajectory(m, motion, clearance=-1.0)

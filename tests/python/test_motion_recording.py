@@ -192,7 +192,7 @@ def test_link_ends_coincide_at_every_frame(record, mechanism):
     assert max(moved.values()) > 0.01 and sum(m > 1e-6 for m in moved.values()) > len(moved) / 2
     # The same surfaces as points, each in its frame.
     for frame in ends:
-        [(time, cloud)] = recorded.topics[f"/scene/bodies/{frame}"]
+        time, cloud = recorded.topics[f"/scene/bodies/{frame}"][0]
         assert (time, cloud.frame_id) == (START, frame)
         array = check_recording.points(cloud)
         assert len(array) > 50 or not len(ends[frame])
@@ -308,3 +308,8 @@ def test_what_cannot_be_followed_is_marked(opm, record, tmp_path):
     assert scenes[0][0] == START and {*times[changes]} <= {time for time, _ in scenes}
     stuck = {[green for time, green in scenes if time <= now][-1] for now in times[lost]}
     assert len(changes) >= 2 and len(stuck) == 1 and scenes[0][1] not in stuck
+    # So are the points of the bodies, for viewers without scenes.
+    clouds = recorded.topics["/scene/bodies/platform"]
+    greens = [(time, check_recording.points(cloud)["green"].mean()) for time, cloud in clouds]
+    red = {[green for time, green in greens if time <= now][-1] for now in times[lost]}
+    assert len(red) == 1 and greens[0][1] > 1.5 * max(red)

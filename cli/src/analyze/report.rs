@@ -384,8 +384,16 @@ impl Report<'_> {
         let mut table = Table::new(["index", ">value", "unit", ""]);
         for (index, &value) in indices.indices().iter().zip(indices.values()) {
             let facts = index.facts();
+            // Text for people has the file's units.
+            let (value, unit) = match facts.unit {
+                "m" => (
+                    value / self.units.factor(Quantity::Length),
+                    self.units.symbol(Quantity::Length),
+                ),
+                unit => (value, unit),
+            };
             let shown = if value.is_nan() { "-".to_owned() } else { shown(value) };
-            table.row([facts.name, &shown, facts.unit, facts.about]);
+            table.row([facts.name, &shown, unit, facts.about]);
         }
         let _ = write!(text, "{table}");
     }

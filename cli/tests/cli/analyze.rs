@@ -41,6 +41,7 @@ fn the_json_is_one_object_with_these_keys() {
         "mode",
         "reachable",
         "wrench",
+        "gravity",
         "balance",
         "efforts",
         "imaginary_efforts",
@@ -50,6 +51,7 @@ fn the_json_is_one_object_with_these_keys() {
         "capacity",
         "transmission",
         "stiffness",
+        "indices",
         "length",
         "transform",
     ];
@@ -62,6 +64,10 @@ fn the_json_is_one_object_with_these_keys() {
     let bare = analyze(&[PLANO, "--pose", "x=10mm,xi=15deg"]);
     assert_eq!((&bare["efforts"], &bare["balance"]), (&Value::Null, &Value::Null));
     assert_eq!((&bare["worst"], &bare["transmission"]), (&found["worst"], &found["transmission"]));
+    // Every index is a number here.
+    assert_eq!(found["indices"]["lti"], found["transmission"]["lti"]);
+    assert!(number(&found["indices"]["effort"]) > 0.0 && bare["indices"].get("effort").is_none());
+    assert!(number(&bare["indices"]["clearance"]).is_finite());
     // Out of reach is an answer.
     let out = analyze(&[PLANO, "--pose", "x=9", "--wrench", "10,0,0,0,0,0.5"]);
     assert_eq!((&out["reachable"], &out["efforts"]), (&false.into(), &Value::Null));
@@ -136,6 +142,13 @@ fn wrong_input_gets_one_message() {
         (&["--link-stiffness", "1e6"], "1 number in \"1e6\", expected 2: KT,KR"),
         (&["--link-stiffness", "1e6,-1"], "KR is -1.0, expected a number above 0"),
         (&["--link-stiffness", "1,1", "--joint-stiffness", "Q=1"], "no actuated joint \"Q\""),
+        (&["--gravity", "0,0"], "2 numbers in \"0,0\", expected 3: X,Y,Z"),
+        (&["--density", "7800"], "--gravity"),
+        (&["--gravity", "0,0,-9.81", "--density", "0"], "--density: 0, expected a number from"),
+        (
+            &["--gravity", "0,0,-9.81", "--link-stiffness", "1,1"],
+            "reactions are those of --wrench alone",
+        ),
         (&["--length", "0"], "expected a positive length"),
         (&["--set", "max_effort.S=50mm"], "max_effort.S is in N or N m"),
         (&["--set", "max_effort.S=-5"], "is -5 N, expected a value above 0"),

@@ -53,6 +53,8 @@ pub struct BoxTest<'a> {
     asked: Vec<BodyPoint>,
     balls: Vec<Ball>,
     places: Vec<ScaledBall>,
+    /// Whether each point is asked for, while they are collected.
+    marked: Vec<bool>,
 }
 
 /// Where the end of a capsule is.
@@ -101,6 +103,7 @@ impl<'a> BoxTest<'a> {
             distances: Distances::new(interference),
             least: least / interference.unit,
             places: vec![anywhere; points.len()],
+            marked: vec![false; points.len()],
             points,
             ends,
             wanted: Vec::new(),
@@ -159,12 +162,12 @@ impl<'a> BoxTest<'a> {
             let shapes = interference.pairs[number].shapes.iter().flatten();
             for place in shapes.flat_map(|&shape| self.ends[shape]) {
                 if let EndPlace::Moving(point) = place {
-                    self.wanted.push(point);
+                    self.marked[point] = true;
                 }
             }
         }
-        self.wanted.sort_unstable();
-        self.wanted.dedup();
+        let marked = self.marked.iter_mut().enumerate();
+        self.wanted.extend(marked.filter_map(|(p, mark)| std::mem::take(mark).then_some(p)));
         self.asked.clear();
         self.asked.extend(self.wanted.iter().map(|&point| self.points[point]));
         self.manipulator.places_over(mode, sides, &self.asked, &mut self.balls);

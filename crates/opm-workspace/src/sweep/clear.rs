@@ -13,7 +13,7 @@ use opm_interference::{BoxTest, Clearance, Open};
 use std::ops::Range;
 
 /// A box of as many poses or fewer is not bounded: it takes longer than to decide them.
-const FEW: u32 = 8;
+const FEW: u32 = 24;
 
 /// The least share by which boxes are wider than their poses are apart, for rounding.
 const ROUNDING: f64 = 1e-15;
