@@ -4,8 +4,10 @@ import pickle
 
 import numpy as np
 import opm_kinematics as opm
+import pycapacity.robot
 import pytest
 from scipy.optimize import linprog
+from scipy.spatial import ConvexHull
 
 GRID = {"x": (-0.15, 0.15, 21), "y": (-0.15, 0.15, 21)}
 
@@ -97,6 +99,26 @@ def test_the_payload_is_what_linear_programs_find(name):
             assert closest == pytest.approx(payload, rel=1e-6)
         else:
             assert closest < 1.2 * payload
+
+
+def test_the_polytope_is_that_of_pycapacity():
+    m, efforts = limited("planar-3rrr", 3.0)
+    poses, length = poses_near(m, 5, 0.05), 0.25
+    found = m.analyze(poses, length=length)
+
+    def nearest_facet(units):
+        """The distance of the nearest facet of the polytope of wrenches (in these units) whose efforts are within limits."""
+        polytope = pycapacity.robot.force_polytope(units.T, efforts, -efforts)
+        assert np.abs(units @ polytope.vertices).max(axis=1) == pytest.approx(efforts, rel=1e-6)
+        return -ConvexHull(polytope.vertices.T).equations[:, -1].max()
+
+    for number in range(len(poses)):
+        rows = found.effort_jacobian[number]
+        assert found.payload[number] == pytest.approx(nearest_facet(rows[:, :2]), rel=1e-6)
+        planar = rows[:, [0, 1, 5]] / [length, length, 1]
+        assert found.payload_ball[number] == pytest.approx(nearest_facet(planar), rel=1e-6)
+        moment = (efforts / np.abs(rows[:, 5])).min()
+        assert found.payload_moment[number] == pytest.approx(moment, rel=1e-9)
 
 
 def test_the_good_transmission_workspace_is_where_the_index_says(manipulator):
