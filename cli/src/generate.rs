@@ -14,6 +14,7 @@ pub fn run(args: &GenerateArgs, output: &Output) -> Result<(), Failure> {
         Language::Rust(args) => write(args, opm_generate::rust, output),
         Language::Python(args) => write(args, opm_generate::python, output),
         Language::Matlab(args) => write(args, opm_generate::matlab, output),
+        Language::St(args) => write(args, opm_generate::st, output),
     }
 }
 

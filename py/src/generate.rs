@@ -86,6 +86,24 @@ impl Manipulator {
     fn to_matlab(&self, py: Python<'_>) -> PyResult<Files> {
         self.code(py, opm_generate::matlab)
     }
+
+    /// The closed-form kinematics as structured text (IEC 61131-3) for a PLC: the texts of the files, by name.
+    ///
+    /// ``NAME.st`` has a function block for each function; NAME is the mechanism's name with ``_`` for what a name cannot have.
+    /// ``NAME_test.st`` compares it with poses that opm solved. They are the files that ``opm generate st`` writes.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     The text of each file.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The mechanism has more than 32 two-valued choices.
+    fn to_st(&self, py: Python<'_>) -> PyResult<Files> {
+        self.code(py, opm_generate::st)
+    }
 }
 
 impl Manipulator {

@@ -7,6 +7,7 @@ import sys
 from html.parser import HTMLParser
 from xml.etree import ElementTree
 
+import blark.parse
 import numpy as np
 import opm_kinematics as opm
 import pytest
@@ -86,7 +87,7 @@ def test_numbers_that_are_not_positive_are_refused(option, value):
             mechanism.to_mjcf(**{option: value})
 
 
-@pytest.mark.parametrize("language", ["c", "rust", "python", "matlab"])
+@pytest.mark.parametrize("language", ["c", "rust", "python", "matlab", "st"])
 def test_code_is_that_of_the_command(language, tmp_path):
     mechanism = opm.examples.plano_spherical()
     command = [sys.executable, "-m", "opm_kinematics", "generate", language, mechanism.name, "-q", "-o", tmp_path]
@@ -140,3 +141,10 @@ def test_a_page_that_cannot_be_written_says_where(tmp_path):
     with pytest.raises(OSError, match="nowhere"):
         opm.examples.plano_spherical().explore().save(tmp_path / "nowhere" / "a.html")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_grammar_of_others_accepts_structured_text():
+    for text in opm.examples.load("five-bar").to_st().values():
+        assert blark.parse.parse_source_code(text).exception is None
+    # It does find errors.
+    assert blark.parse.parse_source_code("FUNCTION f : LREAL f := 1.0 END_FUNCTION").exception is not None

@@ -11,7 +11,8 @@ Examples:
   opm generate c plano-spherical-5dof -o controller
   opm generate rust plano-spherical-5dof -o kinematics
   opm generate python plano-spherical-5dof -o .
-  opm generate matlab plano-spherical-5dof -o .")]
+  opm generate matlab plano-spherical-5dof -o .
+  opm generate st plano-spherical-5dof -o plc")]
 pub struct GenerateArgs {
     /// The language.
     #[command(subcommand)]
@@ -84,6 +85,21 @@ Examples:
   opm generate matlab plano-spherical-5dof -o kinematics
   octave --path kinematics --eval plano_spherical_5dof_test")]
     Matlab(CodeArgs),
+    /// Write the kinematics of a mechanism as structured text (IEC 61131-3) for a PLC
+    ///
+    /// NAME.st has a function block for each function: NAME_inverse gives every joint at a pose in a working mode, as `opm ik` does,
+    /// or the number of the leg that is out of reach. NAME is the mechanism's name, with _ for what a name cannot have. All
+    /// numbers are LREAL. A variable of the type NAME_geometry has the numbers of the mechanism from the start, and is passed to
+    /// every block: numbers of a calibration need no new code.
+    ///
+    /// NAME_test.st has a function block that compares the code with poses that opm solved, one in each cycle. Files that are
+    /// there already are replaced.
+    ///
+    /// Nothing is printed; --format has no effect.
+    #[command(after_long_help = "\
+Examples:
+  opm generate st plano-spherical-5dof -o plc")]
+    St(CodeArgs),
 }
 
 /// Of what, and where to.

@@ -48,6 +48,7 @@ fn packages_are_written_and_named() {
         ),
         ("python", vec!["five_bar.py", "pyproject.toml", "test_five_bar.py"]),
         ("matlab", vec!["+five_bar/inverse.m", "+five_bar/default.m", "five_bar_test.m"]),
+        ("st", vec!["five_bar.st", "five_bar_test.st"]),
     ];
     for (language, files) in expected {
         let into = folder.arg(language);

@@ -2,7 +2,8 @@
 //!
 //! opm compiles a mechanism to closed forms at run time. A controller has one mechanism, and no room for a compiler: for
 //! it, [`c()`] writes the closed forms of that mechanism as C99, a few hundred lines with the field's names, without heap
-//! and global variables. [`rust()`], [`python()`] and [`matlab()`] write the same in other languages, from one description.
+//! and global variables. [`rust()`], [`python()`], [`matlab()`] and [`st()`] write the same in other
+//! languages, from one description.
 //!
 //! ```
 //! let manipulator = opm_core::Manipulator::example("plano-spherical-5dof")?;
@@ -18,6 +19,7 @@ mod matlab;
 mod names;
 mod python;
 mod rust;
+mod st;
 mod text;
 mod tree;
 
@@ -25,6 +27,7 @@ pub use c::{CCode, c};
 pub use matlab::matlab;
 pub use python::python;
 pub use rust::rust;
+pub use st::st;
 
 /// The kinematics of one mechanism in a language: the files of a package.
 #[derive(Clone, Debug, PartialEq, Eq)]

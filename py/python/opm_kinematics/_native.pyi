@@ -872,6 +872,22 @@ class Manipulator:
         OpmError
             The mechanism has more than 32 two-valued choices.
         """
+    def to_st(self) -> dict[str, str]:
+        """The closed-form kinematics as structured text (IEC 61131-3) for a PLC: the texts of the files, by name.
+
+        ``NAME.st`` has a function block for each function; NAME is the mechanism's name with ``_`` for what a name cannot have.
+        ``NAME_test.st`` compares it with poses that opm solved. They are the files that ``opm generate st`` writes.
+
+        Returns
+        -------
+        dict
+            The text of each file.
+
+        Raises
+        ------
+        OpmError
+            The mechanism has more than 32 two-valued choices.
+        """
     def explore(self) -> Explorer:
         """A page that shows the mechanism and its workspace in a browser, or as the value of a cell in a notebook.
 

@@ -8,3 +8,4 @@ mod matlab;
 mod program;
 mod python;
 mod rust;
+mod st;
