@@ -21,6 +21,12 @@ pub const UNMET: &str = "    real unmet[2] = { 0, 0 };\n";
 /// Returns from a function whose status is not zero.
 pub const RETURN: &str = "    if (status != 0) {\n        return status;\n    }\n";
 
+/// Statements that give the values of joints, with what they declare.
+struct Values {
+    declarations: String,
+    text: String,
+}
+
 impl Writer<'_> {
     /// The definitions of the public functions, and of what they share.
     pub fn interface(&self) -> String {
@@ -152,15 +158,52 @@ impl Writer<'_> {
         )
     }
 
-    /// The value of a joint coordinate from the displacements.
-    fn value(&self, coordinate: usize) -> String {
-        let field = &self.fields[coordinate];
-        match self.given(coordinate) {
-            Given::Value => format!("g->joint[{coordinate}].home + at.{field}"),
-            Given::Direction | Given::Turns => {
-                format!("NAME_reported(&g->joint[{coordinate}], at.{field})")
+    /// Statements that write the values of joints from the displacements, and those of the imaginary joints. All angles are
+    /// computed in one loop, which compilers turn into vectors.
+    fn values(&self, joints: &[(String, usize)], with_imaginary: bool) -> Values {
+        let mut directions = Vec::new();
+        let mut angle = |field: &str| {
+            directions.push(field.to_owned());
+            format!("angle[{}]", directions.len() - 1)
+        };
+        let mut text = String::new();
+        for (target, coordinate) in joints {
+            let field = format!("at.{}", self.fields[*coordinate]);
+            let value = match self.given(*coordinate) {
+                Given::Value => format!("g->joint[{coordinate}].home + {field}"),
+                Given::Direction | Given::Turns => {
+                    format!("NAME_reported(&g->joint[{coordinate}], {})", angle(&field))
+                }
+            };
+            let _ = writeln!(text, "    {target} = {value};");
+        }
+        for (number, leg) in self.forms.legs.iter().enumerate().filter(|_| with_imaginary) {
+            if let Some((imaginary, value)) = self.imaginary_value(leg, number, &mut angle) {
+                let _ = writeln!(text, "    imaginary[{imaginary}] = {value};");
             }
         }
+        if directions.is_empty() {
+            return Values { declarations: String::new(), text };
+        }
+        // Whole vectors: no angle is left over.
+        let count = directions.len().next_multiple_of(4);
+        let mut gathered = String::new();
+        for (number, field) in directions.iter().enumerate() {
+            let _ = writeln!(
+                gathered,
+                "    re[{number}] = {field}.re;\n    im[{number}] = {field}.im;"
+            );
+        }
+        for number in directions.len()..count {
+            let _ = writeln!(gathered, "    re[{number}] = 1;\n    im[{number}] = 0;");
+        }
+        let _ = write!(
+            gathered,
+            "    for (i = 0; i < {count}; ++i) {{\n        angle[i] = NAME_atan2(im[i], re[i]);\n    }}\n"
+        );
+        let declarations =
+            format!("    real re[{count}], im[{count}], angle[{count}];\n    int i;\n");
+        Values { declarations, text: gathered + &text }
     }
 
     /// The value of an imaginary joint from the displacement of its leg along the intersection motion.
@@ -168,7 +211,7 @@ impl Writer<'_> {
         &self,
         leg: &LegForm,
         number: usize,
-        angle: impl Fn(&str) -> String,
+        mut angle: impl FnMut(&str) -> String,
     ) -> Option<(usize, String)> {
         let (imaginary, tau) = (leg.imaginary?, self.tau(leg)?);
         let joint = &self.manipulator.imaginary()[imaginary];
@@ -179,34 +222,26 @@ impl Writer<'_> {
     }
 
     fn inverse(&self) -> String {
-        let mut body = String::new();
-        for number in 0..self.fields.len() {
-            let _ = writeln!(body, "    joints[{number}] = {};", self.value(number));
-        }
-        for (number, leg) in self.forms.legs.iter().enumerate() {
-            let value = self.imaginary_value(leg, number, |field| format!("NAME_angle({field})"));
-            if let Some((imaginary, value)) = value {
-                let _ = writeln!(body, "    imaginary[{imaginary}] = {value};");
-            }
-        }
-        let unused = if uses(&body, "imaginary") { "" } else { "    (void)imaginary;\n" };
+        let joints: Vec<_> = (0..self.fields.len()).map(|i| (format!("joints[{i}]"), i)).collect();
+        let Values { declarations, text } = self.values(&joints, true);
+        let unused = if uses(&text, "imaginary") { "" } else { "    (void)imaginary;\n" };
         format!(
             "int NAME_inverse(const NAME_geometry *g, const NAME_real pose[], unsigned mode, NAME_real joints[],\n                 \
              NAME_real imaginary[])\n\
-             {{\n    NAME_displacements at;\n    const int status = NAME_close(g, pose, mode, &at);\n{RETURN}{body}{unused}    \
+             {{\n    NAME_displacements at;\n{declarations}    const int status = NAME_close(g, pose, mode, &at);\n{RETURN}{text}{unused}    \
              return 0;\n}}\n\n"
         )
     }
 
     fn actuated(&self) -> String {
-        let mut body = String::new();
-        for (place, &coordinate) in self.manipulator.actuated().iter().enumerate() {
-            let _ = writeln!(body, "    actuated[{place}] = {};", self.value(coordinate));
-        }
-        let unused = if body.is_empty() { "    (void)actuated;\n" } else { "" };
+        let actuated = self.manipulator.actuated().iter().enumerate();
+        let joints: Vec<_> =
+            actuated.map(|(place, &i)| (format!("actuated[{place}]"), i)).collect();
+        let Values { declarations, text } = self.values(&joints, false);
+        let unused = if text.is_empty() { "    (void)actuated;\n" } else { "" };
         format!(
             "int NAME_actuated(const NAME_geometry *g, const NAME_real pose[], unsigned mode, NAME_real actuated[])\n\
-             {{\n    NAME_displacements at;\n    const int status = NAME_close(g, pose, mode, &at);\n{RETURN}{body}{unused}    \
+             {{\n    NAME_displacements at;\n{declarations}    const int status = NAME_close(g, pose, mode, &at);\n{RETURN}{text}{unused}    \
              return 0;\n}}\n\n"
         )
     }

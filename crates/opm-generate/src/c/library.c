@@ -13,6 +13,9 @@
 /* The largest coordinate of a pose: the fourth power of a larger one would overflow. */
 #define NAME_LARGEST (sizeof(real) == sizeof(float) ? 1e9 : 1e75)
 
+/* The square of the cosine of the angle from which on two axes count as well apart. */
+#define NAME_BESIDE ((real)0.99)
+
 #define NAME_PI ((real)3.14159265358979323846)
 
 #define NAME_TAU ((real)6.28318530717958647693)
@@ -70,29 +73,41 @@ static inline real NAME_ceil(real x)
     return NAME_MATH(ceil, x);
 }
 
-/* The angle of the vector (x, y), right to two units in the last place: (atan t - t) / t^3 in powers of t^2, minimax for
-   t <= 1/2, from the nearest multiple of 45 degrees. It has no branches, and takes a fraction of the time of atan2. */
-static inline real NAME_arctangent(real y, real x)
+/* Calls of the shortest functions, and of those whose arguments are large, are left out unless the code is to be small. */
+#if defined(__GNUC__) && !defined(__OPTIMIZE_SIZE__)
+#define NAME_INLINE inline __attribute__((always_inline))
+#else
+#define NAME_INLINE inline
+#endif
+
+/* One half with the sign of x. */
+static NAME_INLINE real NAME_half(real x)
 {
-    const real width = NAME_abs(x), height = NAME_abs(y), shorter = NAME_min(width, height);
-    const real longer = NAME_max(width, height);
-    const int steep = height > width, backwards = signbit(x) != 0, wide = 2 * shorter > longer;
-    const real tilted = (real)wide, above = shorter - tilted * longer, below = longer + tilted * shorter;
-    const int eighths = wide ? 1 + 2 * backwards : steep ? 2 : 4 * backwards;
-    const real t = above / (below > 0 ? below : 1), z = t * t, w = z * z;
+    return sizeof(real) == sizeof(float) ? (real)copysignf(0.5f, (float)x) : (real)copysign(0.5, (double)x);
+}
+
+/* The angle of the vector (x, y), right to three units in the last place: (atan t - t) / t^3 in powers of t^2, minimax for
+   t <= 1/2, from the nearest multiple of 45 degrees. It compares nothing, so that compilers compute several at once; a term
+   keeps the quotient of zeros zero. */
+static NAME_INLINE real NAME_arctangent(real y, real x)
+{
+    const real width = NAME_MATH(fabs, x), height = NAME_MATH(fabs, y);
+    const real steep = (real)0.5 - NAME_half(width - height), backwards = (real)0.5 - NAME_half(x);
+    const real shorter = steep * width + (1 - steep) * height, longer = steep * height + (1 - steep) * width;
+    const real wide = (real)0.5 - NAME_half(longer - 2 * shorter);
+    const real t = (shorter - wide * longer) / (longer + wide * shorter + (real)1e-300), z = t * t, w = z * z;
     const real even = (real)-0.3333333333333333 + w * ((real)-0.14285714285599188 + w * ((real)-0.09090908620322523
                     + w * ((real)-0.06666435677235948 + w * ((real)-0.05240099507994713
                     + w * ((real)-0.03806653672057366 + w * (real)-0.009215792047089858)))));
     const real odd = (real)0.19999999999999488 + w * ((real)0.11111111100917376 + w * ((real)0.07692294712540285
                    + w * ((real)0.05879578429582425 + w * ((real)0.04628024868570153
                    + w * (real)0.025006503566489507))));
-    const real rest = t + t * (z * (even + z * odd));
-    const real angle = (real)eighths * (NAME_PI / 4)
-                     + ((real)eighths * (real)3.061616997868383e-17 + (real)(1 - 2 * (steep != backwards)) * rest);
-    return signbit(y) ? -angle : angle;
+    const real eighth = wide * (NAME_PI / 4) + (t + t * (z * (even + z * odd)));
+    const real quarter = steep * (NAME_PI / 2) + (1 - 2 * steep) * eighth;
+    return 2 * NAME_half(y) * (backwards * NAME_PI + (1 - 2 * backwards) * quarter);
 }
 
-static inline real NAME_atan2(real y, real x)
+static NAME_INLINE real NAME_atan2(real y, real x)
 {
     return sizeof(real) == sizeof(float) ? (real)atan2f((float)y, (float)x) : NAME_arctangent(y, x);
 }
@@ -181,7 +196,7 @@ static inline NAME_complex NAME_direction(NAME_complex z, real size)
 }
 
 /* The angle of a direction, within half a revolution of zero. */
-static inline real NAME_angle(NAME_complex z)
+static real NAME_angle(NAME_complex z)
 {
     return NAME_atan2(z.im, z.re);
 }
@@ -403,7 +418,7 @@ static inline NAME_pivot NAME_carried_pivot(NAME_planar g, NAME_pivot p)
 
 /* Two links and a wrist (RRR), by the law of cosines. The sign is + where the second link is counter-clockwise from the
    first. Angles are given as directions here and below. */
-static real NAME_solve_planar_rrr(const NAME_planar_rrr *c, NAME_planar g, real sign, NAME_complex *q1, NAME_complex *q2,
+static NAME_INLINE real NAME_solve_planar_rrr(const NAME_planar_rrr *c, NAME_planar g, real sign, NAME_complex *q1, NAME_complex *q2,
                                   NAME_complex *q3)
 {
     const NAME_complex first = NAME_minus(c->p2.at, c->p1.at), second = NAME_minus(c->p3.at, c->p2.at);
@@ -429,7 +444,7 @@ static real NAME_solve_planar_rrr(const NAME_planar_rrr *c, NAME_planar g, real 
 }
 
 /* A slider and a link (PRR). The sign is + where the slider is ahead of the link's outer pivot. */
-static real NAME_solve_planar_prr(const NAME_planar_prr *c, NAME_planar g, real sign, real *q1, NAME_complex *q2,
+static NAME_INLINE real NAME_solve_planar_prr(const NAME_planar_prr *c, NAME_planar g, real sign, real *q1, NAME_complex *q2,
                                   NAME_complex *q3)
 {
     const NAME_complex link = NAME_minus(c->p3.at, c->p2.at), outer = NAME_apply(g, c->p3.at);
@@ -471,7 +486,7 @@ static real NAME_solve_planar_rrp(const NAME_planar_rrp *c, NAME_planar g, real 
 
 /* A telescopic link between two pivots (RPR). The sign is + where the outer pivot is ahead of the foot of the
    perpendicular from the inner pivot to the slider. */
-static real NAME_solve_planar_rpr(const NAME_planar_rpr *c, NAME_planar g, real sign, NAME_complex *q1, real *q2,
+static NAME_INLINE real NAME_solve_planar_rpr(const NAME_planar_rpr *c, NAME_planar g, real sign, NAME_complex *q1, real *q2,
                                   NAME_complex *q3)
 {
     const NAME_complex offset = NAME_times(NAME_minus(c->p3.at, c->p1.at), NAME_conjugate(c->d2));
@@ -598,37 +613,46 @@ static real NAME_missed_spherical(const NAME_spherical_rrr *c, NAME_vector w)
     return NAME_missed(NAME_max(NAME_abs(a12 - a23) - arc, arc - farthest));
 }
 
+/* The other two angles of three revolutes about one point from the first one, a unit vector: where w = R a3 is near the first
+   axis, q1 and q3 turn about nearly the same one, and q3 must follow from q1. On it q1 is free. */
+static void NAME_spherical_rest(const NAME_spherical_rrr *c, NAME_rotation r, NAME_complex q1, NAME_complex *q2,
+                                NAME_complex *q3)
+{
+    const NAME_vector n23 = NAME_cross(c->a2, c->a3), w = NAME_rotated(r, c->a3);
+    const NAME_vector w1 = NAME_rotated_about(c->a1, NAME_conjugate(q1), w);
+    const NAME_vector across = NAME_add(c->a3, -NAME_dot(c->a2, c->a3), c->a2);
+    const NAME_complex q = NAME_normal(NAME_complex_of(NAME_dot(across, w1), NAME_dot(n23, w1)));
+    /* A direction across the third axis, as the first two joints leave it. */
+    const NAME_vector beside = NAME_rotated_about(c->a1, NAME_conjugate(q1), NAME_rotated(r, n23));
+    const NAME_vector left = NAME_rotated_about(c->a2, NAME_conjugate(q), beside);
+    *q2 = q;
+    *q3 = NAME_complex_of(NAME_dot(n23, left), NAME_dot(NAME_cross(c->a3, n23), left));
+}
+
 /* Three revolutes about one point: a2 . exp(-a1 q1) w = a2 . a3 with w = R a3, that is A cos q1 + B sin q1 = D. The sign is
-   that of the triple product of the displaced axes. */
-static real NAME_solve_spherical_rrr(const NAME_spherical_rrr *c, NAME_rotation r, real sign, NAME_complex *q1,
-                                     NAME_complex *q2, NAME_complex *q3)
+   that of the triple product T of the displaced axes, with which q2 turns the plane of a2 and a3; q3 is q1 of the reverse
+   chain, whose w is p = R^-1 a1. */
+static NAME_INLINE real NAME_solve_spherical_rrr(const NAME_spherical_rrr *c, NAME_rotation r, real sign, NAME_complex *q1,
+                                                 NAME_complex *q2, NAME_complex *q3)
 {
     const real c12 = NAME_dot(c->a1, c->a2), c23 = NAME_dot(c->a2, c->a3);
     const NAME_vector n12 = NAME_cross(c->a1, c->a2), n23 = NAME_cross(c->a2, c->a3), w = NAME_rotated(r, c->a3);
-    const real A = NAME_dot(NAME_add(c->a2, -c12, c->a1), w), B = NAME_dot(n12, w);
-    const real D = c23 - c12 * NAME_dot(c->a1, w), square = A * A + B * B, sine = NAME_dot(n23, n23);
-    NAME_complex e;
-    if (square > D * D && square > NAME_REACH * NAME_REACH) {
-        const real root = sign * NAME_sqrt(square - D * D);
-        *q1 = NAME_complex_of((A * D + B * root) / square, (B * D - A * root) / square);
+    const real along = NAME_dot(c->a1, w), A = NAME_dot(c->a2, w) - c12 * along, B = NAME_dot(n12, w);
+    const real D = c23 - c12 * along, square = A * A + B * B, rest = square - D * D;
+    const real T = sign * NAME_sqrt(NAME_max(rest, 0));
+    if (rest <= 0 && !(NAME_abs(D) <= NAME_sqrt(square) + NAME_REACH)) {
+        return NAME_missed_spherical(c, w);
+    }
+    *q1 = NAME_complex_of(A * D + B * T, B * D - A * T);
+    if (along * along < NAME_BESIDE) {
+        const NAME_vector p = NAME_vector_of(NAME_dot(r.x, c->a1), NAME_dot(r.y, c->a1), NAME_dot(r.z, c->a1));
+        const real cosine = -NAME_dot(n12, n23), sine = NAME_dot(c->a1, n23), E = along - c12 * c23;
+        const real F = NAME_dot(c->a2, p) - c23 * along, G = NAME_dot(n23, p), H = c12 - c23 * along;
+        *q2 = NAME_complex_of(cosine * E + sine * T, sine * E - cosine * T);
+        *q3 = NAME_complex_of(F * H + G * T, G * H - F * T);
     } else {
-        /* On the boundary of reach; where w is on the first axis, its angle is free. */
-        const real length = NAME_sqrt(square), scale = (D < 0 ? -1 : 1) / length;
-        if (!(NAME_abs(D) <= length + NAME_REACH)) {
-            return NAME_missed_spherical(c, w);
-        }
-        *q1 = length <= NAME_REACH ? NAME_complex_of(1, 0) : NAME_complex_of(A * scale, B * scale);
-    }
-    e = NAME_conjugate(*q1);
-    {
-        const NAME_vector w1 = NAME_rotated_about(c->a1, e, w);
-        *q2 = NAME_complex_of(NAME_dot(NAME_add(c->a3, -c23, c->a2), w1) / sine, NAME_dot(n23, w1) / sine);
-    }
-    {
-        /* A direction across the third axis, as the first two joints leave it. */
-        const NAME_vector beside1 = NAME_rotated_about(c->a1, e, NAME_rotated(r, n23));
-        const NAME_vector beside2 = NAME_rotated_about(c->a2, NAME_conjugate(*q2), beside1);
-        *q3 = NAME_complex_of(NAME_dot(n23, beside2), NAME_dot(NAME_cross(c->a3, n23), beside2));
+        *q1 = square > NAME_REACH * NAME_REACH ? NAME_normal(*q1) : NAME_complex_of(1, 0);
+        NAME_spherical_rest(c, r, *q1, q2, q3);
     }
     return 0;
 }
@@ -911,7 +935,7 @@ static inline real NAME_slack(const NAME_joint *joint)
 }
 
 /* Brings an angle into its limits by full revolutions, where these do. */
-static inline real NAME_into_limits(const NAME_joint *joint, real value)
+static real NAME_into_limits(const NAME_joint *joint, real value)
 {
     const real slack = NAME_slack(joint), low = joint->low - slack, high = joint->high + slack;
     if (value < low || value > high) {
@@ -923,9 +947,9 @@ static inline real NAME_into_limits(const NAME_joint *joint, real value)
 }
 
 /* The value of an angle: within half a revolution of home, or within its limits where full revolutions bring it there. */
-static inline real NAME_reported(const NAME_joint *joint, NAME_complex direction)
+static inline real NAME_reported(const NAME_joint *joint, real angle)
 {
-    const real value = joint->home + NAME_angle(direction);
+    const real value = joint->home + angle;
     return value >= joint->low && value <= joint->high ? value : NAME_into_limits(joint, value);
 }
 

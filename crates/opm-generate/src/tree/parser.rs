@@ -11,7 +11,7 @@ use std::collections::HashMap;
 const PREFIX: &str = "NAME_";
 
 /// What is written anew in each language.
-const OWN: [&str; 2] = ["arctangent", "MATH"];
+const OWN: [&str; 4] = ["arctangent", "half", "INLINE", "MATH"];
 
 /// Reads a text: what is declared before it is defined gets the comment of its declaration.
 pub fn parse(text: &str) -> Result<Code, String> {
@@ -216,7 +216,8 @@ impl Parser {
 
     /// The type that a declaration begins with.
     pub(super) fn kind(&mut self) -> Result<Type, String> {
-        while self.keyword("const") || self.keyword("static") || self.keyword("inline") {}
+        let before = ["const", "static", "inline", "NAME_INLINE"];
+        while before.iter().any(|word| self.keyword(word)) {}
         let name = self.name()?;
         Ok(match &*name {
             "void" => Type::Void,

@@ -3,7 +3,7 @@
 use crate::comparison::{
     compare_all, float_closes_every_leg, reach_ends_where_it_does_for_opm, unit,
 };
-use crate::compiled::{Compiled, Real, compiled_by, linuxcnc, programs_of};
+use crate::compiled::{Compiled, Real, compiled_by, compilers_with, linuxcnc, programs_of};
 use crate::drawn::{Drawn, covering, shipped};
 use crate::program::Program;
 use fastrand::Rng;
@@ -48,9 +48,11 @@ fn nothing_is_undefined() {
         "schoenflies-column-4dof",
     ];
     let manipulators = names.map(|name| Manipulator::example(name).unwrap());
-    for real in [Real::Double, Real::Float] {
-        let flags = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
-        let Some(program) = Compiled::new(&manipulators, real, &flags) else { return };
+    let flags = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+    let compilers = compilers_with(&flags);
+    let all = compilers.iter().flat_map(|one| [(one, Real::Double), (one, Real::Float)]);
+    for (compiler, real) in all {
+        let program = Compiled::by(compiler, &manipulators, real, &flags);
         let mut rng = Rng::with_seed(11);
         for (number, m) in manipulators.iter().enumerate() {
             let mut questions = Drawn { rng: &mut rng, manipulator: m }.questions(300);

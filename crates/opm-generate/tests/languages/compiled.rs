@@ -118,7 +118,11 @@ impl Program for Compiled {
 impl Compiled {
     /// Compiles the code of mechanisms with different names. `flags` are further ones of the compiler.
     pub fn new(manipulators: &[Manipulator], real: Real, flags: &[&str]) -> Option<Self> {
-        let compiler = compiler()?;
+        Some(Self::by(&compiler()?, manipulators, real, flags))
+    }
+
+    /// The same with a compiler that is there.
+    pub fn by(compiler: &str, manipulators: &[Manipulator], real: Real, flags: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a directory for temporary files");
         let mut sources: Vec<PathBuf> = Vec::new();
         let mut main = String::from(
@@ -170,20 +174,40 @@ impl Compiled {
             assert!(done.status.success(), "{told}");
             assert_eq!(told, "", "the compiler has something to say");
         };
-        run(Command::new(&compiler)
+        run(Command::new(compiler)
             .args(STRICT)
             .arg("-Werror")
             .args(flags)
             .arg("-c")
             .args(&sources));
         let objects = sources.iter().map(|source| source.with_extension("o"));
-        run(Command::new(&compiler)
+        run(Command::new(compiler)
             .args(flags)
             .args(["-o", "driver", "driver.c"])
             .args(objects)
             .arg("-lm"));
-        Some(Self { folder, shapes: manipulators.iter().map(Shape::of).collect() })
+        Self { folder, shapes: manipulators.iter().map(Shape::of).collect() }
     }
+}
+
+/// The compilers that can make a program with these flags; a word about each that cannot.
+pub fn compilers_with(flags: &[&str]) -> Vec<String> {
+    let mut all: Vec<String> = compiler().into_iter().collect();
+    all.push("clang".to_owned());
+    all.dedup();
+    all.retain(|compiler| {
+        let folder = tempfile::tempdir().expect("a directory for temporary files");
+        std::fs::write(folder.path().join("a.c"), "int main(void) { return 0; }\n")
+            .expect("a file");
+        let mut command = Command::new(compiler);
+        command.args(flags).args(["a.c", "-o", "a"]).current_dir(folder.path());
+        let works = command.output().is_ok_and(|done| done.status.success());
+        if !works {
+            println!("skipped: {compiler} cannot make a program with {}", flags.join(" "));
+        }
+        works
+    });
+    all
 }
 
 /// Compiles the test program that is written beside the code, with each of these source files in turn, and runs it: whether
