@@ -7,6 +7,7 @@ PYTHON ?= python3
 TESTS_VENV := target/venv
 FIGURES_VENV := target/venv-figures
 PEERS_VENV := target/venv-peers
+SITE_VENV := target/venv-site
 
 # What is off by default is tested too. Everything is built with it, so that it is built once.
 FEATURES := --features opm-core/serde
@@ -14,7 +15,7 @@ FEATURES := --features opm-core/serde
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help test lint test-rust test-python bench guard guard-store figures web gallery python
+.PHONY: docs dist notices help test lint test-rust test-python bench guard guard-store figures web gallery python
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -45,11 +46,12 @@ bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.
 	cat BENCHMARKS.md
 
 # Instructions, not seconds: benches/examples/guard.rs says how. Release code, as it is measured.
+# With the names of functions, which a release has lost.
 guard: ## Check that nothing takes more instructions than are stored; needs valgrind
-	$(CARGO) run --quiet --release -p opm-benches --example guard
+	$(CARGO) run --quiet --profile profiling -p opm-benches --example guard
 
 guard-store: ## Store the instructions that are taken now, for make guard to compare with
-	$(CARGO) run --quiet --release -p opm-benches --example guard -- --store
+	$(CARGO) run --quiet --profile profiling -p opm-benches --example guard -- --store
 
 figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
 	$(FIGURES_VENV)/bin/python docs/figures/make_figures.py
@@ -66,6 +68,18 @@ gallery: ## Write a page of the explorer for every shipped manipulator, to targe
 	  $(CARGO) run --quiet --release -- --quiet explore "$$name" -o "target/gallery/$$name.html" || exit 1; \
 	done
 
+# The pages are the documents of the repository; docs/site/conf.py says how. The crates' reference and the explorer's
+# pages go beside them, and notebooks are run.
+docs: $(SITE_VENV)/made gallery ## Build the documentation site, to target/site, and check its links
+	$(CARGO) doc --workspace --no-deps --exclude opm-tests --exclude opm-benches --exclude opm-python $(FEATURES)
+	rm -rf target/site-extra target/site
+	mkdir -p target/site-extra
+	cp -R target/doc target/site-extra/rust
+	cp -R target/gallery target/site-extra/explorer
+	$(SITE_VENV)/bin/python -m pip install --quiet --disable-pip-version-check "./py[plot,design]"
+	OPM_NOTEBOOKS=1 $(SITE_VENV)/bin/python -m sphinx -q -W --keep-going -b html -c docs/site . target/site
+	$(SITE_VENV)/bin/python docs/site/check_links.py target/site
+
 # Before anything that takes minutes.
 python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
@@ -73,9 +87,10 @@ python:
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
 	  { echo "$(PYTHON) lacks its venv module; on Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }
 
-$(TESTS_VENV)/made: tests/python/requirements.txt
+$(TESTS_VENV)/made: tests/python/requirements.txt docs/site/requirements.txt
 $(FIGURES_VENV)/made: docs/figures/requirements.txt
 $(PEERS_VENV)/made: benches/peers/requirements.txt
+$(SITE_VENV)/made: docs/site/requirements.txt
 
 # Made anew whenever the requirements change; half an environment is not marked as made.
 %/made: | python

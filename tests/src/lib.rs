@@ -30,3 +30,8 @@ pub struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../crates/opm-core/README.md")]
 pub struct CoreReadme;
+
+/// And that of a page.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/rust.md")]
+pub struct RustPage;

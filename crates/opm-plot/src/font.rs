@@ -1,7 +1,8 @@
 //! The fonts that come with the crate: outlines and widths, the same on every machine.
 
-use std::sync::LazyLock;
-use ttf_parser::{Face as FontFace, GlyphId, OutlineBuilder};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
 
 /// The font of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,10 +26,8 @@ pub enum Stroke {
     Close,
 }
 
-static REGULAR: LazyLock<Option<FontFace<'static>>> =
-    LazyLock::new(|| FontFace::parse(include_bytes!("../fonts/DejaVuSans.ttf"), 0).ok());
-static BOLD: LazyLock<Option<FontFace<'static>>> =
-    LazyLock::new(|| FontFace::parse(include_bytes!("../fonts/DejaVuSans-Bold.ttf"), 0).ok());
+static REGULAR: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
+static BOLD: &[u8] = include_bytes!("../fonts/DejaVuSans-Bold.ttf");
 
 /// The height of capitals above the baseline, as a share of the font's size.
 pub const CAPITALS: f64 = 0.73;
@@ -40,41 +39,57 @@ impl Face {
     /// The number of font units in the font's size, the same for both fonts.
     pub const UNITS: f64 = 2048.0;
 
-    fn font(self) -> Option<&'static FontFace<'static>> {
-        match self {
-            Self::Regular => REGULAR.as_ref(),
-            Self::Bold => BOLD.as_ref(),
+    /// Reads the directory of the font's tables, which takes no longer than finding a glyph.
+    fn font(self) -> Option<FontRef<'static>> {
+        let bytes = match self {
+            Self::Regular => REGULAR,
+            Self::Bold => BOLD,
+        };
+        FontRef::new(bytes).ok()
+    }
+
+    /// The number and the width of each character's glyph, in units of the font. A character that the font
+    /// lacks has the first glyph, an empty box.
+    fn metrics(self) -> impl Fn(char) -> (u16, f64) {
+        let font = self.font();
+        let tables = font.as_ref().map(|font| {
+            (font.charmap(), font.glyph_metrics(Size::unscaled(), LocationRef::default()))
+        });
+        move |character| {
+            let Some((characters, widths)) = &tables else { return (0, 0.0) };
+            let glyph = characters.map(character).unwrap_or(GlyphId::NOTDEF);
+            let number = u16::try_from(glyph.to_u32()).unwrap_or(0);
+            (number, widths.advance_width(glyph).unwrap_or(0.0).into())
         }
     }
 
     /// The glyphs of a text, each with its distance from the start, in units of the font. A character that
     /// the font lacks becomes an empty box.
     pub fn glyphs(self, text: &str) -> impl Iterator<Item = (u16, f64)> {
+        let metrics = self.metrics();
         let mut at = 0.0;
         text.chars().map(move |character| {
-            let glyph = self.font().and_then(|font| font.glyph_index(character));
-            let glyph = glyph.unwrap_or(GlyphId(0));
+            let (glyph, width) = metrics(character);
             let here = at;
-            at += self.advance(glyph);
-            (glyph.0, here)
+            at += width;
+            (glyph, here)
         })
-    }
-
-    fn advance(self, glyph: GlyphId) -> f64 {
-        self.font().and_then(|font| font.glyph_hor_advance(glyph)).unwrap_or(0).into()
     }
 
     /// The width of a text in this font size, in the same unit.
     pub fn width(self, text: &str, size: f64) -> f64 {
-        let glyph = |c| self.font().and_then(|font| font.glyph_index(c)).unwrap_or(GlyphId(0));
-        text.chars().map(|c| self.advance(glyph(c))).sum::<f64>() * size / Self::UNITS
+        let metrics = self.metrics();
+        text.chars().map(|character| metrics(character).1).sum::<f64>() * size / Self::UNITS
     }
 
     /// The outline of a glyph; empty for a space.
     pub fn outline(self, glyph: u16) -> Vec<Stroke> {
         let mut outline = Outline(Vec::new());
-        if let Some(font) = self.font() {
-            font.outline_glyph(GlyphId(glyph), &mut outline);
+        let font = self.font();
+        if let Some(shape) = font.and_then(|font| font.outline_glyphs().get(glyph.into())) {
+            let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+            // What is drawn before a contour that is damaged is kept; the fonts here are whole.
+            let _ = shape.draw(settings, &mut outline);
         }
         outline.0
     }
@@ -118,7 +133,7 @@ impl Face {
 
 struct Outline(Vec<Stroke>);
 
-impl OutlineBuilder for Outline {
+impl OutlinePen for Outline {
     fn move_to(&mut self, x: f32, y: f32) {
         self.0.push(Stroke::Move([x, y]));
     }
@@ -149,10 +164,12 @@ mod tests {
     fn both_fonts_have_the_signs_that_figures_use() {
         for face in [Face::Regular, Face::Bold] {
             let font = face.font().expect("the font is whole");
-            assert_eq!(f64::from(font.units_per_em()), Face::UNITS);
+            let metrics = font.metrics(Size::unscaled(), LocationRef::default());
+            assert_eq!(f64::from(metrics.units_per_em), Face::UNITS);
             for c in "AZaz09−°²³⁻⁴·×…ζξψθφμ≤±→".chars() {
-                let glyph = font.glyph_index(c).unwrap_or_else(|| panic!("{face:?} lacks {c}"));
-                assert!(!face.outline(glyph.0).is_empty(), "{c}");
+                let glyph = font.charmap().map(c).unwrap_or_else(|| panic!("{face:?} lacks {c}"));
+                let number = u16::try_from(glyph.to_u32()).expect("few glyphs");
+                assert!(!face.outline(number).is_empty(), "{c}");
             }
         }
     }
