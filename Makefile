@@ -8,6 +8,7 @@ TESTS_VENV := target/venv
 FIGURES_VENV := target/venv-figures
 PEERS_VENV := target/venv-peers
 SITE_VENV := target/venv-site
+DIST_VENV := target/venv-dist
 
 # What is off by default is tested too. Everything is built with it, so that it is built once.
 FEATURES := --features opm-core/serde
@@ -80,6 +81,12 @@ docs: $(SITE_VENV)/made gallery ## Build the documentation site, to target/site,
 	OPM_NOTEBOOKS=1 $(SITE_VENV)/bin/python -m sphinx -q -W --keep-going -b html -c docs/site . target/site
 	$(SITE_VENV)/bin/python docs/site/check_links.py target/site
 
+dist: $(DIST_VENV)/made ## Build and check wheels, the source distribution and the program, in target/dist
+	packaging/dist.sh
+
+notices: ## Write the licences of all that is part of opm; needs cargo-about
+	$(PYTHON) packaging/notices.py
+
 # Before anything that takes minutes.
 python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
@@ -91,6 +98,7 @@ $(TESTS_VENV)/made: tests/python/requirements.txt docs/site/requirements.txt
 $(FIGURES_VENV)/made: docs/figures/requirements.txt
 $(PEERS_VENV)/made: benches/peers/requirements.txt
 $(SITE_VENV)/made: docs/site/requirements.txt
+$(DIST_VENV)/made: packaging/requirements.txt
 
 # Made anew whenever the requirements change; half an environment is not marked as made.
 %/made: | python

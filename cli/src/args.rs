@@ -125,6 +125,7 @@ pub enum Command {
     Examples(ExamplesArgs),
     Schema(SchemaArgs),
     Format(FormatArgs),
+    Licenses(LicensesArgs),
     Completions(CompletionsArgs),
 }
 
@@ -233,6 +234,10 @@ pub enum FileKind {
 #[derive(Debug, clap::Args)]
 #[command(override_help = crate::format::TEXT)]
 pub struct FormatArgs {}
+
+/// Print the licences of opm and of everything that is part of the program
+#[derive(Debug, clap::Args)]
+pub struct LicensesArgs {}
 
 /// Print a completion script for a shell, or the manual page
 ///

@@ -20,6 +20,7 @@ mod ik;
 mod inspect;
 mod interference;
 mod layout;
+mod licenses;
 mod lines;
 mod linkage;
 mod load;
@@ -91,6 +92,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),
         Command::Format(_) => format::run(output),
+        Command::Licenses(_) => licenses::run(output),
         Command::Completions(command) => completions::run(command, output),
     }
 }

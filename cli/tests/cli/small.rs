@@ -104,6 +104,15 @@ fn help_and_version_go_to_standard_output() {
     }
 }
 
+#[test]
+fn licences_are_printed() {
+    let text = opm(&["licenses"]);
+    for part in ["the opm authors", "Bitstream Vera", "three.js authors", "nalgebra ", "skrifa "] {
+        assert!(text.text().contains(part), "{part}");
+    }
+    assert_eq!(opm(&["licenses", "--format", "json"]).json()["text"], text.stdout);
+}
+
 /// Makes recordings with the names in the examples of `opm plot`.
 fn record_for_plots(folder: &Folder) {
     let grid = ["--grid", "x=-0.1:0.1:5", "--grid", "y=0:0.1:3", "--grid", "xi=0:1:5"];
