@@ -44,14 +44,14 @@ fn main() {
                 let _ = black_box(manipulator.forward(black_box(actuated)));
             }
         }),
-        Contender::new("forward kinematics, Newton from 1 mm and 1 degree away", n, || {
+        Contender::new("forward kinematics, from 1 mm and 1 degree away", n, || {
             for (actuated, start) in joints.iter().zip(&near) {
                 let found =
                     manipulator.forward_near_into(black_box(actuated), start, mode, &mut buffer);
                 let _ = black_box(found);
             }
         }),
-        Contender::new("forward kinematics, Newton from home", n, || {
+        Contender::new("forward kinematics, from home", n, || {
             for actuated in &joints {
                 let found = manipulator.forward_near(black_box(actuated), &home, mode);
                 let _ = black_box(found);

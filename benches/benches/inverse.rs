@@ -1,7 +1,8 @@
-//! Inverse kinematics of the paper's 5-DoF manipulator, compared with the paper's formulas as plain
-//! code.
+//! Inverse kinematics of the paper's 5-DoF manipulator, one pose at a time and many at once, compared with the paper's
+//! formulas as plain code.
 
 use opm_benches::{Contender, compare, example};
+use opm_core::manipulator::BatchOutput;
 use opm_tests::paper::{PlanoSpherical, Signs};
 use std::hint::black_box;
 
@@ -22,6 +23,10 @@ fn main() {
     let n = poses.len() as u64;
     let (mut drives, mut solution, mut all) =
         (manipulator.actuated_joints(), manipulator.solution(), manipulator.all_modes());
+    let mut batch = manipulator.batch();
+    let mut joints = vec![0.0; poses.len() * manipulator.coordinates().len()];
+    let mut imaginary = vec![0.0; poses.len() * manipulator.imaginary().len()];
+    let [mut reachable, mut within_limits] = [(); 2].map(|()| vec![false; poses.len()]);
     let timings = compare(vec![
         Contender::new("the paper's formulas, plain code", n, || {
             for pose in &poses {
@@ -38,6 +43,16 @@ fn main() {
             for pose in &poses {
                 black_box(manipulator.inverse(black_box(pose), mode, &mut solution)).unwrap();
             }
+        }),
+        Contender::new("all joints, many poses at once", n, || {
+            let mut out = BatchOutput {
+                joints: &mut joints,
+                imaginary: &mut imaginary,
+                reachable: &mut reachable,
+                within_limits: &mut within_limits,
+            };
+            let poses = black_box(poses.as_flattened());
+            manipulator.inverse_many(poses, mode, &mut batch, &mut out).unwrap();
         }),
         Contender::new("all 128 working modes", n, || {
             for pose in &poses {
