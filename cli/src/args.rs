@@ -1,6 +1,7 @@
 //! Every argument of the command line; the doc comments are the help.
 
 mod analyze;
+mod calibrate;
 mod convert;
 mod explore;
 mod export;
@@ -14,6 +15,7 @@ mod setup;
 mod workspace;
 
 pub use analyze::AnalyzeArgs;
+pub use calibrate::CalibrateArgs;
 pub use convert::ConvertArgs;
 pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
@@ -63,6 +65,7 @@ Examples:
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
   opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
   opm analyze plano-spherical-5dof --wrench 0,0,0,1,0,0   what the actuators carry at a pose
+  opm calibrate plano-spherical-5dof --plan 40 -o plan.csv   poses to measure a machine at
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
@@ -108,6 +111,7 @@ pub enum Command {
     Ik(IkArgs),
     Velocity(VelocityArgs),
     Analyze(AnalyzeArgs),
+    Calibrate(CalibrateArgs),
     Fk(FkArgs),
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),

@@ -5,6 +5,7 @@
 mod analyze;
 mod args;
 mod batch;
+mod calibrate;
 mod change;
 mod completions;
 mod convert;
@@ -75,6 +76,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Ik(command) => ik::run(command, output),
         Command::Velocity(command) => velocity::run(command, output),
         Command::Analyze(command) => analyze::run(command, output),
+        Command::Calibrate(command) => calibrate::run(command, output),
         Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),

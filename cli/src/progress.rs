@@ -59,6 +59,18 @@ pub fn watch_boxes<T>(
     show(output, &bar, label, done, work)
 }
 
+/// As [`watch`], for steps whose final number is unknown.
+pub fn watch_steps<T>(
+    output: &Output,
+    label: &'static str,
+    done: impl Fn() -> u64 + Send,
+    work: impl FnOnce() -> T,
+) -> T {
+    let bar =
+        ProgressBar::no_length().with_style(style("{spinner} {msg}: {human_pos} steps, {elapsed}"));
+    show(output, &bar, label, done, work)
+}
+
 /// As [`watch`], for reading a recording with this number of messages, or with an unknown number.
 pub fn watch_reading<T>(
     output: &Output,

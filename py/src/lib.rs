@@ -9,6 +9,7 @@
 
 mod analysis;
 mod arguments;
+mod calibration;
 mod clearance;
 mod columns;
 mod command;
@@ -43,6 +44,8 @@ use pyo3::prelude::*;
 mod _native {
     #[pymodule_export]
     use crate::analysis::Analysis;
+    #[pymodule_export]
+    use crate::calibration::{Calibration, calibrate};
     #[pymodule_export]
     use crate::clearance::Clearance;
     #[pymodule_export]

@@ -50,7 +50,7 @@ impl FromStr for GravityVector {
 }
 
 /// The numbers of a list, each with its name.
-fn numbers<const N: usize>(
+pub fn numbers<const N: usize>(
     text: &str,
     names: [&str; N],
     read: impl Fn(&str, Number) -> Result<f64, Misread>,

@@ -3,7 +3,7 @@
 use crate::chain::{Chain, at_point, from_point, unit};
 use crate::inverse::PseudoInverse;
 use crate::source::{ErrorModel, Source, sources};
-use nalgebra::{DMatrix, Matrix6, Matrix6xX, Vector6};
+use nalgebra::{DMatrix, Isometry3, Matrix6, Matrix6xX, Vector6};
 use opm_core::group::screw::Screw;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::family::Family;
@@ -27,6 +27,11 @@ pub struct Closure {
     pub joints: DMatrix<f64>,
     /// The twists for units of the errors, a column for each source, radians and metres.
     pub errors: DMatrix<f64>,
+    /// Of each leg, the displacement from home of what carries each of its axes; then that of the platform. A universal joint
+    /// has two axes.
+    pub carried: Vec<Vec<Isometry3<f64>>>,
+    /// What takes a twist `(ω; v)` in base coordinates to the rows of a leg.
+    pub weight: Matrix6<f64>,
 }
 
 /// What a unit of each error does at one pose: one radian or one metre, extrapolated from small errors.
@@ -94,7 +99,9 @@ impl<'a> Model<'a> {
                 number += 1;
             }
         }
-        Closure { joints, errors: self.errors(&chains, at, &weight) }
+        let errors = self.errors(&chains, at, &weight);
+        let carried = chains.into_iter().map(|chain| chain.carried).collect();
+        Closure { joints, errors, carried, weight }
     }
 
     /// What takes twists to the platform's reference point, with lengths over the characteristic length.

@@ -1,7 +1,8 @@
 """Kinematics and workspaces of overconstrained parallel manipulators with partial subspaces.
 
 From a mechanism file :class:`Manipulator` finds the decomposition with imaginary joints, and solves inverse kinematics in
-closed form; :func:`sweep` finds which poses of a grid are reachable, :func:`trajectory` follows motions, :mod:`plot`
+closed form; :func:`sweep` finds which poses of a grid are reachable, :func:`trajectory` follows motions, :func:`calibrate` corrects
+parameters by measurements, :mod:`plot`
 draws, :mod:`design` optimises, and :func:`explore` shows a mechanism in
 a browser or a notebook. Arrays are float64, numbers SI units and radians.
 
@@ -18,6 +19,7 @@ from ._native import (
     Analysis,
     Aspect,
     Assembly,
+    Calibration,
     Clearance,
     Conditioning,
     Contact,
@@ -43,6 +45,7 @@ from ._native import (
     Trajectory,
     Violation,
     __version__,
+    calibrate,
     explore,
     measure,
     sweep,
@@ -53,6 +56,7 @@ __all__ = [
     "Analysis",
     "Aspect",
     "Assembly",
+    "Calibration",
     "Clearance",
     "Conditioning",
     "Contact",
@@ -78,6 +82,7 @@ __all__ = [
     "Trajectory",
     "Violation",
     "__version__",
+    "calibrate",
     "design",
     "examples",
     "explore",

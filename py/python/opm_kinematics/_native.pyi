@@ -10,6 +10,7 @@ __all__ = [
     "Aspect",
     "Analysis",
     "Assembly",
+    "Calibration",
     "Clearance",
     "Conditioning",
     "Decomposition",
@@ -34,6 +35,7 @@ __all__ = [
     "Trajectory",
     "Violation",
     "__version__",
+    "calibrate",
     "command",
     "example",
     "examples",
@@ -1977,6 +1979,129 @@ class Sweep:
         explain : bool, optional
             As for :meth:`write`.
         """
+
+@final
+class Calibration:
+    """What a calibration found. Metres and radians."""
+
+    @property
+    def manipulator(self) -> Manipulator:
+        """The calibrated mechanism."""
+    @property
+    def parameters(self) -> list[str]:
+        """Names of the parameters that might vary: those of :attr:`Manipulator.parameters`, ``leg4.base.x`` of a point, or places
+        of joints of a list, ``leg1.r1.offset.1``."""
+    @property
+    def before(self) -> NDArray[np.float64]:
+        """(p,): values in the file; zero for a displacement of an axis."""
+    @property
+    def after(self) -> NDArray[np.float64]:
+        """(p,): calibrated values."""
+    @property
+    def standard_errors(self) -> NDArray[np.float64]:
+        """(p,): standard errors; NaN where the measurements do not determine the parameter."""
+    @property
+    def identifiable(self) -> NDArray[np.bool_]:
+        """(p,): whether the measurements determine the parameter."""
+    @property
+    def correlations(self) -> NDArray[np.float64]:
+        """(p, p): correlations of the parameters; NaN where one is not determined."""
+    @property
+    def rank(self) -> int:
+        """Number of independent combinations of parameters that the measurements determine."""
+    @property
+    def singular_values(self) -> NDArray[np.float64]:
+        """(p,): singular values of the weighted derivatives, largest first; with `sigma` each is one over the standard error of a
+        combination, in radians and units of the characteristic length."""
+    @property
+    def held(self) -> list[list[tuple[str, float]]]:
+        """Combinations that are not determined and keep their values: names with changes, the first of which is one."""
+    @property
+    def columns(self) -> list[str]:
+        """Names of the measured columns."""
+    @property
+    def residuals(self) -> NDArray[np.float64]:
+        """(n, c): measured less predicted; NaN where nothing was measured."""
+    @property
+    def studentised(self) -> NDArray[np.float64]:
+        """(n, c): residuals over their own standard deviations; NaN where no other measurement checks one."""
+    @property
+    def outliers(self) -> NDArray[np.bool_]:
+        """(n, c): whether a residual is too large for chance."""
+    @property
+    def rejected(self) -> NDArray[np.bool_]:
+        """(n, c): whether a cell was left out by `reject_outliers`."""
+    @property
+    def unused(self) -> list[int]:
+        """Numbers of the rows that took no part: no pose in reach comes near."""
+    @property
+    def surplus(self) -> int:
+        """Number of measured values in excess of what poses and parameters take up."""
+    @property
+    def deviation(self) -> float | None:
+        """Root of the sum of squared residuals over the surplus: about 1 if `sigma` is right, and an estimate of it without. None
+        without surplus."""
+    @property
+    def deviation_before(self) -> float | None:
+        """The same with the values of the file."""
+    @property
+    def play_combinations(self) -> int:
+        """How many combinations of errors that leave the class the residuals show beyond chance."""
+    @property
+    def play(self) -> dict[str, tuple[float, float]]:
+        """(length, angle) by the name of each joint: the play that it needs at least."""
+
+def calibrate(
+    manipulator: Manipulator,
+    measurements: Mapping[str, ArrayLike],
+    *,
+    sigma: tuple[float, float] | None = None,
+    joint_sigma: tuple[float, float] | None = None,
+    points: Mapping[str, Sequence[float]] | None = None,
+    only: Sequence[str] | None = None,
+    hold: Sequence[str] | None = None,
+    reject_outliers: bool = False,
+    weakest: float = 0.05,
+    mode: str = "home",
+) -> Calibration:
+    """Calibrate a mechanism: its parameters, joint places and encoder offsets from measured poses and joints.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+    measurements : mapping
+        A dictionary or a DataFrame: one sequence for each column by its name, all of the same length; NaN where nothing was measured. Columns are task
+        coordinates (``x``), actuated joints (``S1``: what the encoder shows), ``point.x``, ``point.y``, ``point.z`` (the platform's
+        reference point), ``distance.NAME`` (its distance from one of `points`), ``incline.x``, ``incline.y`` (how far the platform's
+        axes rise). Metres and radians.
+    sigma : (float, float), optional
+        Standard deviations of measured lengths and angles. Without them all cells weigh the same, lengths in units of the
+        characteristic length, and the deviation is estimated.
+    joint_sigma : (float, float), optional
+        Those of actuated joints, if they are others.
+    points : mapping, optional
+        Points (x, y, z) of the base by name, for columns ``distance.NAME``.
+    only : sequence of str, optional
+        Calibrate only parameters whose names have these words: ``leg1``, ``home``, ``leg1.h``.
+    hold : sequence of str, optional
+        Hold parameters whose names have these words.
+    reject_outliers : bool
+        Leave out outliers, the worst first, until there are none.
+    weakest : float
+        With `sigma`, hold combinations whose standard error would be larger than this, in radians and units of the
+        characteristic length.
+    mode : str
+        Working mode of all measurements.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    OpmError
+        A column or a parameter is unknown, or the measurements say nothing.
+    """
 
 def sweep(
     manipulator: Manipulator,

@@ -1,0 +1,66 @@
+//! Standard deviations and points in the syntax of the command line.
+
+use crate::analyze::load::numbers;
+use crate::pose::{Misread, Number, assignment};
+use opm_calibrate::{BasePoint, Sigma};
+use opm_core::Quantity;
+use std::str::FromStr;
+
+/// Standard deviations: `20um,20urad`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sigmas(pub Sigma);
+
+impl FromStr for Sigmas {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let of = |name: &str, number: Number| {
+            let quantity = if name == "LENGTH" { Quantity::Length } else { Quantity::Angle };
+            let value = number.value_of(name, quantity)?;
+            match value > 0.0 {
+                true => Ok(value),
+                false => {
+                    Err(Misread::new(format!("{name} is {value}, expected a positive number")))
+                }
+            }
+        };
+        let [length, angle] = numbers(text, ["LENGTH", "ANGLE"], of)?;
+        Ok(Self(Sigma { length, angle }))
+    }
+}
+
+/// A point of the base by name: `A=0.5,0,20mm`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedPoint(pub BasePoint);
+
+impl FromStr for NamedPoint {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let (name, at) = assignment(text, "NAME=X,Y,Z, for example A=0.5,0,20mm")?;
+        let of = |axis: &str, number: Number| number.value_of(axis, Quantity::Length);
+        let at: [f64; 3] = numbers(at, ["X", "Y", "Z"], of)?;
+        Ok(Self(BasePoint { name: name.to_owned(), at: at.into() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn deviations_and_points_are_read_with_units() {
+        assert_eq!("0.02mm,0.001deg".parse::<Sigmas>().unwrap().0.length, 2e-5);
+        for (text, expected) in [
+            ("20e-6", "1 number in \"20e-6\", expected 2: LENGTH,ANGLE"),
+            ("0,1", "LENGTH is 0, expected a positive number"),
+            ("1deg,1", "LENGTH is a length"),
+        ] {
+            let message = text.parse::<Sigmas>().expect_err(text).to_string();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+        let point = "A=1,20mm,-3".parse::<NamedPoint>().unwrap().0;
+        assert_eq!((&*point.name, point.at), ("A", [1.0, 0.02, -3.0].into()));
+        assert!("A=1,2".parse::<NamedPoint>().is_err());
+    }
+}

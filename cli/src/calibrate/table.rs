@@ -1,0 +1,96 @@
+//! Tables of measurements.
+
+use crate::failure::Failure;
+use crate::lines::Lines;
+use crate::load::{DASH, STANDARD_INPUT};
+use crate::stream::{at, other_columns};
+use opm_calibrate::{BasePoint, Column, Measurements};
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::{FileUnits, Heading};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// A table, and where its rows stand in the file.
+pub struct Table {
+    pub label: String,
+    pub measurements: Measurements,
+    /// The number of the line of each row.
+    pub lines: Vec<u64>,
+}
+
+/// Reads a CSV file of measurements.
+pub fn read(
+    path: &Path,
+    manipulator: &Manipulator,
+    points: &[BasePoint],
+) -> Result<Table, Failure> {
+    let (label, source): (String, Box<dyn Read>) = if path == Path::new(DASH) {
+        (STANDARD_INPUT.to_owned(), Box::new(io::stdin().lock()))
+    } else {
+        let label = path.display().to_string();
+        let file = File::open(path).map_err(|error| Failure::at(&label, error))?;
+        (label, Box::new(file))
+    };
+    let failed = |error| Failure::at(&label, error);
+    let mut input = Lines::new(source);
+    // What other commands write beside poses and joints is not measured.
+    let others = other_columns(manipulator);
+    let mut columns = Vec::new();
+    let mut places: Vec<Option<(usize, FileUnits)>> = Vec::new();
+    let Some(header) = input.next().map_err(failed)? else {
+        return Err(Failure::work(format!(
+            "{label}: empty, expected a header with names of columns"
+        )));
+    };
+    let number = header.number;
+    for text in header.fields() {
+        let text = String::from_utf8_lossy(text);
+        let heading = Heading::parse(&text);
+        let wrong = |problem: String| at(&label, number, format!("column {text:?}: {problem}"));
+        let found = Column::named(heading.name, manipulator, points);
+        let column = match found {
+            Ok(column) => column,
+            Err(_) if heading.name == "t" || others.iter().any(|name| name == heading.name) => {
+                places.push(None);
+                continue;
+            }
+            Err(problem) => return Err(wrong(problem)),
+        };
+        if columns.iter().any(|known: &Column| known.name == column.name) {
+            return Err(wrong("given twice".into()));
+        }
+        let units = heading.units(column.quantity).map_err(wrong)?.unwrap_or(FileUnits::SI);
+        places.push(Some((columns.len(), units)));
+        columns.push(column);
+    }
+    let (mut rows, mut numbers) = (Vec::new(), Vec::new());
+    while let Some(line) = input.next().map_err(failed)? {
+        let fields: Vec<&[u8]> = line.fields().collect();
+        if fields.len() > places.len() {
+            let problem = format!("{} cells, expected at most {}", fields.len(), places.len());
+            return Err(at(&label, line.number, problem));
+        }
+        let mut row = vec![None; columns.len()];
+        for (field, place) in fields.iter().zip(&places) {
+            let Some((column, units)) = place else { continue };
+            if field.is_empty() {
+                continue;
+            }
+            let text = String::from_utf8_lossy(field);
+            let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+            let Some(value) = value else {
+                let name = &columns[*column].name;
+                let problem = format!("{name} is {text:?}, expected a number or nothing");
+                return Err(at(&label, line.number, problem));
+            };
+            row[*column] = Some(units.si(value, columns[*column].quantity));
+        }
+        rows.push(row);
+        numbers.push(line.number);
+    }
+    if rows.is_empty() {
+        return Err(Failure::work(format!("{label}: no rows, expected measurements")));
+    }
+    Ok(Table { label, measurements: Measurements { columns, rows }, lines: numbers })
+}

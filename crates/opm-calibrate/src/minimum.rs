@@ -1,0 +1,80 @@
+//! Least squares by Levenberg and Marquardt's method, of the crate `levenberg-marquardt` (MINPACK's `lmder`).
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
+use nalgebra::DMatrix;
+use nalgebra_034::storage::Owned;
+use nalgebra_034::{DMatrix as Matrix, DVector as Vector, Dyn};
+use std::cell::RefCell;
+
+/// Residuals at a point, and their derivatives if they were asked for: a row for each residual.
+pub struct Evaluation {
+    pub residuals: Vec<f64>,
+    pub jacobian: Option<DMatrix<f64>>,
+}
+
+/// Where the method ended.
+pub struct Minimum {
+    pub at: Vec<f64>,
+    /// Whether it converged; `Err` says why it did not.
+    pub converged: Result<(), &'static str>,
+}
+
+/// Relative changes of the sum of squares and of the point that are rounding.
+const TOLERANCE: f64 = 1e-12;
+/// The residual of a point that cannot be evaluated, so that no step to it is taken.
+const REFUSED: f64 = 1e12;
+
+/// Minimises the sum of squares of `rows` residuals. `evaluate` says `None` where there are none: a step to there is refused.
+pub fn minimise(
+    start: &[f64],
+    rows: usize,
+    evaluate: &mut dyn FnMut(&[f64], bool) -> Option<Evaluation>,
+) -> Minimum {
+    let problem =
+        Problem { at: Vector::from_column_slice(start), rows, evaluate: RefCell::new(evaluate) };
+    let method = LevenbergMarquardt::new().with_tol(TOLERANCE);
+    let (problem, report) = method.minimize(problem);
+    let converged = match report.termination {
+        // Where nothing but rounding is left, no step improves the sum.
+        TerminationReason::NoImprovementPossible(_) => Ok(()),
+        reason if reason.was_successful() => Ok(()),
+        TerminationReason::LostPatience => Err("too many steps without convergence"),
+        TerminationReason::Numerical(_) => Err("a residual is not a number"),
+        TerminationReason::NoParameters => Err("nothing to vary"),
+        _ => Err("the derivatives are not defined there"),
+    };
+    Minimum { at: problem.at.as_slice().to_vec(), converged }
+}
+
+struct Problem<'f> {
+    at: Vector<f64>,
+    rows: usize,
+    evaluate: RefCell<&'f mut dyn FnMut(&[f64], bool) -> Option<Evaluation>>,
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, at: &Vector<f64>) {
+        self.at.copy_from(at);
+    }
+
+    fn params(&self) -> Vector<f64> {
+        self.at.clone()
+    }
+
+    fn residuals(&self) -> Option<Vector<f64>> {
+        let found = (self.evaluate.borrow_mut())(self.at.as_slice(), false);
+        Some(match found {
+            Some(found) => Vector::from_vec(found.residuals),
+            None => Vector::repeat(self.rows, REFUSED),
+        })
+    }
+
+    fn jacobian(&self) -> Option<Matrix<f64>> {
+        let jacobian = (self.evaluate.borrow_mut())(self.at.as_slice(), true)?.jacobian?;
+        Some(Matrix::from_column_slice(jacobian.nrows(), jacobian.ncols(), jacobian.as_slice()))
+    }
+}
