@@ -1,5 +1,6 @@
 //! Every argument of the command line; the doc comments are the help.
 
+mod accuracy;
 mod analyze;
 mod calibrate;
 mod convert;
@@ -14,6 +15,7 @@ mod recording;
 mod setup;
 mod workspace;
 
+pub use accuracy::AccuracyArgs;
 pub use analyze::AnalyzeArgs;
 pub use calibrate::CalibrateArgs;
 pub use convert::ConvertArgs;
@@ -43,7 +45,7 @@ const WIDEST: usize = 100;
 /// Reads a mechanism file, finds its partial subspaces and imaginary joints from the joint screws
 /// alone, and solves joint values and workspaces in closed form.
 ///
-/// Numbers without a unit are metres and radians; 10mm, 2.5cm, 1in, 15deg and 0.2rad carry theirs.
+/// Numbers without a unit are metres and radians; 10mm, 2.5cm, 20um, 1in, 15deg, 0.2rad, 3mrad and 20urad carry theirs.
 /// JSON, CSV and MCAP are always SI; text is in the units of the mechanism file.
 ///
 /// Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 interrupted.
@@ -66,6 +68,7 @@ Examples:
   opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
   opm analyze plano-spherical-5dof --wrench 0,0,0,1,0,0   what the actuators carry at a pose
   opm calibrate plano-spherical-5dof --plan 40 -o plan.csv   poses to measure a machine at
+  opm accuracy plano-spherical-5dof --axes 0.05mm,0.02deg   what errors of its parts do
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
@@ -112,6 +115,7 @@ pub enum Command {
     Velocity(VelocityArgs),
     Analyze(AnalyzeArgs),
     Calibrate(CalibrateArgs),
+    Accuracy(AccuracyArgs),
     Fk(FkArgs),
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),

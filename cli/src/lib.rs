@@ -2,6 +2,7 @@
 //!
 //! The program is a library with the function [`main`], so that the Python package can include the command.
 
+mod accuracy;
 mod analyze;
 mod args;
 mod batch;
@@ -77,6 +78,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Velocity(command) => velocity::run(command, output),
         Command::Analyze(command) => analyze::run(command, output),
         Command::Calibrate(command) => calibrate::run(command, output),
+        Command::Accuracy(command) => accuracy::run(command, output),
         Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),

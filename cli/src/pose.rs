@@ -105,6 +105,11 @@ impl FromStr for SliceValue {
     }
 }
 
+/// A unit with the letter u for micro, which has two code points.
+fn plain(unit: &str) -> String {
+    unit.replace(['\u{b5}', '\u{3bc}'], "u")
+}
+
 impl FromStr for Number {
     type Err = Misread;
 
@@ -117,10 +122,10 @@ impl FromStr for Number {
         })?;
         let (value, quantity) = if unit.is_empty() {
             (value, None)
-        } else if let Some(unit) = LengthUnit::from_symbol(unit) {
+        } else if let Some(unit) = LengthUnit::from_symbol(&plain(unit)) {
             (unit.metres(value), Some(Quantity::Length))
-        } else if let Some(unit) = AngleUnit::from_symbol(unit) {
-            (value * unit.factor(), Some(Quantity::Angle))
+        } else if let Some(unit) = AngleUnit::from_symbol(&plain(unit)) {
+            (unit.radians(value), Some(Quantity::Angle))
         } else {
             let lengths = LengthUnit::ALL.map(LengthUnit::symbol);
             let known = lengths.into_iter().chain(AngleUnit::ALL.map(AngleUnit::symbol));
@@ -173,6 +178,11 @@ impl Number {
     pub fn characteristic_length(self) -> Result<f64, Failure> {
         let length = self.value_of("the characteristic length", Quantity::Length);
         length.map_err(|error| Failure::flag("--length", error))
+    }
+
+    /// The quantity of its unit; `None` without one.
+    pub fn quantity(self) -> Option<Quantity> {
+        self.quantity
     }
 
     /// The value, in metres or radians, if it was given without a unit.
@@ -481,6 +491,8 @@ mod tests {
         assert_eq!(pose(" xi = 180 deg , x=-1e-2 "), Ok(vec![-0.01, PI]));
         assert_eq!(pose("x=1in,xi=0.2rad"), Ok(vec![0.0254, 0.2]));
         assert_eq!(pose("x=2.5cm"), Ok(vec![0.025, 0.25]));
+        assert_eq!(pose("x=20um,xi=3mrad"), Ok(vec![20e-6, 0.003]));
+        assert_eq!(pose("x=7\u{b5}m,xi=30\u{3bc}rad"), Ok(vec![7e-6, 30e-6]));
     }
 
     #[test]

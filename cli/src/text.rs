@@ -63,9 +63,12 @@ pub fn number(value: f64, quantity: Quantity, units: FileUnits) -> String {
             LengthUnit::Metre => 6,
             LengthUnit::Centimetre | LengthUnit::Inch => 4,
             LengthUnit::Millimetre => 3,
+            LengthUnit::Micrometre => 0,
         },
         Quantity::Angle => match units.angle {
             AngleUnit::Radian => 6,
+            AngleUnit::Milliradian => 3,
+            AngleUnit::Microradian => 0,
             AngleUnit::Degree => 4,
         },
     };

@@ -7,6 +7,7 @@
 // Doc comments here are docstrings for Python, in numpydoc's format.
 #![allow(clippy::doc_markdown, clippy::doc_link_with_quotes)]
 
+mod accuracy;
 mod analysis;
 mod arguments;
 mod calibration;
@@ -42,6 +43,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::accuracy::Accuracy;
     #[pymodule_export]
     use crate::analysis::Analysis;
     #[pymodule_export]

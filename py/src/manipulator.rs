@@ -34,7 +34,7 @@ pub struct Manipulator {
     text: OnceLock<String>,
     label: String,
     /// What it was assembled from; `None` for a list of joints.
-    family: Option<Family>,
+    pub family: Option<Family>,
 }
 
 impl PartialEq for Manipulator {

@@ -95,6 +95,18 @@ impl<'py, const N: usize> Tables<'py, N> {
         scratch: impl Fn() -> S + Sync,
         fill: impl Fn(&mut S, usize, [&mut [f64]; N]) -> Result<[bool; 2], String> + Sync,
     ) -> PyResult<Self> {
+        Self::fill_in_blocks(py, (count, BLOCK), widths, threads, scratch, fill)
+    }
+
+    /// As [`Tables::fill`], with another number of rows that a thread works on between two checks whether it should stop.
+    pub fn fill_in_blocks<S>(
+        py: Python<'py>,
+        (count, block): (usize, usize),
+        widths: [usize; N],
+        threads: Option<NonZeroUsize>,
+        scratch: impl Fn() -> S + Sync,
+        fill: impl Fn(&mut S, usize, [&mut [f64]; N]) -> Result<[bool; 2], String> + Sync,
+    ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
         // NumPy allocates these, and raises an exception if there is no memory. They are not filled here: the
         // system takes seconds to provide gigabytes, and Ctrl-C would have no effect meanwhile.
@@ -109,7 +121,7 @@ impl<'py, const N: usize> Tables<'py, N> {
             let slice = lent.next().and_then(|array| array.as_slice_mut().ok());
             slice.unwrap_or_default()
         });
-        let blocks = blocks(slices, widths, &mut answers);
+        let blocks = blocks(slices, (block, widths), &mut answers);
         let stop = AtomicBool::new(false);
         let work = |block: Block<'_, N>| -> Result<(), String> {
             if stop.load(Ordering::Relaxed) {
@@ -129,7 +141,7 @@ impl<'py, const N: usize> Tables<'py, N> {
             }
             Ok(())
         };
-        let done = if count <= BLOCK {
+        let done = if count <= block {
             blocks.into_iter().try_for_each(work)
         } else {
             let all = || blocks.into_par_iter().try_for_each(work);
@@ -145,13 +157,13 @@ impl<'py, const N: usize> Tables<'py, N> {
     }
 }
 
-/// Tables in parts of [`BLOCK`] rows.
+/// Tables in parts of so many rows.
 fn blocks<'a, const N: usize>(
     mut rest: [&'a mut [f64]; N],
-    widths: [usize; N],
+    (size, widths): (usize, [usize; N]),
     [yes, also]: &'a mut [Vec<bool>; 2],
 ) -> Vec<Block<'a, N>> {
-    let answers = yes.chunks_mut(BLOCK).zip(also.chunks_mut(BLOCK)).enumerate();
+    let answers = yes.chunks_mut(size).zip(also.chunks_mut(size)).enumerate();
     answers
         .map(|(block, (yes, also))| {
             let mut number = 0;
@@ -161,7 +173,7 @@ fn blocks<'a, const N: usize>(
                 (*table, number) = (left, number + 1);
                 part
             });
-            Block { first: block * BLOCK, numbers, answers: [yes, also] }
+            Block { first: block * size, numbers, answers: [yes, also] }
         })
         .collect()
 }

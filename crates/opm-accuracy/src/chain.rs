@@ -4,11 +4,14 @@
 //! joints before it (the product of exponentials; R. Murray, Z. Li, S. Sastry, *A Mathematical Introduction to Robotic
 //! Manipulation*, 1994, eq. 3.54).
 
-use nalgebra::{Isometry3, Matrix3, Matrix6, Point3, Vector3, Vector6};
+use nalgebra::{
+    Isometry3, Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
+};
 use opm_core::Quantity;
 use opm_core::group::screw::Screw;
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::joint::{Joint, JointKind};
+use opm_core::mechanism::leg::Leg;
 
 /// A leg at a pose.
 pub struct Chain {
@@ -29,48 +32,69 @@ pub struct PlacedJoint {
 impl Chain {
     /// The legs of a mechanism for the values of all joint coordinates.
     pub fn all(mechanism: &Mechanism, values: &[f64]) -> Vec<Self> {
-        let mut rest = values;
-        let leg = |joints: &Vec<Joint>| {
-            let (own, others) = rest.split_at(joints.iter().map(Joint::freedoms).sum());
-            rest = others;
-            Self::new(joints, own)
-        };
-        mechanism.legs.iter().map(|leg| &leg.joints).map(leg).collect()
+        Self::all_with(mechanism, values, |_, _| None)
     }
 
-    fn new(joints: &[Joint], mut values: &[f64]) -> Self {
+    /// The same with links that are made with errors: `off` tells by how much the axis of a leg with a number, counted from the
+    /// base on, is displaced in what carries it. The number after the last axis is that of the platform.
+    pub fn all_with(
+        mechanism: &Mechanism,
+        values: &[f64],
+        off: impl Fn(usize, usize) -> Option<Isometry3<f64>>,
+    ) -> Vec<Self> {
+        let mut rest = values;
+        let leg = |(number, leg): (usize, &Leg)| {
+            let (own, others) = rest.split_at(leg.joints.iter().map(Joint::freedoms).sum());
+            rest = others;
+            Self::new(&leg.joints, own, |axis| off(number, axis))
+        };
+        mechanism.legs.iter().enumerate().map(leg).collect()
+    }
+
+    fn new(
+        joints: &[Joint],
+        mut values: &[f64],
+        off: impl Fn(usize) -> Option<Isometry3<f64>>,
+    ) -> Self {
         let (mut at, mut carried, mut placed) = (Isometry3::identity(), Vec::new(), Vec::new());
+        let displace = |at: Isometry3<f64>, axis: usize| off(axis).map_or(at, |off| at * off);
         for joint in joints {
             let (own, rest) = values.split_at(joint.freedoms());
             values = rest;
             let from_home = |i: usize| own[i] - joint.coordinates[i].home;
+            at = displace(at, carried.len());
             let point = at * joint.point;
             let home = joint.screws();
+            carried.push(at);
             let screws = match joint.kind {
                 JointKind::Spherical => {
-                    carried.push(at);
                     let rates = by_rotation_vector(&Vector3::from_fn(|i, _| from_home(i)));
                     let rate = |k: usize| {
                         let angular = rates.column(k).into_owned();
                         Screw { angular, linear: joint.point.coords.cross(&angular) }
                     };
-                    (0..3).map(|k| rate(k).transformed(&at)).collect()
+                    let screws = (0..3).map(|k| rate(k).transformed(&at)).collect();
+                    at *= joint.displacement(own).expect("a value for each coordinate");
+                    screws
                 }
                 JointKind::Universal { .. } => {
-                    let second = at * home[0].exp(from_home(0));
-                    carried.extend([at, second]);
-                    vec![home[0].transformed(&at), home[1].transformed(&second)]
+                    let first = home[0].transformed(&at);
+                    at = displace(at * home[0].exp(from_home(0)), carried.len());
+                    carried.push(at);
+                    let screws = vec![first, home[1].transformed(&at)];
+                    at *= home[1].exp(from_home(1));
+                    screws
                 }
                 // The freedoms of a cylindrical joint commute.
                 _ => {
-                    carried.push(at);
-                    home.iter().map(|screw| screw.transformed(&at)).collect()
+                    let screws = home.iter().map(|screw| screw.transformed(&at)).collect();
+                    at *= joint.displacement(own).expect("a value for each coordinate");
+                    screws
                 }
             };
             placed.push(PlacedJoint { point, screws });
-            at *= joint.displacement(own).expect("a value for each coordinate");
         }
-        carried.push(at);
+        carried.push(displace(at, carried.len()));
         Self { carried, joints: placed }
     }
 
@@ -86,7 +110,7 @@ impl Chain {
 /// ```text
 /// 1 + (1 - cos a) / a² [w] + (a - sin a) / a³ [w]²
 /// ```
-fn by_rotation_vector(w: &Vector3<f64>) -> Matrix3<f64> {
+pub fn by_rotation_vector(w: &Vector3<f64>) -> Matrix3<f64> {
     /// Below this angle the next terms of the series vanish beside the first.
     const SMALL: f64 = 1e-4;
     let (angle, cross) = (w.norm(), w.cross_matrix());
@@ -120,6 +144,19 @@ pub fn from_point(point: &Point3<f64>, length: f64) -> Matrix6<f64> {
 pub fn small_twist(g: &Isometry3<f64>) -> Vector6<f64> {
     let (angular, linear) = (g.rotation.scaled_axis(), g.translation.vector);
     Screw { angular, linear: linear - angular.cross(&linear) / 2.0 }.to_vector()
+}
+
+/// A rotation about a point, as a rotation vector, then a translation.
+pub fn displaced(rotation: Vector3<f64>, about: &Point3<f64>, way: Vector3<f64>) -> Isometry3<f64> {
+    let rotation = UnitQuaternion::from_scaled_axis(rotation);
+    let about = about.coords;
+    Isometry3::from_parts(Translation3::from(about - rotation * about + way), rotation)
+}
+
+/// The rotation vector of a displacement, and the displacement of a point.
+pub fn difference(g: &Isometry3<f64>, point: &Point3<f64>) -> Vector6<f64> {
+    let (w, v) = (g.rotation.scaled_axis(), g * point - point);
+    Vector6::new(w.x, w.y, w.z, v.x, v.y, v.z)
 }
 
 /// One unit of a quantity in units of the characteristic length.

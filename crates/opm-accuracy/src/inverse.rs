@@ -1,14 +1,11 @@
 //! The pseudo-inverse of a matrix without full rank.
 //!
 //! The loops of overconstrained mechanisms give matrices with fewer independent rows than rows. Their rank is decided by
-//! singular values, which one-sided Jacobi rotations find to full accuracy (J. Demmel, K. Veselić, "Jacobi's method is more
-//! accurate than QR", SIAM J. Matrix Anal. Appl. 13, 1992).
+//! singular values.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
+use opm_core::numeric::svd::orthogonalise;
 use opm_core::velocity::SINGULAR;
-
-/// The largest number of sweeps over all pairs of columns. Regular matrices need about eight.
-const MAX_SWEEPS: usize = 40;
 
 /// A matrix `A = Σ σₖ lₖ rₖᵀ`, decomposed.
 pub struct PseudoInverse {
@@ -27,7 +24,7 @@ impl PseudoInverse {
     pub fn new(matrix: &DMatrix<f64>) -> Self {
         let (mut image, mut left) =
             (matrix.transpose(), DMatrix::identity(matrix.nrows(), matrix.nrows()));
-        orthogonalise(&mut image, &mut left);
+        orthogonalise(&mut image, Some(&mut left));
         let values: Vec<f64> = image.column_iter().map(|column| column.norm()).collect();
         let zero = SINGULAR * values.iter().copied().fold(0.0, f64::max);
         Self { left, image, values, zero }
@@ -60,39 +57,4 @@ impl PseudoInverse {
         let along = |k: usize| (self.image[(component, k)] / self.values[k]).powi(2);
         1.0 - self.regular().map(along).sum::<f64>() < SINGULAR
     }
-}
-
-/// Rotates the columns of a matrix until they are orthogonal, pair by pair, and those of `right` with them.
-fn orthogonalise(image: &mut DMatrix<f64>, right: &mut DMatrix<f64>) {
-    let negligible = (f64::EPSILON * image.norm()).powi(2);
-    for _ in 0..MAX_SWEEPS {
-        let mut settled = true;
-        for p in 0..image.ncols() {
-            for q in p + 1..image.ncols() {
-                let (a, b) = (image.column(p), image.column(q));
-                let [pp, qq, pq] = [a.norm_squared(), b.norm_squared(), a.dot(&b)];
-                if pp.min(qq) <= negligible || pq.abs() <= f64::EPSILON * (pp * qq).sqrt() {
-                    continue;
-                }
-                settled = false;
-                let zeta = (qq - pp) / (2.0 * pq);
-                let tan = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let cos = 1.0 / tan.hypot(1.0);
-                rotate(image, p, q, cos, cos * tan);
-                rotate(right, p, q, cos, cos * tan);
-            }
-        }
-        if settled {
-            break;
-        }
-    }
-}
-
-fn rotate(matrix: &mut DMatrix<f64>, p: usize, q: usize, cos: f64, sin: f64) {
-    let turned: (DVector<f64>, DVector<f64>) = {
-        let (a, b) = (matrix.column(p), matrix.column(q));
-        (a * cos - b * sin, a * sin + b * cos)
-    };
-    matrix.set_column(p, &turned.0);
-    matrix.set_column(q, &turned.1);
 }

@@ -32,17 +32,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod allocation;
+mod assembly;
 mod budget;
 mod chain;
 mod inverse;
+mod largest;
+mod made;
 mod response;
 mod sample;
 mod source;
 mod tolerance;
 mod zonotope;
 
+pub use allocation::{Allocation, Permitted};
+pub use assembly::{Assembled, Assembler};
 pub use budget::{Budget, Play, Spread};
+pub use largest::{Largest, Worst};
 pub use response::{Closure, Model, Response};
-pub use sample::{Samples, sample};
+pub use sample::{Sample, Samples, draw, sample, sample_assembled};
 pub use source::{ErrorModel, Source};
 pub use tolerance::{Both, ToleranceErrors, Tolerances};

@@ -13,6 +13,7 @@ use opm_core::velocity::VelocityError;
 #[derive(Clone, Debug)]
 pub struct Model<'a> {
     manipulator: &'a Manipulator,
+    family: Option<Family>,
     errors: ErrorModel,
     length: f64,
     sources: Vec<Source>,
@@ -59,7 +60,8 @@ impl<'a> Model<'a> {
     /// The errors of all actuators and axes of a manipulator. If it is of a family, also those of the family's parameters.
     pub fn new(manipulator: &'a Manipulator, family: Option<&Family>, errors: ErrorModel) -> Self {
         let sources = sources(manipulator, family, errors);
-        Self { manipulator, errors, length: manipulator.characteristic_length(), sources }
+        let length = manipulator.characteristic_length();
+        Self { manipulator, family: family.cloned(), errors, length, sources }
     }
 
     /// Compares lengths with angles by another characteristic length, metres.
@@ -79,6 +81,21 @@ impl<'a> Model<'a> {
     /// The sources of errors: actuators, then parameters of the family, then joint by joint.
     pub fn sources(&self) -> &[Source] {
         &self.sources
+    }
+
+    /// What errors of axes are.
+    pub fn error_model(&self) -> ErrorModel {
+        self.errors
+    }
+
+    /// The characteristic length, metres.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// The family, if the errors of its parameters are known.
+    pub(crate) fn family(&self) -> Option<&Family> {
+        self.family.as_ref()
     }
 
     /// The manipulator.
@@ -105,7 +122,7 @@ impl<'a> Model<'a> {
     }
 
     /// What takes twists to the platform's reference point, with lengths over the characteristic length.
-    fn weight(&self, at: &Solution) -> Matrix6<f64> {
+    pub(crate) fn weight(&self, at: &Solution) -> Matrix6<f64> {
         let reference = at.displacement(self.manipulator) * self.manipulator.mechanism().platform;
         at_point(&reference, self.length)
     }
@@ -232,7 +249,7 @@ impl<'a> Model<'a> {
 }
 
 /// The projection of twists at a joint's point to those that the joint does not allow.
-fn across(screws: &[Screw], weight: &Matrix6<f64>) -> Matrix6<f64> {
+pub(crate) fn across(screws: &[Screw], weight: &Matrix6<f64>) -> Matrix6<f64> {
     /// Below this a screw that is left depends on those before: a cylindrical joint's never do.
     const DEPENDENT: f64 = 1e-9;
     let mut projection = Matrix6::identity();

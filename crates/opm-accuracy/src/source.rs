@@ -56,7 +56,8 @@ pub(crate) enum Origin {
     /// Of a helical joint's pitch: its advance.
     Pitch { leg: usize, first: usize, coordinate: usize, home: f64, advance: Screw },
     /// Of a family's parameter: the mechanisms with a larger and with a smaller value, and how far these are apart.
-    Parameter { mechanisms: Box<[Mechanism; 2]>, apart: f64 },
+    /// `key` is its name in the family, and `part` the number of its component if it is a pair.
+    Parameter { mechanisms: Box<[Mechanism; 2]>, apart: f64, key: String, part: usize },
 }
 
 impl Source {
@@ -112,7 +113,7 @@ impl Source {
                 let moved = advance.transformed(&chains[*leg].carried[*first]);
                 twists[*leg] = moved.to_vector() * (values[*coordinate] - home);
             }
-            Origin::Parameter { mechanisms, apart } => {
+            Origin::Parameter { mechanisms, apart, .. } => {
                 let [more, less] = mechanisms.each_ref().map(|changed| {
                     let to_reference = Isometry3::from(Translation3::from(changed.platform.coords));
                     let ends = Chain::all(changed, values);
@@ -288,7 +289,7 @@ fn parameters(family: &Family, mechanism: &Mechanism, length: f64, all: &mut Vec
         }
         let quantity = family.quantity_of(&name).unwrap_or(Quantity::Length);
         let step = STEP * unit(quantity, length);
-        let mut push = |suffix: &str, changed: &dyn Fn(f64) -> ParameterValue| {
+        let mut push = |(suffix, part): (&str, usize), changed: &dyn Fn(f64) -> ParameterValue| {
             let assembled =
                 |step: f64| family.with([(&*name, changed(step))]).ok()?.assemble().ok();
             let ends = match (assembled(step), assembled(-step)) {
@@ -305,16 +306,21 @@ fn parameters(family: &Family, mechanism: &Mechanism, length: f64, all: &mut Vec
                 quantity,
                 joint: None,
                 direction: None,
-                origin: Origin::Parameter { mechanisms: Box::new(mechanisms), apart },
+                origin: Origin::Parameter {
+                    mechanisms: Box::new(mechanisms),
+                    apart,
+                    key: name.clone(),
+                    part,
+                },
             });
         };
         match value {
             ParameterValue::Number(number) => {
-                push("", &|step| ParameterValue::Number(number + step));
+                push(("", 0), &|step| ParameterValue::Number(number + step));
             }
             ParameterValue::Pair([x, y]) => {
-                push(".x", &|step| ParameterValue::Pair([x + step, y]));
-                push(".y", &|step| ParameterValue::Pair([x, y + step]));
+                push((".x", 0), &|step| ParameterValue::Pair([x + step, y]));
+                push((".y", 1), &|step| ParameterValue::Pair([x, y + step]));
             }
             ParameterValue::None => {}
         }

@@ -4,6 +4,7 @@
 //! units = { length = "mm", angle = "deg" }   # metres and radians without it
 //! length = 0.02                              # every error of an axis that is a length
 //! angle = 0.01
+//! actuators = { length = 0.01, angle = 0.002 }
 //!
 //! [joint.S1]                                 # the axis of one joint
 //! length = 0.05
@@ -11,6 +12,7 @@
 //! [parameter]                                # one error by its name, or a parameter of the family
 //! "leg1.phi11.angle.2" = 0.03
 //! "leg1.h" = 0.1
+//! "S1" = 0.005                               # an actuated joint
 //! ```
 
 use crate::source::Source;
@@ -28,6 +30,8 @@ use toml::de::{DeTable, DeValue};
 pub struct Tolerances {
     /// Of all axes, not of the parameters of a family.
     pub axes: Both,
+    /// Of the values of actuated joints.
+    pub actuators: Both,
     /// Of joints, by name.
     pub joints: BTreeMap<String, Both>,
     /// Of single errors, by name.
@@ -64,7 +68,8 @@ fn lines(problems: &[Problem], prefix: &str) -> String {
 }
 
 impl Both {
-    fn of(&self, quantity: Quantity) -> Option<f64> {
+    /// That of a quantity.
+    pub fn of(&self, quantity: Quantity) -> Option<f64> {
         match quantity {
             Quantity::Angle => self.angle,
             Quantity::Length => self.length,
@@ -86,16 +91,16 @@ impl Tolerances {
 
     /// The names of errors that tolerances may be given for.
     pub fn single_names(sources: &[Source]) -> Vec<&str> {
-        sources.iter().filter(|s| !s.is_actuator()).map(|s| &*s.name).collect()
+        sources.iter().map(|s| &*s.name).collect()
     }
 
-    /// The tolerance of each source, radians and metres; zero for actuators.
+    /// The tolerance of each source, radians and metres; zero where there is none.
     pub fn of(&self, sources: &[Source]) -> Vec<f64> {
         let of = |source: &Source| {
-            if source.is_actuator() {
-                return None;
-            }
             let own = self.single.get(&source.name).copied();
+            if source.is_actuator() {
+                return own.or_else(|| self.actuators.of(source.quantity));
+            }
             own.or_else(|| {
                 let joint = self.joints.get(source.joint.as_ref()?);
                 let joint = joint.and_then(|both| both.of(source.quantity));
@@ -154,6 +159,7 @@ impl Reader<'_> {
                 "units" => {}
                 "length" => read.axes.length = self.tolerance(name, value, Quantity::Length),
                 "angle" => read.axes.angle = self.tolerance(name, value, Quantity::Angle),
+                "actuators" => read.actuators = self.both(name, value),
                 "joint" => {
                     let known = Tolerances::joint_names(sources);
                     for (key, value) in self.table(name, value).into_iter().flatten() {
@@ -168,7 +174,7 @@ impl Reader<'_> {
                     let known = Tolerances::single_names(sources);
                     for (key, value) in self.table(name, value).into_iter().flatten() {
                         let name: &str = key.get_ref();
-                        let found = sources.iter().find(|s| !s.is_actuator() && s.name == name);
+                        let found = sources.iter().find(|s| s.name == name);
                         if let Some(source) = found {
                             let tolerance = self.tolerance(name, value, source.quantity);
                             read.single.extend(tolerance.map(|t| (name.to_owned(), t)));
@@ -178,7 +184,7 @@ impl Reader<'_> {
                     }
                 }
                 _ => {
-                    let known = ["units", "length", "angle", "joint", "parameter"];
+                    let known = ["units", "length", "angle", "actuators", "joint", "parameter"];
                     self.is_known(key.span().start, "a key", name, &known);
                 }
             }
@@ -264,6 +270,7 @@ impl Reader<'_> {
 mod tests {
     use super::*;
     use crate::source::Origin;
+    use std::f64::consts::PI;
 
     fn sources() -> Vec<Source> {
         let named = |name: &str, quantity, joint: Option<&str>| Source {
@@ -278,21 +285,29 @@ mod tests {
                 twist: opm_core::group::screw::Screw::translation(nalgebra::Vector3::x_axis()),
             },
         };
+        let actuator = |name: &str, quantity| Source {
+            origin: Origin::Actuator(0),
+            ..named(name, quantity, None)
+        };
         vec![
             named("leg1.S1.angle.1", Quantity::Angle, Some("S1")),
             named("leg1.S1.offset.1", Quantity::Length, Some("S1")),
             named("leg1.r1.offset.1", Quantity::Length, Some("r1")),
             named("leg1.r1.offset.2", Quantity::Length, Some("r1")),
             named("leg1.h", Quantity::Length, None),
+            actuator("S1", Quantity::Length),
+            actuator("phi", Quantity::Angle),
+            actuator("S2", Quantity::Length),
         ]
     }
 
     #[test]
     fn the_narrowest_name_decides() {
         let text = "length = 0.5\nunits = { length = \"mm\", angle = \"deg\" }\nangle = 180\n\
-                    [joint.r1]\nlength = 2\n[parameter]\n\"leg1.r1.offset.2\" = 3";
+                    actuators = { length = 7, angle = 90 }\n\
+                    [joint.r1]\nlength = 2\n[parameter]\n\"leg1.r1.offset.2\" = 3\nS2 = 1";
         let read = Tolerances::read(text, &sources()).unwrap();
-        let expected = [std::f64::consts::PI, 0.0005, 0.002, 0.003, 0.0];
+        let expected = [PI, 0.0005, 0.002, 0.003, 0.0, 0.007, PI / 2.0, 0.001];
         assert_eq!(read.of(&sources()), expected);
     }
 

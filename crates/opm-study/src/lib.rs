@@ -58,6 +58,7 @@
 //! | [`WorkspaceKind`] | kinds of workspace, and which points belong to each |
 //! | [`WorkspaceRequest`] | a request; [`RequestError`] names the [`RequestOption`] that is wrong |
 //! | [`Workspace`] | a request that is checked and complete |
+//! | [`AccuracyRequest`], [`Drawing`] | errors of parts and actuators over the poses of a grid, and drawn at random |
 //! | [`Analysis`] | the results: counts, set, shape, conditioning |
 //! | [`SetupOptions`] | what poses are judged by: load, gravity, springs |
 //! | [`PointOptions`] | which values a recording stores of every point |
@@ -68,6 +69,7 @@
 //! Work runs on the current thread pool of rayon. [`opm_workspace::Progress`] reports how far it has come,
 //! and can cancel it.
 
+mod accuracy;
 mod analysis;
 mod columns;
 mod error;
@@ -86,6 +88,7 @@ pub mod text;
 mod tracker;
 mod workspace;
 
+pub use accuracy::{AccuracyField, AccuracyRequest, AccuracyRow, Drawing};
 pub use analysis::{Analysis, Shape};
 pub use columns::{
     AxisScale, Column, NamedColumn, PointChoice, PointColumns, PointOptions,

@@ -78,6 +78,10 @@ pub use components::Components;
 pub use condition::{ConditionError, Conditioned, PoseLimit};
 pub use conditioning::ConditioningIndex;
 pub use extent::{Extent, default_grid};
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
+pub use ordered::in_order;
+
 pub use grid::{Axis, Coordinate, Grid, GridError, Sections};
 pub use inscribed::{Inscribed, InscribedError, InscribedShape, inscribed};
 pub use poses::Poses;

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import examples
 from ._native import (
+    Accuracy,
     Analysis,
     Aspect,
     Assembly,
@@ -53,6 +54,7 @@ from ._native import (
 )
 
 __all__ = [
+    "Accuracy",
     "Analysis",
     "Aspect",
     "Assembly",

@@ -1,12 +1,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from os import PathLike
-from typing import Literal, SupportsIndex, TypeAlias, final
+from typing import Any, Literal, SupportsIndex, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "Accuracy",
     "Aspect",
     "Analysis",
     "Assembly",
@@ -998,6 +999,59 @@ class Manipulator:
         Singularity
             One number for each pose and measure, NaN where the pose is out of reach.
         """
+    def accuracy(
+        self,
+        poses: ArrayLike,
+        *,
+        actuators: tuple[float | None, float | None] | None = None,
+        tolerances: Mapping[str, Any] | str | PathLike[str] | None = None,
+        errors: str = "axes",
+        clearance: tuple[float | None, float | None] | None = None,
+        mode: str = "home",
+        length: float | None = None,
+        threads: int | None = None,
+    ) -> Accuracy:
+        """Accuracy at many poses: pose errors, sensitivities, and the play that joints need for errors that no motion takes up.
+
+        Parameters
+        ----------
+        poses : (n, d) array_like
+            One row for each pose, one column for each task coordinate; metres and radians.
+        actuators : (length, angle), optional
+            Errors of actuated joints: of sliders in metres, of others in radians. Either may be None.
+        tolerances : dict or path, optional
+            Errors of parts, as in a file of tolerances: ``"length"`` and ``"angle"`` of all axes, ``"joint"`` with those of
+            single joints, ``"parameter"`` with single errors by their names; metres and radians. Or such a file.
+        errors : str
+            What errors of axes are: ``"axes"``, of the numbers in the file, so that joints fit at home; ``"links"``, of parts,
+            whose errors act everywhere.
+        clearance : (length, angle), optional
+            The play that joints have, metres and radians: asks for the tolerances that keep within it. Either may be None.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+        length : float, optional
+            Characteristic length, by which lengths and angles are compared, metres. The spread of the joint axes if not given.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. One for each processor if not given.
+
+        Returns
+        -------
+        Accuracy
+            Arrays. Each error is between minus and plus its size; worst cases are to first order.
+
+        Raises
+        ------
+        OpmError
+            The columns are not the task coordinates, a number is not finite, or a name is unknown.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("plano-spherical-5dof")
+        >>> found = m.accuracy([m.home], tolerances={"length": 50e-6, "angle": 350e-6}, errors="links")
+        >>> bool(found.worst_length[0] > 50e-6), bool(found.misfit_length.max() > 1e-6)
+        (True, True)
+        """
     def analyze(
         self,
         poses: ArrayLike,
@@ -1200,6 +1254,58 @@ class Manipulator:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+
+@final
+class Accuracy:
+    """Errors of the platform and of the joints at many poses; NaN where a pose is out of reach, and where a number is not known."""
+
+    @property
+    def pose_error(self) -> NDArray[np.float64]:
+        """(n, d), metres and radians: the worst case of every task coordinate."""
+    @property
+    def worst_length(self) -> NDArray[np.float64]:
+        """(n,), metres: the longest displacement of the platform's reference point."""
+    @property
+    def worst_angle(self) -> NDArray[np.float64]:
+        """(n,), radians: the largest rotation of the platform."""
+    @property
+    def sensitivity(self) -> NDArray[np.float64]:
+        """(n, p, d): the change of every task coordinate for a unit of every error, one metre or one radian, to first order."""
+    @property
+    def misfit_length(self) -> NDArray[np.float64]:
+        """(n, j), metres: the largest play of each joint, as the displacement of its point."""
+    @property
+    def misfit_angle(self) -> NDArray[np.float64]:
+        """(n, j), radians: the largest play of each joint, as a rotation."""
+    @property
+    def permitted_alone(self) -> NDArray[np.float64] | None:
+        """(n, p), metres and radians: the tolerance of each error with which no joint needs more than its clearance, if it is the
+        only error. Infinite where it needs no play; NaN for errors of actuators and parameters. None without `clearance`."""
+    @property
+    def permitted_share(self) -> NDArray[np.float64] | None:
+        """(n, p), metres and radians: the same if all errors come together, and each may use an equal part of the clearance of every
+        joint that it reaches. None without `clearance`."""
+    @property
+    def permitted_uniform(self) -> NDArray[np.float64] | None:
+        """(n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. None without
+        `clearance`."""
+    @property
+    def sizes(self) -> NDArray[np.float64]:
+        """(p,), metres and radians: the size of each error."""
+    @property
+    def parameters(self) -> list[str]:
+        """Names of the errors: actuated joints, parameters of the family, axes."""
+    @property
+    def joints(self) -> list[str]:
+        """Names of the joints, leg by leg."""
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """(n,): whether the pose is in reach, joint limits not considered."""
+    @property
+    def held(self) -> NDArray[np.bool_]:
+        """(n,): whether the actuators hold the platform, so that its error is known."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Analysis:

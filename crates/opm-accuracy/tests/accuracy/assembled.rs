@@ -204,14 +204,15 @@ impl Assembly<'_> {
         let moved = displaced(w, reference, z.fixed_rows::<3>(3) * length) * plays.nominal;
         let mut residual = DVector::zeros(6 * self.mechanism().legs.len());
         for (leg, mut end) in self.ends(errors, &joints).into_iter().enumerate() {
-            let mut column = 6 + passive.len();
-            for (of, point, across) in &plays.joints {
+            // From the platform to the base: a play displaces all that its joint carries.
+            let mut column = z.len();
+            for (of, point, across) in plays.joints.iter().rev() {
+                column -= across.ncols();
                 if *of == leg {
                     let y = across * z.rows(column, across.ncols());
                     let way = y.fixed_rows::<3>(3) * length;
                     end = displaced(y.fixed_rows::<3>(0).into_owned(), *point, way) * end;
                 }
-                column += across.ncols();
             }
             let mut off = difference(&(end * moved.inverse()), &reference);
             off.fixed_rows_mut::<3>(3).unscale_mut(length);

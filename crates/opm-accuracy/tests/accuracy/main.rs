@@ -6,7 +6,9 @@ mod family;
 use assembled::Assembly;
 use fastrand::Rng;
 use nalgebra::{DVector, Vector6};
-use opm_accuracy::{Budget, ErrorModel, Model, Response, sample};
+use opm_accuracy::{
+    Assembler, Budget, ErrorModel, Model, Response, Samples, draw, sample, sample_assembled,
+};
 use opm_core::Manipulator;
 use opm_core::manipulator::Solution;
 use opm_tests::random::{Options, PAIRS, mechanism};
@@ -74,6 +76,88 @@ fn compare(manipulator: &Manipulator, at: &Solution, errors: ErrorModel, rng: &m
     counts.compared += 1;
     counts.misfits += usize::from(found[1..].iter().any(|play| play.amax() > 1e-3));
     counts
+}
+
+/// How far the assembly of the library and that of this test may differ: the latter stops at steps of 1e-12, and its
+/// derivatives are differences.
+const ASSEMBLED: f64 = 1e-8;
+
+/// Errors that are not small: the library's assembly is that of this test, to the second order and beyond.
+fn compare_assembled(
+    manipulator: &Manipulator,
+    at: &Solution,
+    errors: ErrorModel,
+    rng: &mut Rng,
+) -> bool {
+    let model = Model::new(manipulator, None, errors);
+    let response = model.at(at).unwrap();
+    let assembly = Assembly { model: &model, errors, joints: at.joints() };
+    if !response.held || assembly.ranks().is_none() {
+        return false;
+    }
+    let length = manipulator.characteristic_length();
+    let size = 3e-3;
+    let sizes = model.sources().iter().map(|source| {
+        let size = size * (rng.f64() - 0.5);
+        if source.quantity == opm_core::Quantity::Angle { size } else { length * size }
+    });
+    let sizes: Vec<f64> = sizes.collect();
+    let drawn = DVector::from_column_slice(&sizes);
+    let assembler = Assembler::new(&model, at, manipulator.home_mode()).unwrap();
+    let (Some(found), Some(expected)) = (assembler.assemble(&sizes), assembly.assemble(&drawn))
+    else {
+        return false;
+    };
+    let all = std::iter::once(&found.platform).chain(&found.plays);
+    let scaled = |twist: &Vector6<f64>| {
+        Vector6::from_fn(|i, _| if i < 3 { twist[i] } else { twist[i] / length })
+    };
+    let by = std::iter::once(&response.twists).chain(&response.plays);
+    let mut second = 0.0_f64;
+    let scale = expected.iter().map(|t| scaled(t).amax()).fold(size, f64::max);
+    for ((found, expected), by) in all.zip(&expected).zip(by) {
+        let off = (scaled(found) - scaled(expected)).amax();
+        assert!(off < ASSEMBLED * scale / size, "{}: {off:e}", manipulator.mechanism().name);
+        second = second.max((scaled(expected) - scaled(&(by * &drawn))).amax());
+    }
+    // The terms beyond first order are far larger than what the assemblies differ by.
+    second > 1e-3 * size * scale
+}
+
+#[test]
+fn mechanisms_with_large_errors_are_assembled_as_by_differences() {
+    let mut rng = Rng::with_seed(17);
+    let mut count = 0;
+    for manipulator in structured::manipulators() {
+        for errors in [ErrorModel::Axes, ErrorModel::Links] {
+            if let Some(at) = near_home(&mut rng, &manipulator) {
+                count += usize::from(compare_assembled(&manipulator, &at, errors, &mut rng));
+            }
+        }
+    }
+    println!("{count}");
+    assert!(count >= 10, "{count}");
+}
+
+/// Small errors, assembled, have the deviation of the root of squares.
+#[test]
+fn assembled_samples_of_small_errors_are_those_of_first_order() {
+    let manipulator = Manipulator::example("plano-spherical-5dof-joints").unwrap();
+    let at = near_home(&mut Rng::with_seed(14), &manipulator).unwrap();
+    let model = Model::new(&manipulator, None, ErrorModel::Links);
+    let response = model.at(&at).unwrap();
+    let assembler = Assembler::new(&model, &at, manipulator.home_mode()).unwrap();
+    let errors = vec![1e-8; model.sources().len()];
+    let first = Samples::of((0..200).map(|i| Some(sample(&response, &draw(&errors, 3, i)))));
+    let whole = Samples::of((0..200).map(|i| sample_assembled(&assembler, &draw(&errors, 3, i))));
+    assert_eq!(whole.failed, 0);
+    for (a, b) in first.deviations.iter().zip(&whole.deviations) {
+        assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
+    }
+    assert!((first.length / whole.length - 1.0).abs() < 1e-4);
+    for (a, b) in first.misfit.iter().flatten().zip(whole.misfit.iter().flatten()) {
+        assert!((a - b).abs() < 1e-4 * a.max(1e-9), "{a} {b}");
+    }
 }
 
 impl std::ops::AddAssign for Counts {
@@ -225,8 +309,10 @@ fn the_worst_case_is_reached_and_not_exceeded() {
 fn samples_have_the_deviation_of_the_root_of_squares() {
     let (response, errors) = example();
     let budget = Budget::new(&response, &errors);
-    let samples = sample(&response, &errors, 20_000, 1);
-    assert_eq!(samples, sample(&response, &errors, 20_000, 1));
+    let drawn = || (0..20_000).map(|number| Some(sample(&response, &draw(&errors, 1, number))));
+    let samples = Samples::of(drawn());
+    assert_eq!(samples, Samples::of(drawn()));
+    assert_eq!((samples.count, samples.failed), (20_000, 0));
     for (deviation, spread) in samples.deviations.iter().zip(&budget.coordinates) {
         let expected = spread.root_sum_square / 3.0_f64.sqrt();
         // Six standard errors of a standard deviation of 20000 samples.

@@ -14,13 +14,16 @@ pub enum LengthUnit {
     Centimetre,
     /// Millimetre, `mm`.
     Millimetre,
+    /// Micrometre, `um`.
+    Micrometre,
     /// Inch, `in`: 25.4 mm.
     Inch,
 }
 
 impl LengthUnit {
     /// Every unit that a file may name.
-    pub const ALL: [Self; 4] = [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch];
+    pub const ALL: [Self; 5] =
+        [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Micrometre, Self::Inch];
 
     /// The symbol of the unit in files.
     pub fn symbol(self) -> &'static str {
@@ -28,6 +31,7 @@ impl LengthUnit {
             Self::Metre => "m",
             Self::Centimetre => "cm",
             Self::Millimetre => "mm",
+            Self::Micrometre => "um",
             Self::Inch => "in",
         }
     }
@@ -44,6 +48,7 @@ impl LengthUnit {
             Self::Metre => value,
             Self::Centimetre => value / 100.0,
             Self::Millimetre => value / 1000.0,
+            Self::Micrometre => value / 1e6,
             Self::Inch => value * 0.0254,
         }
     }
@@ -60,27 +65,40 @@ pub enum AngleUnit {
     /// Radian, `rad`.
     #[default]
     Radian,
+    /// Milliradian, `mrad`.
+    Milliradian,
+    /// Microradian, `urad`.
+    Microradian,
     /// Degree, `deg`.
     Degree,
 }
 
 impl AngleUnit {
     /// Every unit that a file may name.
-    pub const ALL: [Self; 2] = [Self::Radian, Self::Degree];
+    pub const ALL: [Self; 4] = [Self::Radian, Self::Milliradian, Self::Microradian, Self::Degree];
 
     /// The symbol of the unit in files.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Radian => "rad",
+            Self::Milliradian => "mrad",
+            Self::Microradian => "urad",
             Self::Degree => "deg",
         }
     }
 
     /// The number of radians in one unit.
     pub fn factor(self) -> f64 {
+        self.radians(1.0)
+    }
+
+    /// Converts a number in this unit to radians. Those of decimal parts are divided, as in [`LengthUnit::metres`].
+    pub fn radians(self, value: f64) -> f64 {
         match self {
-            Self::Radian => 1.0,
-            Self::Degree => std::f64::consts::PI / 180.0,
+            Self::Radian => value,
+            Self::Milliradian => value / 1000.0,
+            Self::Microradian => value / 1e6,
+            Self::Degree => value * (std::f64::consts::PI / 180.0),
         }
     }
 
@@ -106,7 +124,7 @@ impl FileUnits {
     /// Converts a number of the file to SI.
     pub fn si(self, value: f64, quantity: Quantity) -> f64 {
         match quantity {
-            Quantity::Angle => value * self.angle.factor(),
+            Quantity::Angle => self.angle.radians(value),
             Quantity::Length => self.length.metres(value),
         }
     }
@@ -160,6 +178,9 @@ mod tests {
         assert_eq!(file.si(9.0, Quantity::Angle), 9.0);
         assert_eq!(LengthUnit::Centimetre.metres(7.0), 0.07);
         assert_eq!(LengthUnit::Inch.factor(), 0.0254);
+        assert_eq!(LengthUnit::Micrometre.metres(20.0), 20e-6);
+        assert_eq!(AngleUnit::Microradian.radians(7.0), 7e-6);
+        assert_eq!(AngleUnit::Milliradian.radians(0.3), 0.3e-3);
     }
 
     #[test]
