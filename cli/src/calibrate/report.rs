@@ -213,10 +213,12 @@ impl Report<'_> {
             [Quantity::Length, Quantity::Angle].map(|q| format!(">[{}]", units.symbol(q)));
         let mut table = Table::new(["  joint", &headers[0], &headers[1]]);
         for joint in &play.joints {
+            // Rounding is no play.
+            let shown = |play: f64| short(if play < 1e-12 { 0.0 } else { play });
             table.row([
                 format!("  {}", joint.name),
-                short(joint.length / units.factor(Quantity::Length)),
-                short(joint.angle / units.factor(Quantity::Angle)),
+                shown(joint.length / units.factor(Quantity::Length)),
+                shown(joint.angle / units.factor(Quantity::Angle)),
             ]);
         }
         let _ = writeln!(text, "{table}");

@@ -16,6 +16,9 @@ use opm_core::Quantity;
 use opm_core::manipulator::Mode;
 use rayon::prelude::*;
 
+/// A relative change of the sum of squares that is nothing beside standard errors, and above the rounding of the rows' poses.
+const TOLERANCE: f64 = 1e-9;
+
 /// The problem: what was measured of which mechanism, and what may vary.
 pub struct Problem<'a> {
     pub nominal: &'a Instance,
@@ -94,10 +97,7 @@ impl Problem<'_> {
 
     /// Of each row, if it takes part, the derivatives that another pose does not make up for, and an orthonormal basis of what
     /// it does; `None` inside where they are not defined.
-    pub fn derivatives_of_rows(
-        &self,
-        state: &State,
-    ) -> Vec<Option<Option<(DMatrix<f64>, DMatrix<f64>)>>> {
+    pub fn derivatives_of_rows(&self, state: &State) -> Vec<Option<RowDerivatives>> {
         let (units, pose_units) = (self.units(), self.pose_units());
         let model = state.instance.model();
         let predictor =
@@ -157,7 +157,7 @@ impl Problem<'_> {
         // The last state that was evaluated, and where.
         let mut last: (Vec<f64>, State) = (vec![0.0; identified.rank()], start);
         let mut stopped = false;
-        let found = minimise(&last.0.clone(), count, &mut |z, with_jacobian| {
+        let found = minimise(&last.0.clone(), (count, TOLERANCE), &mut |z, with_jacobian| {
             if stopped {
                 return None;
             }
@@ -185,6 +185,10 @@ impl Problem<'_> {
         Ok((state, changes))
     }
 }
+
+/// The derivatives of a row that another pose does not make up for, and an orthonormal basis of what it does; `None` where they
+/// are not defined.
+pub type RowDerivatives = Option<(DMatrix<f64>, DMatrix<f64>)>;
 
 /// Why there is no fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,6 +12,9 @@ pub struct Evaluation {
     pub jacobian: Option<DMatrix<f64>>,
 }
 
+/// The residuals at a point, with derivatives if the flag is set; `None` where there are none.
+pub type Evaluate<'a> = dyn FnMut(&[f64], bool) -> Option<Evaluation> + 'a;
+
 /// Where the method ended.
 pub struct Minimum {
     pub at: Vec<f64>,
@@ -19,20 +22,18 @@ pub struct Minimum {
     pub converged: Result<(), &'static str>,
 }
 
-/// Relative changes of the sum of squares and of the point that are rounding.
-const TOLERANCE: f64 = 1e-12;
 /// The residual of a point that cannot be evaluated, so that no step to it is taken.
 const REFUSED: f64 = 1e12;
 
-/// Minimises the sum of squares of `rows` residuals. `evaluate` says `None` where there are none: a step to there is refused.
+/// Minimises the sum of squares of `rows` residuals, until relative changes of the sum and of the point are below a tolerance. `evaluate` says `None` where there are none: a step to there is refused.
 pub fn minimise(
     start: &[f64],
-    rows: usize,
-    evaluate: &mut dyn FnMut(&[f64], bool) -> Option<Evaluation>,
+    (rows, tolerance): (usize, f64),
+    evaluate: &mut Evaluate<'_>,
 ) -> Minimum {
     let problem =
         Problem { at: Vector::from_column_slice(start), rows, evaluate: RefCell::new(evaluate) };
-    let method = LevenbergMarquardt::new().with_tol(TOLERANCE);
+    let method = LevenbergMarquardt::new().with_tol(tolerance);
     let (problem, report) = method.minimize(problem);
     let converged = match report.termination {
         // Where nothing but rounding is left, no step improves the sum.
@@ -49,7 +50,7 @@ pub fn minimise(
 struct Problem<'f> {
     at: Vector<f64>,
     rows: usize,
-    evaluate: RefCell<&'f mut dyn FnMut(&[f64], bool) -> Option<Evaluation>>,
+    evaluate: RefCell<&'f mut Evaluate<'f>>,
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {

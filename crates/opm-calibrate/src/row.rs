@@ -7,6 +7,9 @@ use nalgebra::DMatrix;
 use opm_core::manipulator::Manipulator;
 use std::f64::consts::TAU;
 
+/// Relative changes that are rounding.
+const TOLERANCE: f64 = 1e-12;
+
 /// The cells of a row that count.
 pub struct Row<'a> {
     /// A value for each column; `None` where nothing was measured.
@@ -58,7 +61,7 @@ impl Row<'_> {
             let residuals = self.residuals(&predicted, predictor.columns);
             Some((residuals, self.weighted(&predicted.by_pose)))
         };
-        let found = minimise(start, columns.len(), &mut |pose, _| {
+        let found = minimise(start, (columns.len(), TOLERANCE), &mut |pose, _| {
             let (residuals, jacobian) = evaluate(pose)?;
             Some(Evaluation { residuals, jacobian: Some(jacobian) })
         });

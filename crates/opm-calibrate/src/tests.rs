@@ -83,9 +83,9 @@ fn derivatives_are_those_of_differences() {
                 at(&nominal.changed(&all, &changes).unwrap(), &pose).unwrap().values
             });
             let by = found.by_parameter.as_ref().unwrap();
-            for row in 0..columns.len() {
+            for (row, (more, less)) in ends[0].iter().zip(&ends[1]).enumerate() {
                 let of = parameter.quantity;
-                check(by[(row, k)], [ends[0][row], ends[1][row]], step, of, row, &parameter.name);
+                check(by[(row, k)], [*more, *less], step, of, row, &parameter.name);
                 compared += 1;
             }
         }
@@ -96,9 +96,9 @@ fn derivatives_are_those_of_differences() {
                 pose[k] += step;
                 at(&instance, &pose).unwrap().values
             });
-            for row in 0..columns.len() {
+            for (row, (more, less)) in ends[0].iter().zip(&ends[1]).enumerate() {
                 let of = c.quantity;
-                check(found.by_pose[(row, k)], [ends[0][row], ends[1][row]], step, of, row, c.name);
+                check(found.by_pose[(row, k)], [*more, *less], step, of, row, c.name);
             }
         }
     }
