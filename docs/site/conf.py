@@ -8,6 +8,9 @@ import re
 import sys
 from pathlib import Path
 
+import latex2mathml.converter
+from docutils.nodes import SkipNode
+
 try:
     import tomllib
 except ImportError:  # Python 3.10
@@ -53,9 +56,6 @@ include_patterns = [
 
 myst_enable_extensions = ["attrs_inline", "deflist", "dollarmath"]
 myst_heading_anchors = 4
-# Code blocks of format.md say in parentheses what they are a part of.
-myst_number_code_blocks = []
-# Pages begin with one heading but for docs/generating.md, a part of which each language is.
 suppress_warnings = ["myst.header", "misc.highlighting_failure"]
 highlight_language = "none"
 
@@ -63,6 +63,11 @@ highlight_language = "none"
 nb_execution_mode = "force" if "OPM_NOTEBOOKS" in os.environ else "off"
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
+
+# Formulas are MathML, which browsers draw by themselves: nothing comes from a network.
+html_math_renderer = "mathml"
+myst_update_mathjax = False
+nb_ipywidgets_js = {}
 
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
@@ -117,10 +122,21 @@ def _others(text):
     return text.replace("\ngenerating\n", "\n".join(["", "generating", *others, ""]), 1)
 
 
+def _one_title(text):
+    """A page with several titles, as a long document may have, has one on the site, with the others below it."""
+    lines, fenced, titles = text.split("\n"), False, 0
+    for number, line in enumerate(lines):
+        fenced ^= line.startswith("```")
+        if not fenced and re.match(r"#+ ", line):
+            titles += line.startswith("# ")
+            lines[number] = f"#{line}" if titles > 1 else line
+    return "\n".join(lines)
+
+
 def _read(app, page, source):
     if page.startswith("examples/"):
         return
-    source[0] = _outside(app, page, source[0])
+    source[0] = _one_title(_outside(app, page, source[0]))
     if page == "docs/index":
         source[0] = _others(source[0])
     if page == "docs/gallery/README":
@@ -129,5 +145,16 @@ def _read(app, page, source):
         source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\n0*\n```\n"
 
 
+def _inline_formula(translator, node):
+    translator.body.append(latex2mathml.converter.convert(node.astext()))
+    raise SkipNode
+
+
+def _formula(translator, node):
+    translator.body.append(latex2mathml.converter.convert(node.astext(), display="block"))
+    raise SkipNode
+
+
 def setup(app):
+    app.add_html_math_renderer("mathml", (_inline_formula, None), (_formula, None))
     app.connect("source-read", _read)
