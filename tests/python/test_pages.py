@@ -23,6 +23,8 @@ BLOCK = re.compile(r"(?:Save this as `(?P<name>[^`]+)`[^\n]*(?:\n[^\n`#]+)*?:\n\
 INDENTED = re.compile(r"(?<=\n\n)((?:    (?:\$ )?opm [^\n]*\n(?:    [^\n]*\n)*))", re.M)
 # Commands that change the machine, or that build for minutes. `make test` is this test.
 NOT_RUN = re.compile(r"pip install|cargo install|make test$|python -m mujoco")
+# What a reader brings, by the part of a command that takes it: measurements of a machine without errors are its plan.
+BROUGHT = {"--measurements m.csv": "cp plan.csv m.csv"}
 # What is no code, by the language of its block.
 NO_CODE = {"text", "protobuf", "", "{toctree}", "{eval-rst}", "json"}
 # What other tests hold, by page and language.
@@ -84,12 +86,10 @@ def test_what_a_page_says_runs(opm, tmp_path, page):
     if page == "cli/src/format.md":
         example = next(text for kind, _, text in blocks(page) if kind == "toml")
         (tmp_path / "lift.toml").write_text(example, encoding="utf-8")
-    code = []
     for kind, name, text in work(page):
         if name:
             (tmp_path / name).write_text(text, encoding="utf-8")
         elif kind == "python":
-            code.append(text)
             done = subprocess.run([sys.executable, "-c", text], cwd=tmp_path, env=environment, capture_output=True, text=True)
             assert done.returncode == 0, f"{text}\n{done.stderr}"
         else:
@@ -97,7 +97,8 @@ def test_what_a_page_says_runs(opm, tmp_path, page):
                 command = command.replace("cargo run --release --", "opm")
                 if NOT_RUN.search(command):
                     continue
-                done = subprocess.run(["sh", "-c", command], cwd=tmp_path, env=environment, capture_output=True, text=True)
+                before = "".join(f"{script} && " for part, script in BROUGHT.items() if part in command)
+                done = subprocess.run(["sh", "-c", before + command], cwd=tmp_path, env=environment, capture_output=True, text=True)
                 assert done.returncode == 0, f"{command}\n{done.stderr}"
 
 
