@@ -47,7 +47,7 @@ def panels(count: int) -> tuple[Figure, list[Axes]]:
 
 
 def actuated(manipulator: opm.Manipulator) -> list[str]:
-    return [manipulator.joints[column] for column in manipulator.actuated]
+    return [manipulator.joint_names[column] for column in manipulator.actuated]
 
 
 def figure_4() -> Figure:
@@ -68,7 +68,7 @@ def figure_7() -> Figure:
 def figure_8() -> Figure:
     """Imaginary joints of the 5-DoF manipulator."""
     figure, row = panels(1)
-    plot.joints(SPHERICAL_MOTION, SPHERICAL.imaginary, ax=row)
+    plot.joints(SPHERICAL_MOTION, SPHERICAL.imaginary_names, ax=row)
     return figure
 
 
@@ -82,7 +82,7 @@ def figure_9() -> Figure:
 def figure_10() -> Figure:
     """Velocities: (a) imaginary joints, (b) linear actuators, (c) angular actuators."""
     figure, row = panels(3)
-    plot.joints(SPHERICAL_MOTION, SPHERICAL.imaginary, rates=True, ax=row[0])
+    plot.joints(SPHERICAL_MOTION, SPHERICAL.imaginary_names, rates=True, ax=row[0])
     plot.joints(SPHERICAL_MOTION, actuated(SPHERICAL), rates=True, ax=row[1:])
     return figure
 
@@ -124,7 +124,7 @@ def figure_14() -> Figure:
 def figure_15() -> Figure:
     """Joints of the 3-DoF manipulator: (a) the imaginary joint, (b) the sliders."""
     figure, row = panels(2)
-    plot.joints(HELICAL_MOTION, HELICAL.imaginary, ax=row[0])
+    plot.joints(HELICAL_MOTION, HELICAL.imaginary_names, ax=row[0])
     plot.joints(HELICAL_MOTION, actuated(HELICAL), ax=row[1])
     return figure
 

@@ -130,7 +130,7 @@ def agree(found, expected):
 def main():
     manipulator = opm.examples.load("plano-spherical-5dof")
     names = [f"{name}{leg}" for leg in (1, 2, 3) for name in ("S", "phi1", "phi2", "theta2", "theta3")]
-    assert manipulator.joints == [*names, "phi14", "phi24", "s4.x", "s4.y", "s4.z"], manipulator.joints
+    assert manipulator.joint_names == [*names, "phi14", "phi24", "s4.x", "s4.y", "s4.z"], manipulator.joint_names
     at_home = manipulator.inverse([manipulator.home]).joints[0]
     phi_home = at_home[15] + at_home[16]
     rng = np.random.default_rng(1)

@@ -3,11 +3,12 @@
 use crate::arguments;
 use crate::error::request;
 use crate::error::wrong;
+use crate::given::Columns;
 use crate::manipulator::Manipulator;
-use crate::pickle::{frozen, pickled};
+use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
 use crate::setup::{Given, WRENCH};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArrayMethods};
+use numpy::{IntoPyArray, PyArrayDyn};
 use opm_analysis::{Balance, Compliant, Index, Indices, Load, Loads, Setup, Statics, Wrench};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -18,52 +19,52 @@ use std::num::NonZeroUsize;
 pub struct Analysis {
     /// (n, a), N and N m: the effort of every actuated joint that balances the load. NaN where the load does not determine it,
     /// where it is not balanced, and at a serial singularity.
-    efforts: Py<PyArray2<f64>>,
+    efforts: Py<PyArrayDyn<f64>>,
     /// (n, j), N and N m: the effort of every imaginary joint, which the lower section exerts on the upper one.
-    imaginary_efforts: Py<PyArray2<f64>>,
+    imaginary_efforts: Py<PyArrayDyn<f64>>,
     /// (n, a, 6): the efforts for a unit force along x, y and z of the base, and a unit moment about these axes, at the
     /// platform's reference point.
-    effort_jacobian: Py<PyArray3<f64>>,
+    effort_jacobian: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: input transmission index, the least of all inputs.
-    iti: Py<PyArray1<f64>>,
+    iti: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: output transmission index, the least of all inputs.
-    oti: Py<PyArray1<f64>>,
+    oti: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: local transmission index, the least of both.
-    lti: Py<PyArray1<f64>>,
+    lti: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: output constraint index, of legs that constrain the platform.
-    oci: Py<PyArray1<f64>>,
+    oci: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: largest effort of an actuator for a unit force in the worst direction, torques over the characteristic
     /// length.
-    effort_per_force: Py<PyArray1<f64>>,
+    effort_per_force: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: largest effort of an actuator for a unit moment in the worst direction, forces times the characteristic
     /// length.
-    effort_per_moment: Py<PyArray1<f64>>,
+    effort_per_moment: Py<PyArrayDyn<f64>>,
     /// (n,), N: largest effort of an actuator under the load, torques over the characteristic length.
-    effort: Py<PyArray1<f64>>,
+    effort: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: largest share of its ``max_effort`` that an actuator needs under the load.
-    effort_share: Py<PyArray1<f64>>,
+    effort_share: Py<PyArrayDyn<f64>>,
     /// (n,), N: largest force that the actuators bear in every direction on top of the load, within their ``max_effort``.
-    payload: Py<PyArray1<f64>>,
+    payload: Py<PyArrayDyn<f64>>,
     /// (n,), N m: largest moment that they bear about every axis, likewise.
-    payload_moment: Py<PyArray1<f64>>,
+    payload_moment: Py<PyArrayDyn<f64>>,
     /// (n,), N m: radius of the largest ball in the wrench polytope around the load, a force with the characteristic length as
     /// its lever.
-    payload_ball: Py<PyArray1<f64>>,
+    payload_ball: Py<PyArrayDyn<f64>>,
     /// (n,), N/m: least force that displaces the platform by a unit of length along it.
-    stiffness: Py<PyArray1<f64>>,
+    stiffness: Py<PyArrayDyn<f64>>,
     /// (n,), N m/rad: least moment that turns the platform by a unit of angle about its axis.
-    rotational_stiffness: Py<PyArray1<f64>>,
+    rotational_stiffness: Py<PyArrayDyn<f64>>,
     /// (n,), m: distance of the nearest two bodies; negative where they overlap.
-    clearance: Py<PyArray1<f64>>,
+    clearance: Py<PyArrayDyn<f64>>,
     /// (n, 6, 6): force and moment on the platform at its reference point, by its translations along x, y and z of the base and
     /// its rotations about them; None without stiffnesses.
-    stiffness_matrix: Option<Py<PyArray3<f64>>>,
+    stiffness_matrix: Option<Py<PyArrayDyn<f64>>>,
     /// (n, legs, 6, 6): the same for each leg, whose sum it is: what a leg carries is this times the platform's displacement.
-    leg_stiffness: Option<Py<PyArray4<f64>>>,
+    leg_stiffness: Option<Py<PyArrayDyn<f64>>>,
     /// (n,): whether the pose is in reach, joint limits not considered.
-    reachable: Py<PyArray1<bool>>,
+    reachable: Py<PyArrayDyn<bool>>,
     /// (n,): whether the actuators balance the load.
-    balanced: Py<PyArray1<bool>>,
+    balanced: Py<PyArrayDyn<bool>>,
 }
 
 pickled!(Analysis {
@@ -93,10 +94,10 @@ pickled!(Analysis {
 #[pymethods]
 impl Analysis {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let count = |answers: &Py<PyArray1<bool>>| -> PyResult<usize> {
+        let count = |answers: &Py<PyArrayDyn<bool>>| -> PyResult<usize> {
             answers.bind(py).call_method0("sum")?.extract()
         };
-        let poses = self.reachable.bind(py).len()?;
+        let poses = self.reachable.bind(py).getattr("size")?.extract::<usize>()?;
         let (reachable, balanced) = (count(&self.reachable)?, count(&self.balanced)?);
         Ok(format!("<Analysis of {poses} poses: {reachable} reachable, {balanced} balanced>"))
     }
@@ -120,9 +121,9 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
-    /// wrench : (6,) or (n, 6) array_like, optional
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
+    /// wrench : (6,) or (n, 6) array_like, or mapping, optional
     ///     The load on the platform, a force and a moment: FX, FY, FZ in N, MX, MY, MZ in N m. No load if not given.
     /// at : str or (3,) array_like
     ///     Where the force acts: ``"platform"``, its reference point; ``"base"``, the base's origin; or a point of the platform,
@@ -180,7 +181,8 @@ impl Manipulator {
     ) -> PyResult<Analysis> {
         let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
         let poses = Rows::new(&poses)?;
-        let given = wrench.map(|given| arguments::one_or_rows(given, "wrench", &WRENCH));
+        let columns = Columns { names: &WRENCH, otherwise: Some(&[0.0; 6]) };
+        let given = wrench.map(|given| columns.read(given, "wrench"));
         let given = given.transpose()?;
         let given = given.as_ref().map(Rows::new).transpose()?;
         if let Some(rows) = &given {
@@ -239,8 +241,7 @@ impl Manipulator {
             },
             |buffers, row, [efforts, between, units, matrix, of_legs, numbers @ ..]| {
                 let Buffers { solution, statics, loads, indices, compliant } = buffers;
-                let found = inner.inverse(poses.row(row), mode, solution);
-                if found.map_err(|error| error.to_string())?.is_none() {
+                if !self.solve(&poses, row, mode, solution)? {
                     return Ok([false; 2]);
                 }
                 statics.update(solution).map_err(|error| error.to_string())?;
@@ -281,11 +282,11 @@ impl Manipulator {
         let [reachable, balanced] =
             std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
         let index =
-            |index: Index| frozen(tables.table(TABLES + index as usize).reshape([poses.count])?);
+            |index: Index| poses.frozen(&tables.table(TABLES + index as usize), &[]);
         Ok(Analysis {
-            efforts: frozen(tables.table(0))?,
-            imaginary_efforts: frozen(tables.table(1))?,
-            effort_jacobian: frozen(tables.table(2).reshape([poses.count, actuated, 6])?)?,
+            efforts: poses.frozen(&tables.table(0), &[actuated])?,
+            imaginary_efforts: poses.frozen(&tables.table(1), &[imaginary])?,
+            effort_jacobian: poses.frozen(&tables.table(2), &[actuated, 6])?,
             iti: index(Index::Iti)?,
             oti: index(Index::Oti)?,
             lti: index(Index::Lti)?,
@@ -301,15 +302,15 @@ impl Manipulator {
             rotational_stiffness: index(Index::RotationalStiffness)?,
             clearance: index(Index::Clearance)?,
             stiffness_matrix: match springs {
-                true => Some(frozen(tables.table(3).reshape([poses.count, 6, 6])?)?),
+                true => Some(poses.frozen(&tables.table(3), &[6, 6])?),
                 false => None,
             },
             leg_stiffness: match springs {
-                true => Some(frozen(tables.table(4).reshape([poses.count, legs, 6, 6])?)?),
+                true => Some(poses.frozen(&tables.table(4), &[legs, 6, 6])?),
                 false => None,
             },
-            reachable: frozen(reachable)?,
-            balanced: frozen(balanced)?,
+            reachable: poses.frozen(&reachable, &[])?,
+            balanced: poses.frozen(&balanced, &[])?,
         })
     }
 }

@@ -1,8 +1,9 @@
 //! Arguments from Python. An error message has the name of the argument, what was given and what was
 //! expected.
 
-use crate::error::wrong;
-use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
+use crate::error::{failed, wrong};
+use crate::given::{Columns, Given, unmasked};
+use numpy::{AllowTypeChange, PyArray2, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods};
 use opm_core::mechanism::examples;
 use opm_core::skeleton::{Density, OutOfRange};
 use opm_export::MjcfOptions;
@@ -138,8 +139,8 @@ pub fn mechanism(py: Python<'_>, path: &Path, shipped: &str) -> PyResult<(String
     Ok((text(py, path, "a mechanism file", &hint)?, label))
 }
 
-/// The argument as an array of numbers of any shape.
-fn numbers<'py>(
+/// The argument as an array of numbers of any shape; entries that are masked or missing are NaN.
+pub fn numbers<'py>(
     given: &Bound<'py, PyAny>,
     what: &str,
     expected: &dyn Fn() -> String,
@@ -154,7 +155,8 @@ fn numbers<'py>(
         wrong(format!("{what} is {}, expected {}", shown(given), expected()))
     };
     let numpy = py.import("numpy")?;
-    let mut array = numpy.call_method1("asarray", (given,)).map_err(unsuitable)?;
+    let plain = unmasked(given).map_err(unsuitable)?;
+    let mut array = numpy.call_method1("asarray", (plain,)).map_err(unsuitable)?;
     if array.getattr("ndim")?.extract::<usize>()? == 0 {
         return Err(wrong(format!("{what} is {}, expected {}", shown(given), expected())));
     }
@@ -169,60 +171,50 @@ fn numbers<'py>(
     Ok(array.cast_into()?)
 }
 
-/// Rows of `names`.
-pub fn rows<'py>(given: &Bound<'py, PyAny>, what: &str, names: &[&str]) -> PyResult<Array<'py>> {
-    let expected = || format!("(n, {}): {}", names.len(), names.join(", "));
-    let array = numbers(given, what, &expected)?;
-    match array.shape() {
-        [_, width] if *width == names.len() => array.extract(),
-        _ => {
-            let shape = array.getattr("shape")?;
-            Err(wrong(format!("{what} has shape {shape}, expected {}", expected())))
-        }
-    }
-}
-
-/// Rows of `names`, or one row for all.
-pub fn one_or_rows<'py>(
-    given: &Bound<'py, PyAny>,
-    what: &str,
-    names: &[&str],
-) -> PyResult<Array<'py>> {
-    let width = names.len();
-    let expected = || format!("({width},) or (n, {width}): {}", names.join(", "));
-    let array = numbers(given, what, &expected)?;
-    match array.shape() {
-        [one] if *one == width => Ok(array.call_method1("reshape", ((1, width),))?.extract()?),
-        [_, one] if *one == width => Ok(array.extract()?),
-        _ => {
-            let shape = array.getattr("shape")?;
-            Err(wrong(format!("{what} has shape {shape}, expected {}", expected())))
-        }
-    }
-}
-
 /// Matrices of SE(3), as rows of 16.
-pub fn matrices<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Array<'py>> {
-    let expected = || "(n, 4, 4) homogeneous matrices".to_owned();
+pub fn matrices<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
+    let expected = || "(4, 4) or (n, 4, 4) homogeneous matrices".to_owned();
     let array = numbers(given, what, &expected)?;
-    match array.shape() {
-        [count, 4, 4] => Ok(array.call_method1("reshape", ((*count, 16),))?.extract()?),
+    let (count, one) = match array.shape() {
+        [4, 4] => (1, true),
+        [count, 4, 4] => (*count, false),
         _ => {
             let shape = array.getattr("shape")?;
-            Err(wrong(format!("{what} has shape {shape}, expected {}", expected())))
+            return Err(wrong(format!("{what} has shape {shape}, expected {}", expected())));
         }
-    }
+    };
+    Ok(Given { array: array.call_method1("reshape", ((count, 16),))?.extract()?, one })
 }
 
-/// One value for each of `names`.
-pub fn row(given: &Bound<'_, PyAny>, what: &str, names: &[&str]) -> PyResult<Vec<f64>> {
-    let expected = || format!("({},): {}", names.len(), names.join(", "));
+/// One value for each of `columns`.
+pub fn row(given: &Bound<'_, PyAny>, what: &str, columns: Columns<'_>) -> PyResult<Vec<f64>> {
+    let Given { array, one } = columns.read(given, what)?;
+    if !one {
+        let names = columns.names;
+        return Err(wrong(format!(
+            "{what} has {} rows, expected ({},): {}",
+            array.shape()[0],
+            names.len(),
+            names.join(", ")
+        )));
+    }
+    array.as_any().call_method0("ravel")?.call_method0("tolist")?.extract()
+}
+
+/// One number, or numbers, as a column.
+pub fn column<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
+    let py = given.py();
+    if let Ok(number) = given.extract::<f64>() {
+        let array = PyArray2::from_vec2(py, &[vec![number]]).map_err(|error| failed(&error))?;
+        return Ok(Given { array: array.as_any().extract()?, one: true });
+    }
+    let expected = || "a number or (n,) numbers".to_owned();
     let array = numbers(given, what, &expected)?;
-    if array.shape() != [names.len()] {
+    if array.ndim() != 1 {
         let shape = array.getattr("shape")?;
         return Err(wrong(format!("{what} has shape {shape}, expected {}", expected())));
     }
-    array.call_method0("tolist")?.extract()
+    Ok(Given { array: array.call_method1("reshape", ((-1, 1),))?.extract()?, one: false })
 }
 
 /// All numbers of a one-dimensional array.

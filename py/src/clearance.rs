@@ -2,9 +2,9 @@
 
 use crate::arguments;
 use crate::manipulator::Manipulator;
-use crate::pickle::{frozen, pickled};
+use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
-use numpy::PyArray1;
+use numpy::PyArrayDyn;
 use opm_interference::{Distances, Interference};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -15,9 +15,9 @@ use std::num::NonZeroUsize;
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Clearance {
     /// (n,): the distance of the nearest two, metres; negative where they overlap, NaN where the pose is out of reach.
-    distance: Py<PyArray1<f64>>,
+    distance: Py<PyArrayDyn<f64>>,
     /// (n,): which two these are, as an index of `pairs`; -1 where the pose is out of reach.
-    pair: Py<PyArray1<i64>>,
+    pair: Py<PyArrayDyn<i64>>,
     /// The names of the pairs that are tested.
     pairs: Vec<(String, String)>,
     /// The pairs that are not tested because they overlap at home: their names, and by how much, metres.
@@ -31,7 +31,7 @@ pickled!(Clearance { distance, pair, pairs, set_aside, mode });
 #[pymethods]
 impl Clearance {
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        self.distance.bind(py).len()
+        self.distance.bind(py).getattr("size")?.extract()
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -48,8 +48,8 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// threads : int, optional
@@ -92,10 +92,10 @@ impl Manipulator {
             threads,
             || (manipulator.solution(), Distances::new(&interference)),
             |(solution, distances), row, [distance, pair]| {
-                let found = manipulator.inverse(poses.row(row), mode, solution);
-                let found = found.map_err(|error| format!("pose {row}: {error}"))?;
                 pair[0] = -1.0;
-                let Some(solution) = found else { return Ok([false; 2]) };
+                if !self.solve(&poses, row, mode, solution)? {
+                    return Ok([false; 2]);
+                }
                 distances.place(manipulator, solution);
                 if let Some(nearest) = distances.nearest() {
                     (distance[0], pair[0]) = (nearest.distance, nearest.pair as f64);
@@ -103,8 +103,7 @@ impl Manipulator {
                 Ok([true; 2])
             },
         )?;
-        let flat = |number: usize| tables.table(number).call_method0("ravel");
-        let pair = flat(1)?.call_method1("astype", ("int64",))?;
+        let pair = tables.table(1).call_method1("astype", ("int64",))?;
         let own = |name: &str| name.to_owned();
         let names = |number| -> (String, String) { interference.names_of(number).map(own).into() };
         let set_aside = interference.set_aside_pairs().iter().map(|pair| {
@@ -112,8 +111,8 @@ impl Manipulator {
             (one, other, pair.overlap)
         });
         Ok(Clearance {
-            distance: frozen(flat(0)?.cast_into()?)?,
-            pair: frozen(pair.cast_into()?)?,
+            distance: poses.frozen(&tables.table(0), &[])?,
+            pair: poses.frozen(&pair, &[])?,
             pairs: (0..interference.pairs()).map(names).collect(),
             set_aside: set_aside.collect(),
             mode: manipulator.format_mode(mode),

@@ -4,6 +4,11 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyEllipsis;
 
+/// The table that a function of the package's module `_tables` makes of results.
+pub fn table<'py>(of: &Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'py, PyAny>> {
+    of.py().import("opm_kinematics._tables")?.call_method1(function, (of,))
+}
+
 /// The entries with this name along the last axis of the table that has it: a view.
 pub fn column<'py>(
     tables: [(&[String], &Bound<'py, PyAny>); 2],
@@ -18,13 +23,76 @@ pub fn column<'py>(
     Err(PyKeyError::new_err(format!("{name}: no such joint among {known}")))
 }
 
-/// Makes a class of results a container of rows, with columns by name.
+/// A view of a mapping, by the class of `collections.abc` with this name.
+pub fn view<'py>(of: &Bound<'py, PyAny>, class: &str) -> PyResult<Bound<'py, PyAny>> {
+    of.py().import("collections.abc")?.getattr(class)?.call1((of,))
+}
+
+/// Makes a class of results a mapping of the names of columns to these.
 macro_rules! columns {
     ($class:ident) => {
         #[pymethods]
         impl $class {
             fn __len__(&self) -> usize {
-                self.rows
+                self.joint_names.len() + self.imaginary_names.len()
+            }
+
+            fn __iter__<'py>(
+                &self,
+                py: Python<'py>,
+            ) -> PyResult<Bound<'py, pyo3::types::PyIterator>> {
+                let names = self.joint_names.iter().chain(&self.imaginary_names);
+                pyo3::types::PyList::new(py, names)?.try_iter()
+            }
+
+            fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {
+                let known = |name: &String| {
+                    self.joint_names.contains(name) || self.imaginary_names.contains(name)
+                };
+                name.extract::<String>().is_ok_and(|name| known(&name))
+            }
+
+            /// The names of the joints, then of the imaginary joints.
+            fn keys<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                $crate::columns::view(slf.as_any(), "KeysView")
+            }
+
+            /// The values of each joint and imaginary joint: views.
+            fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                $crate::columns::view(slf.as_any(), "ValuesView")
+            }
+
+            /// Names and values.
+            fn items<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                $crate::columns::view(slf.as_any(), "ItemsView")
+            }
+
+            /// The values of one joint or imaginary joint, or something else if there is none of this name.
+            ///
+            /// Parameters
+            /// ----------
+            /// name : str
+            ///     Name of the joint.
+            /// default : object, optional
+            ///     What is returned if there is none.
+            #[pyo3(signature = (name, default = None, /))]
+            fn get<'py>(
+                &self,
+                py: Python<'py>,
+                name: &str,
+                default: Option<Bound<'py, PyAny>>,
+            ) -> Option<Bound<'py, PyAny>> {
+                self.__getitem__(py, name).ok().or(default)
+            }
+
+            /// A table of pandas, with a row for each row of the arrays and each mode, and a column for each joint.
+            fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                $crate::columns::table(slf.as_any(), "to_pandas")
+            }
+
+            /// A dataset of xarray, with a variable for each joint, which has its unit.
+            fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                $crate::columns::table(slf.as_any(), "to_xarray")
             }
 
             /// The values of one joint or imaginary joint, (n,): a view.

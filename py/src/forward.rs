@@ -1,11 +1,14 @@
 //! Forward kinematics: the poses at given joint values.
 
+mod assemblies;
+
 use crate::arguments;
 use crate::error::wrong;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::pickle::{frozen, pickled};
+use crate::pickle::pickled;
 use crate::rows::Rows;
+pub use assemblies::Assemblies;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_core::forward::{self as core, ForwardError, NearError, Stop};
 use opm_core::manipulator::Mode;
@@ -45,93 +48,101 @@ impl Assembly {
     }
 }
 
-impl Assembly {
-    fn new(py: Python<'_>, manipulator: &Manipulator, found: core::Assembly) -> PyResult<Self> {
-        let array = |numbers: Vec<f64>| frozen(numbers.into_pyarray(py));
-        Ok(Self {
-            pose: array(found.pose)?,
-            mode: manipulator.inner.format_mode(found.mode),
-            joints: array(found.joints)?,
-            imaginary: array(found.imaginary)?,
-            within_limits: found.within_limits,
-            residual: found.residual,
-        })
-    }
-}
-
-/// Where Newton's method begins, and in which working mode.
-struct Near<'a> {
-    starts: Rows<'a>,
-    mode: Mode,
-}
-
 #[pymethods]
 impl Manipulator {
-    /// Every assembly for each row of actuated joint values; or, near a pose, the one that Newton's method finds.
+    /// Every assembly for actuated joint values, in closed form; or the one near a pose that Newton's method finds.
+    ///
+    /// In a mechanism with screws, full revolutions can matter: each of them is another assembly, one advance of the screw
+    /// away, and there are infinitely many. Of these, the one is given whose actuated joints have the full revolutions that
+    /// `joints` has, and whose passive joints are within π of home.
     ///
     /// Parameters
     /// ----------
-    /// joints : (n, a) array_like
-    ///     Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
-    /// near : (d,) or (n, d) array_like, optional
-    ///     The pose from which Newton's method begins, metres and radians; one row is used for all. Newton's method works for
-    ///     every mechanism, the closed form only for some.
+    /// joints : (a,) or (n, a) array_like, or mapping
+    ///     Values of the actuated joints, in the order of `actuated`, or by name; metres and radians. One row gives arrays
+    ///     without the first axis. There is no assembly for a row with NaN.
+    /// near : (d,) or (n, d) array_like, or mapping, optional
+    ///     The pose from which assemblies are sorted, the nearest first, and from which Newton's method begins; metres and
+    ///     radians; one pose is used for all rows. Home if not given.
     /// mode : str, optional
     ///     Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Newton's method
     ///     stays in this mode, or in the home mode if not given.
+    /// method : str, optional
+    ///     ``"every"``: all assemblies, by the closed form that most mechanisms have. ``"newton"``: one, near `near`, for every
+    ///     mechanism. If not given, ``"every"`` where there is a closed form, otherwise ``"newton"`` if `near` is given.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
-    /// list of list of Assembly
-    ///     One list for each row, the assembly nearest to home first: empty where there is no assembly, or where Newton's
-    ///     method does not converge.
+    /// Assemblies
+    ///     Arrays, and a list of :class:`Assembly` for each row: empty where there is no assembly, or where Newton's method
+    ///     does not converge.
     ///
     /// Raises
     /// ------
     /// OpmError
     ///     The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
-    #[pyo3(signature = (joints, *, near = None, mode = None, threads = None))]
+    ///
+    /// Examples
+    /// --------
+    /// >>> import opm_kinematics as opm
+    /// >>> m = opm.examples.load("planar-3rrr")
+    /// >>> found = m.forward(m.inverse(m.home, joints="actuated").joints)
+    /// >>> int(found.counts), found.poses.shape, bool(abs(found.poses[0] - m.home).max() < 1e-9)
+    /// (2, (2, 3), True)
+    #[pyo3(signature = (joints, *, near = None, mode = None, method = None, threads = None))]
+    #[allow(clippy::too_many_arguments)]
     fn forward(
         &self,
         py: Python<'_>,
         joints: &Bound<'_, PyAny>,
         near: Option<&Bound<'_, PyAny>>,
         mode: Option<&str>,
+        method: Option<&str>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
-    ) -> PyResult<Vec<Vec<Assembly>>> {
-        let coordinates = self.inner.coordinates();
-        let names: Vec<_> =
-            self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
-        let joints = arguments::rows(joints, "joints", &names)?;
+    ) -> PyResult<Assemblies> {
+        let joints = self.inputs(joints)?;
         let joints = Rows::new(&joints)?;
         let mode = mode.map(|mode| self.mode(mode)).transpose()?;
-        let starts = near.map(|near| arguments::one_or_rows(near, "near", &self.pose_names()));
-        let starts = starts.transpose()?;
-        let near = match &starts {
-            Some(starts) => {
-                let starts = Rows::new(starts)?;
-                if starts.count != joints.count && starts.count != 1 {
-                    let (given, rows) = (starts.count, joints.count);
-                    return Err(wrong(format!("{given} rows of near, expected {rows}, or one")));
-                }
-                Some(Near { starts, mode: mode.unwrap_or_else(|| self.inner.home_mode()) })
+        let starts = near.map(|near| self.poses_of(near, "near")).transpose()?;
+        let starts = starts.as_ref().map(Rows::new).transpose()?;
+        if let Some(starts) = &starts {
+            if starts.count != joints.count && starts.count != 1 {
+                let (given, rows) = (starts.count, joints.count);
+                return Err(wrong(format!("{given} rows of near, expected {rows}, or one")));
             }
-            None => {
-                self.inner.forward_closed_form().map_err(|why| {
-                    wrong(format!("{why}; near= says from where Newton's method begins"))
-                })?;
-                None
+        }
+        let closed_form = self.inner.forward_closed_form();
+        let newton = match (method, &closed_form) {
+            (Some("every") | None, Ok(())) => false,
+            (Some("newton"), _) => true,
+            (None, Err(_)) if starts.is_some() => true,
+            (Some("every") | None, Err(why)) => {
+                let hint = "; near= says from where Newton's method begins";
+                return Err(wrong(format!("{why}{hint}")));
             }
+            (Some(other), _) => {
+                let expected = "expected \"every\" or \"newton\"";
+                return Err(wrong(format!("method is {other:?}, {expected}")));
+            }
+        };
+        let home = self.inner.home_pose();
+        let start = |row: usize| {
+            starts.as_ref().map_or(&*home, |starts| starts.row(row.min(starts.count - 1)))
         };
         let stop = AtomicBool::new(false);
         let solve = |row: usize| -> Result<Vec<core::Assembly>, String> {
-            if stop.load(Ordering::Relaxed) {
+            if stop.load(Ordering::Relaxed) || joints.missing(row) {
                 return Ok(Vec::new());
             }
-            let found = self.assemblies(joints.row(row), row, near.as_ref());
-            let mut found = found.map_err(|problem| format!("row {row}: {problem}"))?;
+            let (values, start) = (joints.row(row), start(row));
+            let mut found = if newton {
+                self.nearest_assembly(values, start, mode)
+            } else {
+                self.every_assembly(values, start)
+            }
+            .map_err(|problem| format!("row {row}: {problem}"))?;
             found.retain(|assembly| mode.is_none_or(|mode| assembly.mode == mode));
             Ok(found)
         };
@@ -141,11 +152,8 @@ impl Manipulator {
             let all = || (0..joints.count).into_par_iter().map(solve).collect();
             interrupt::run(py, threads, all, || stop.store(true, Ordering::Relaxed))?
         };
-        let rows = found.into_iter().map(|found| {
-            let list = found.map_err(wrong)?.into_iter();
-            list.map(|assembly| Assembly::new(py, self, assembly)).collect()
-        });
-        rows.collect()
+        let found = found.into_iter().collect::<Result<Vec<_>, _>>().map_err(wrong)?;
+        Assemblies::new(py, self, &joints, &found)
     }
 
     /// The pose for each row of actuated joint values, near the pose of the row before it, in one working mode.
@@ -155,9 +163,10 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// joints : (n, a) array_like
-    ///     Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
-    /// near : (d,) array_like, optional
+    /// joints : (n, a) array_like, or mapping
+    ///     Each row has the values of the actuated joints, in the order of `actuated`, or by name; metres and radians. A row
+    ///     with NaN is passed over.
+    /// near : (d,) array_like, or mapping, optional
     ///     The pose before the first row; home if not given.
     /// mode : str, optional
     ///     ``"home"``, or a sign for every two-valued choice.
@@ -170,7 +179,7 @@ impl Manipulator {
     /// Raises
     /// ------
     /// OpmError
-    ///     A value is not a finite number.
+    ///     A value is infinite.
     #[pyo3(signature = (joints, *, near = None, mode = "home"))]
     fn forward_track<'py>(
         &self,
@@ -179,22 +188,12 @@ impl Manipulator {
         near: Option<&Bound<'py, PyAny>>,
         mode: &str,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let coordinates = self.inner.coordinates();
-        let names: Vec<_> =
-            self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
-        let joints = arguments::rows(joints, "joints", &names)?;
+        let joints = self.inputs(joints)?;
         let joints = Rows::new(&joints)?;
         let mode = self.mode(mode)?;
         let start = match near {
             None => self.inner.home_pose(),
-            Some(near) => {
-                let rows = arguments::one_or_rows(near, "near", &self.pose_names())?;
-                let rows = Rows::new(&rows)?;
-                if rows.count != 1 {
-                    return Err(wrong(format!("{} rows of near, expected one pose", rows.count)));
-                }
-                rows.row(0).to_vec()
-            }
+            Some(near) => self.pose(near, "near")?,
         };
         let width = start.len();
         let stop = AtomicBool::new(false);
@@ -205,7 +204,11 @@ impl Manipulator {
                 if stop.load(Ordering::Relaxed) {
                     break;
                 }
-                let found = tracker.step(joints.row(row)).map_err(|error| match error {
+                let step = match joints.missing(row) {
+                    true => Ok(None),
+                    false => tracker.step(joints.row(row)),
+                };
+                let found = step.map_err(|error| match error {
                     NearError::Start(error) => format!("near: {error}"),
                     error => format!("row {row}: {error}"),
                 })?;
@@ -223,27 +226,28 @@ impl Manipulator {
 }
 
 impl Manipulator {
-    /// The assemblies with these joints, which are row `row` of the input. There is none if Newton's method
-    /// does not converge.
-    fn assemblies(
+    /// Every assembly with these values of the actuated joints, those nearest to a pose first.
+    fn every_assembly(&self, joints: &[f64], near: &[f64]) -> Result<Vec<core::Assembly>, String> {
+        let found = self.inner.forward(joints);
+        let mut list = found.map_err(|error: ForwardError| error.to_string())?.list;
+        let near = self.inner.platform_pose(near).map_err(|error| format!("near: {error}"))?;
+        self.inner.sort_assemblies(&mut list, &near);
+        Ok(list)
+    }
+
+    /// The assembly that Newton's method finds from a pose; none if it does not converge.
+    fn nearest_assembly(
         &self,
         joints: &[f64],
-        row: usize,
-        near: Option<&Near<'_>>,
+        near: &[f64],
+        mode: Option<Mode>,
     ) -> Result<Vec<core::Assembly>, String> {
-        let Some(Near { starts, mode }) = near else {
-            let found = self.inner.forward(joints);
-            let mut list = found.map_err(|error: ForwardError| error.to_string())?.list;
-            let home = self.inner.platform_pose(&self.inner.home_pose());
-            self.inner.sort_assemblies(&mut list, &home.map_err(|error| error.to_string())?);
-            return Ok(list);
-        };
-        let start = starts.row(row.min(starts.count - 1));
-        match self.inner.forward_near(joints, start, *mode) {
+        let mode = mode.unwrap_or_else(|| self.inner.home_mode());
+        match self.inner.forward_near(joints, near, mode) {
             Ok(assembly) => Ok(vec![assembly]),
             Err(NearError::NotFound(end)) => match end.why {
                 Stop::OutOfReach(_) if end.steps == 0 => {
-                    let mode = self.inner.format_mode(*mode);
+                    let mode = self.inner.format_mode(mode);
                     Err(format!("near is out of reach in mode {mode:?}: {}", end.why))
                 }
                 _ => Ok(Vec::new()),

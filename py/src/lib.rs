@@ -11,6 +11,7 @@ mod accuracy;
 mod analysis;
 mod arguments;
 mod calibration;
+mod check;
 mod clearance;
 mod columns;
 mod command;
@@ -20,6 +21,7 @@ mod explorer;
 mod export;
 mod forward;
 mod generate;
+mod given;
 mod html;
 mod interrupt;
 mod joints;
@@ -49,6 +51,7 @@ mod _native {
     use crate::analysis::Analysis;
     #[pymodule_export]
     use crate::calibration::{Calibration, calibrate};
+    use crate::check::{Certificate, Comparison, recover};
     #[pymodule_export]
     use crate::clearance::Clearance;
     #[pymodule_export]
@@ -60,7 +63,7 @@ mod _native {
     #[pymodule_export]
     use crate::explorer::{Explorer, explore};
     #[pymodule_export]
-    use crate::forward::Assembly;
+    use crate::forward::{Assemblies, Assembly};
     #[pymodule_export]
     use crate::joints::Joint;
     #[pymodule_export]
@@ -87,6 +90,9 @@ mod _native {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         // This is needed for pickling only and is not exported.
         module.setattr("_Boxes", module.py().get_type::<crate::measure::Boxes>())?;
+        let mapping = module.py().import("collections.abc")?.getattr("Mapping")?;
+        mapping.call_method1("register", (module.py().get_type::<Solutions>(),))?;
+        mapping.call_method1("register", (module.py().get_type::<Trajectory>(),))?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

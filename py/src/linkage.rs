@@ -3,7 +3,7 @@
 use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::pickle::frozen;
-use crate::rows::Tables;
+use crate::rows::{Rows, Tables};
 use crate::snap;
 use crate::solutions::{Names, Solutions};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -135,13 +135,13 @@ impl Linkage {
 
     /// Names of all joint coordinates: the columns of joint values.
     #[getter]
-    fn joints(&self) -> Vec<String> {
+    fn joint_names(&self) -> Vec<String> {
         self.inner.coordinates().iter().map(|c| c.name.clone()).collect()
     }
 
     /// Name of the imaginary joint.
     #[getter]
-    fn imaginary(&self) -> &str {
+    fn imaginary_name(&self) -> &str {
         &self.inner.imaginary().name
     }
 
@@ -205,8 +205,9 @@ impl Linkage {
     ///
     /// Parameters
     /// ----------
-    /// values : (n,) array_like
-    ///     Values of the joint that moves the linkage, radians or metres.
+    /// values : float or (n,) array_like
+    ///     Values of the joint that moves the linkage, radians or metres. One value gives arrays without the first axis. Where
+    ///     a value is NaN, so is the position.
     /// input : str, optional
     ///     Name of that joint; the actuated one if not given.
     /// threads : int, optional
@@ -222,7 +223,7 @@ impl Linkage {
     /// Raises
     /// ------
     /// OpmError
-    ///     There is no joint of this name, or a value is not finite; the message gives its index, counted from zero.
+    ///     There is no joint of this name, or a value is infinite; the message gives its index, counted from zero.
     #[pyo3(signature = (values, *, input = None, threads = None))]
     fn positions(
         &self,
@@ -232,22 +233,23 @@ impl Linkage {
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
         let input = self.input(input)?;
-        let values = arguments::list(values, "values")?;
-        if let Some(number) = values.iter().position(|value| !value.is_finite()) {
-            let value = values[number];
+        let given = arguments::column(values, "values")?;
+        let values = Rows::new(&given)?;
+        if let Some(number) = values.values().iter().position(|value| value.is_infinite()) {
+            let value = values.values()[number];
             return Err(wrong(format!("value {number} is {value}, expected a finite number")));
         }
         let branches = LinkageBranch::ALL;
         let tables = Tables::fill(
             py,
-            values.len() * branches.len(),
+            values.count * branches.len(),
             [self.inner.coordinates().len(), 1],
             threads,
             || input.home(),
             |position, row, [joints, imaginary]| {
                 let (value, branch) =
-                    (values[row / branches.len()], branches[row % branches.len()]);
-                if !input.position(value, branch, position) {
+                    (values.values()[row / branches.len()], branches[row % branches.len()]);
+                if value.is_nan() || !input.position(value, branch, position) {
                     return Ok([false; 2]);
                 }
                 joints.copy_from_slice(&position.joints);
@@ -255,7 +257,7 @@ impl Linkage {
                 Ok([true, position.within_limits])
             },
         )?;
-        Solutions::of_all_modes(py, Names::of_branches(&self.inner), values.len(), tables)
+        Solutions::of_all_modes(Names::of_branches(&self.inner), &values, tables)
     }
 
     /// The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
@@ -305,7 +307,7 @@ impl Linkage {
             joint.map_or("", |joint| &joint.coordinates[0].name)
         };
         let name = name.unwrap_or_else(actuated);
-        let known = || self.joints().join(", ");
+        let known = || self.joint_names().join(", ");
         let unknown = || wrong(format!("input is {name:?}, expected one of {}", known()));
         self.inner.input(name).ok_or_else(unknown)
     }

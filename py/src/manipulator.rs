@@ -1,11 +1,13 @@
 //! Manipulators: from files, their decomposition, and inverse kinematics of arrays of poses.
 
-use crate::arguments::{self, Array, mjcf_options};
+use crate::arguments::{self, mjcf_options};
 use crate::decomposition::Decomposition;
 use crate::error::{failed, wrong};
 use crate::explorer::{self, Explorer};
+use crate::given::{Columns, Given};
 use crate::html;
 use crate::pickle::pickled;
+use crate::place::placement;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::snap;
 use crate::solutions::{Names, Solutions};
@@ -326,7 +328,7 @@ impl Manipulator {
 
     /// Names of all joint coordinates: the columns of joint values.
     #[getter]
-    fn joints(&self) -> Vec<String> {
+    pub fn joint_names(&self) -> Vec<String> {
         self.inner.coordinates().iter().map(|c| c.name.clone()).collect()
     }
 
@@ -338,7 +340,7 @@ impl Manipulator {
 
     /// Names of the imaginary joints: the columns of their values.
     #[getter]
-    fn imaginary(&self) -> Vec<String> {
+    pub fn imaginary_names(&self) -> Vec<String> {
         self.inner.imaginary().iter().map(|joint| joint.name.clone()).collect()
     }
 
@@ -372,17 +374,24 @@ impl Manipulator {
         Decomposition::of(&self.inner)
     }
 
-    /// Inverse kinematics of many poses, in one working mode or in all of them.
+    /// Inverse kinematics of one pose or of many, in one working mode or in all of them.
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians. A float64 array in C order is used
-    ///     without a copy and must not be written to meanwhile; anything else is copied and converted first.
+    /// poses : (d,) or (n, d) array_like, or mapping, optional
+    ///     One row for each pose, one column for each task coordinate; metres and radians. One pose gives arrays without the
+    ///     first axis. A mapping or a data frame has numbers or columns by name, in any order; coordinates that are not among
+    ///     them are at home. A row with NaN or a masked entry is out of reach. A float64 array in C order is used without a
+    ///     copy and must not be written to meanwhile; anything else is copied and converted first.
+    /// transforms : (4, 4) or (n, 4, 4) array_like, optional
+    ///     Homogeneous matrices, metres, in place of poses: where the platform is to be, as :meth:`transform` gives it. What is
+    ///     outside the manipulator's motion is out of reach; :meth:`nearest` says by how much.
     /// mode : str
     ///     ``"home"``; or a sign for every two-valued choice, one group for each leg: ``"++ ++ ++ +"``; or ``"all"``, which
     ///     gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
     ///     of the ``m = 2**choices`` modes of `modes`.
+    /// joints : str
+    ///     Which joints the ``k`` columns are: ``"all"`` for every joint coordinate, or ``"actuated"``, which takes less memory.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
@@ -395,22 +404,45 @@ impl Manipulator {
     /// Raises
     /// ------
     /// OpmError
-    ///     The columns are not the task coordinates, a number is not finite (the message gives the index of its pose, counted
-    ///     from zero), or the mode is unknown.
-    #[pyo3(signature = (poses, *, mode = "home", threads = None))]
+    ///     The columns are not the task coordinates, a number is infinite (the message gives the index of its pose, counted
+    ///     from zero), a matrix is not a rotation and a position, or the mode is unknown.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import opm_kinematics as opm
+    /// >>> m = opm.examples.load("plano-spherical-5dof")
+    /// >>> one = m.inverse({"x": 0.01, "xi": 0.1})
+    /// >>> same = m.inverse(transforms=m.transform({"x": 0.01, "xi": 0.1}))
+    /// >>> bool(one.reachable), one["S1"].shape, bool(abs(one["S1"] - same["S1"]) < 1e-12)
+    /// (True, (), True)
+    #[pyo3(signature = (poses = None, *, transforms = None, mode = "home", joints = "all", threads = None))]
     fn inverse<'py>(
         &self,
         py: Python<'py>,
-        poses: &Bound<'py, PyAny>,
+        poses: Option<&Bound<'py, PyAny>>,
+        transforms: Option<&Bound<'py, PyAny>>,
         mode: &str,
+        joints: &str,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
-        let poses = self.poses(poses)?;
-        let poses = Rows::new(&poses)?;
-        if mode == "all" {
-            return self.inverse_all(py, &poses, threads);
+        let columns = self.columns(joints)?;
+        let mode = if mode == "all" { None } else { Some(self.mode(mode)?) };
+        let places =
+            transforms.map(|given| arguments::matrices(given, "transforms")).transpose()?;
+        let places = places.as_ref().map(Rows::new).transpose()?;
+        let given = match (poses, &places) {
+            (Some(poses), None) => self.poses(poses)?,
+            (None, Some(places)) => {
+                let poses = self.located_poses(py, places, mode, threads)?;
+                Given { array: poses.as_any().extract()?, one: places.one }
+            }
+            _ => return Err(wrong("expected poses or transforms, one of the two")),
+        };
+        let poses = Rows::new(&given)?;
+        match mode {
+            Some(mode) => Solutions::find(py, &self.inner, &poses, (mode, &columns), threads),
+            None => self.inverse_all(py, &poses, places.as_ref(), &columns, threads),
         }
-        Solutions::find(py, &self.inner, &poses, self.mode(mode)?, threads)
     }
 
     /// The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
@@ -526,11 +558,23 @@ impl Manipulator {
         Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: file.family })
     }
 
-    /// Every working mode of every pose: one row for each mode, with the rows of a pose together.
+    /// The columns of joints that an argument names.
+    pub fn columns(&self, joints: &str) -> PyResult<Vec<usize>> {
+        match joints {
+            "actuated" => Ok(self.inner.actuated().to_vec()),
+            "all" => Ok((0..self.inner.coordinates().len()).collect()),
+            other => Err(wrong(format!("joints is {other:?}, expected \"actuated\" or \"all\""))),
+        }
+    }
+
+    /// Every working mode of every pose: one row for each mode, with the rows of a pose together. If places are
+    /// given, only modes in which the platform is there.
     fn inverse_all(
         &self,
         py: Python<'_>,
         poses: &Rows<'_>,
+        places: Option<&Rows<'_>>,
+        columns: &[usize],
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
         let many = || {
@@ -542,7 +586,8 @@ impl Manipulator {
         let mut modes = Vec::new();
         modes.try_reserve_exact(count).map_err(|_| many())?;
         modes.extend(self.inner.modes());
-        let widths = [self.inner.coordinates().len(), self.inner.imaginary().len()];
+        let widths = [columns.len(), self.inner.imaginary().len()];
+        let places = places.filter(|_| !self.inner.dependent_coordinates().is_empty());
         let tables = Tables::fill(
             py,
             rows,
@@ -551,25 +596,57 @@ impl Manipulator {
             || (None, self.inner.all_modes(), self.inner.solution()),
             |(at, all, solution), row, [joints, imaginary]| {
                 let (pose, mode) = (row / modes.len(), modes[row % modes.len()]);
+                if poses.missing(pose) {
+                    return Ok([false; 2]);
+                }
                 if *at != Some(pose) {
                     let solved = self.inner.inverse_all(poses.row(pose), all);
-                    solved.map_err(|error| error.to_string())?;
+                    solved.map_err(|error| format!("pose {pose}: {error}"))?;
                     *at = Some(pose);
                 }
                 let Some(solution) = self.inner.solution_in_mode(all, mode, solution) else {
                     return Ok([false; 2]);
                 };
-                joints.copy_from_slice(solution.joints());
+                if let Some(places) = places {
+                    let place = placement(places, pose)?;
+                    if !self.inner.is_at(poses.row(pose), mode, &place) {
+                        return Ok([false; 2]);
+                    }
+                }
+                joints
+                    .iter_mut()
+                    .zip(columns)
+                    .for_each(|(out, &column)| *out = solution.joints()[column]);
                 imaginary.copy_from_slice(solution.imaginary());
                 Ok([true, solution.within_limits()])
             },
         )?;
-        Solutions::of_all_modes(py, Names::of(&self.inner, None), poses.count, tables)
+        Solutions::of_all_modes(Names::of(&self.inner, None, columns), poses, tables)
     }
 
-    /// An array of poses, checked.
-    pub fn poses<'py>(&self, given: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
-        arguments::rows(given, "poses", &self.pose_names())
+    /// Rows of poses; coordinates that are not among those given by name are at home.
+    pub fn poses<'py>(&self, given: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        self.poses_of(given, "poses")
+    }
+
+    /// The same of another argument.
+    pub fn poses_of<'py>(&self, given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
+        let home = self.inner.home_pose();
+        Columns { names: &self.pose_names(), otherwise: Some(&home) }.read(given, what)
+    }
+
+    /// One pose.
+    pub fn pose(&self, given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
+        let home = self.inner.home_pose();
+        arguments::row(given, what, Columns { names: &self.pose_names(), otherwise: Some(&home) })
+    }
+
+    /// Rows of values of the actuated joints.
+    pub fn inputs<'py>(&self, given: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        let coordinates = self.inner.coordinates();
+        let names: Vec<_> =
+            self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
+        Columns::all(&names).read(given, "joints")
     }
 
     /// The names of the task coordinates.

@@ -2,11 +2,12 @@
 
 use crate::arguments;
 use crate::manipulator::Manipulator;
-use crate::pickle::{frozen, pickled};
+use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
-use numpy::{PyArray2, PyArray3, PyArrayMethods};
-use opm_core::manipulator::{OutsideMotion, PoseError};
+use numpy::ndarray::ArrayViewD;
+use numpy::{PyArray2, PyArrayDyn, PyArrayMethods};
+use opm_core::manipulator::{Mode, OutsideMotion, PoseError};
 use opm_core::numeric::rotation;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -15,13 +16,13 @@ use std::num::NonZeroUsize;
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Nearest {
     /// (n, d): task coordinates, metres and radians.
-    poses: Py<PyArray2<f64>>,
+    poses: Py<PyArrayDyn<f64>>,
     /// (n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero
     /// where the displacement is in the motion.
-    rotation: Py<PyArray2<f64>>,
+    rotation: Py<PyArrayDyn<f64>>,
     /// (n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero
     /// where the displacement is in the motion.
-    translation: Py<PyArray2<f64>>,
+    translation: Py<PyArrayDyn<f64>>,
 }
 
 pickled!(Nearest { poses, rotation, translation });
@@ -31,9 +32,11 @@ impl Nearest {
     fn __repr__(&self, py: Python<'_>) -> String {
         let [turns, ways] = [&self.rotation, &self.translation].map(|of| of.bind(py).readonly());
         let (turns, ways) = (turns.as_array(), ways.as_array());
-        let rows = turns.rows().into_iter().zip(ways.rows());
-        let off = rows.filter(|(turn, way)| turn.iter().chain(way).any(|&part| part != 0.0));
-        let (all, off) = (turns.nrows(), off.count());
+        let threes = |of: &ArrayViewD<'_, f64>| of.iter().copied().collect::<Vec<_>>();
+        let (turns, ways) = (threes(&turns), threes(&ways));
+        let rows = turns.chunks_exact(3).zip(ways.chunks_exact(3));
+        let off = rows.filter(|(turn, way)| turn.iter().chain(*way).any(|&part| part != 0.0));
+        let (all, off) = (turns.len() / 3, off.count());
         format!("<Nearest poses to {all} displacements: {off} outside the motion>")
     }
 }
@@ -44,8 +47,8 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
     /// mode : str
     ///     The working mode, or ``"home"``: dependent coordinates depend on it.
     /// threads : int, optional
@@ -63,11 +66,14 @@ impl Manipulator {
         poses: &Bound<'py, PyAny>,
         mode: &str,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let poses = self.poses(poses)?;
         let poses = Rows::new(&poses)?;
         let (mode, none) = (self.mode(mode)?, || ());
         let tables = Tables::fill(py, poses.count, [16], threads, none, |(), row, [out]| {
+            if poses.missing(row) {
+                return Ok([false; 2]);
+            }
             match self.inner.displacement_in(poses.row(row), mode) {
                 Ok(displacement) => {
                     let place = self.inner.platform_at(&displacement).to_homogeneous();
@@ -78,15 +84,15 @@ impl Manipulator {
             }
             Ok([true; 2])
         })?;
-        tables.table(0).reshape([poses.count, 4, 4])
+        poses.shaped(&tables.table(0), &[4, 4])
     }
 
     /// The dependent coordinates of each pose.
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
     /// mode : str
     ///     The working mode, or ``"home"``.
     /// threads : int, optional
@@ -103,26 +109,29 @@ impl Manipulator {
         poses: &Bound<'py, PyAny>,
         mode: &str,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let poses = self.poses(poses)?;
         let poses = Rows::new(&poses)?;
         let (mode, none) = (self.mode(mode)?, || ());
-        let widths = [self.inner.dependent_coordinates().len()];
-        let tables = Tables::fill(py, poses.count, widths, threads, none, |(), row, [out]| {
+        let width = self.inner.dependent_coordinates().len();
+        let tables = Tables::fill(py, poses.count, [width], threads, none, |(), row, [out]| {
+            if poses.missing(row) {
+                return Ok([false; 2]);
+            }
             let found = self.inner.dependent_values(poses.row(row), mode);
             if let Some(found) = found.map_err(|error| format!("pose {row}: {error}"))? {
                 out.copy_from_slice(&found);
             }
             Ok([true; 2])
         })?;
-        Ok(tables.table(0))
+        poses.shaped(&tables.table(0), &[width])
     }
 
     /// The poses at which the platform has the given displacements: the inverse of :meth:`transform`.
     ///
     /// Parameters
     /// ----------
-    /// transforms : (n, 4, 4) array_like
+    /// transforms : (4, 4) or (n, 4, 4) array_like
     ///     Homogeneous matrices, metres.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
@@ -143,21 +152,19 @@ impl Manipulator {
         py: Python<'py>,
         transforms: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let widths = [self.pose_names().len()];
-        let located = self.located(py, transforms, threads, widths, |found, [out]| {
-            if let Ok(pose) = found {
-                out.copy_from_slice(&pose);
-            }
-        });
-        Ok(located?.table(0))
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let transforms = arguments::matrices(transforms, "transforms")?;
+        let transforms = Rows::new(&transforms)?;
+        let width = self.pose_names().len();
+        let poses = self.located_poses(py, &transforms, None, threads)?;
+        transforms.shaped(&poses, &[width])
     }
 
     /// The poses nearest to the given displacements, and the differences that remain where :meth:`locate` has no pose.
     ///
     /// Parameters
     /// ----------
-    /// transforms : (n, 4, 4) array_like
+    /// transforms : (4, 4) or (n, 4, 4) array_like
     ///     Homogeneous matrices, metres.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
@@ -178,10 +185,12 @@ impl Manipulator {
         transforms: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Nearest> {
+        let transforms = arguments::matrices(transforms, "transforms")?;
+        let transforms = Rows::new(&transforms)?;
         let widths = [self.pose_names().len(), 3, 3];
-        let located = self.located(py, transforms, threads, widths, |found, [pose, turn, way]| {
+        let located = self.located(py, &transforms, threads, widths, |place, [pose, turn, way]| {
             let zero = Vector3::zeros();
-            let (nearest, rotation, translation) = match found {
+            let (nearest, rotation, translation) = match self.inner.locate_platform(place) {
                 Ok(pose) => (pose, zero, zero),
                 Err(OutsideMotion { nearest, rotation, translation }) => {
                     (nearest, rotation, translation)
@@ -193,33 +202,57 @@ impl Manipulator {
         });
         let located = located?;
         Ok(Nearest {
-            poses: frozen(located.table(0))?,
-            rotation: frozen(located.table(1))?,
-            translation: frozen(located.table(2))?,
+            poses: transforms.frozen(&located.table(0), &widths[..1])?,
+            rotation: transforms.frozen(&located.table(1), &[3])?,
+            translation: transforms.frozen(&located.table(2), &[3])?,
         })
     }
 }
 
 impl Manipulator {
-    /// Tables that `fill` writes, from the position of each displacement in the manipulator's motion or beside it.
+    /// The poses of displacements; NaN where they are outside the manipulator's motion, or outside that of a mode.
+    pub fn located_poses<'py>(
+        &self,
+        py: Python<'py>,
+        transforms: &Rows<'_>,
+        mode: Option<Mode>,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let widths = [self.pose_names().len()];
+        // Without dependent coordinates, the platform is at the same place in every mode.
+        let mode = mode.filter(|_| !self.inner.dependent_coordinates().is_empty());
+        let located = self.located(py, transforms, threads, widths, |place, [out]| {
+            let Ok(pose) = self.inner.locate_platform(place) else { return };
+            if mode.is_none_or(|mode| self.inner.is_at(&pose, mode, place)) {
+                out.copy_from_slice(&pose);
+            }
+        });
+        Ok(located?.table(0))
+    }
+
+    /// Tables that `fill` writes, from each displacement.
     fn located<'py, const N: usize>(
         &self,
         py: Python<'py>,
-        transforms: &Bound<'py, PyAny>,
+        transforms: &Rows<'_>,
         threads: Option<NonZeroUsize>,
         widths: [usize; N],
-        fill: impl Fn(Result<Vec<f64>, OutsideMotion>, [&mut [f64]; N]) + Sync,
+        fill: impl Fn(&Isometry3<f64>, [&mut [f64]; N]) + Sync,
     ) -> PyResult<Tables<'py, N>> {
-        let transforms = arguments::matrices(transforms, "transforms")?;
-        let transforms = Rows::new(&transforms)?;
         let none = || ();
         Tables::fill(py, transforms.count, widths, threads, none, |(), row, out| {
-            let place = isometry(transforms.row(row))
-                .map_err(|why| format!("transforms[{row}] is not a displacement: {why}"))?;
-            fill(self.inner.locate_platform(&place), out);
+            if !transforms.missing(row) {
+                fill(&placement(transforms, row)?, out);
+            }
             Ok([true; 2])
         })
     }
+}
+
+/// The displacement in this row.
+pub fn placement(transforms: &Rows<'_>, row: usize) -> Result<Isometry3<f64>, String> {
+    isometry(transforms.row(row))
+        .map_err(|why| format!("transforms[{row}] is not a displacement: {why}"))
 }
 
 /// The displacement of a matrix that is given row by row, or what is wrong with it.

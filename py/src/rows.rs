@@ -1,9 +1,10 @@
 //! Work on every row of an array, on many threads, into tables of numbers.
 
-use crate::arguments::Array;
 use crate::error::wrong;
+use crate::given::Given;
 use crate::interrupt;
-use numpy::{PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use crate::pickle::frozen;
+use numpy::{Element, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -19,12 +20,15 @@ pub struct Rows<'a> {
     values: Cow<'a, [f64]>,
     pub count: usize,
     width: usize,
+    /// Whether it is one row that was given without an axis of rows: results have none, either.
+    pub one: bool,
 }
 
 impl<'a> Rows<'a> {
     /// An array of float64 in C order is used without a copy. The interpreter's lock is released while rows
     /// are worked on. Other threads must not write to the array then, as with functions of NumPy.
-    pub fn new(array: &'a Array<'_>) -> PyResult<Self> {
+    pub fn new(given: &'a Given<'_>) -> PyResult<Self> {
+        let array = &given.array;
         let [count, width] = [array.shape()[0], array.shape()[1]];
         let values = match array.as_slice() {
             Ok(values) if array.is_c_contiguous() => Cow::Borrowed(values),
@@ -38,7 +42,7 @@ impl<'a> Rows<'a> {
                 Cow::Owned(values)
             }
         };
-        Ok(Self { values, count, width })
+        Ok(Self { values, count, width, one: given.one })
     }
 
     /// The values of all rows, one row after the other.
@@ -48,6 +52,32 @@ impl<'a> Rows<'a> {
 
     pub fn row(&self, number: usize) -> &[f64] {
         &self.values[number * self.width..][..self.width]
+    }
+
+    /// Whether a row has an entry that is not a number. What is asked of such a row has no answer: NaN.
+    pub fn missing(&self, number: usize) -> bool {
+        self.row(number).iter().any(|value| value.is_nan())
+    }
+
+    /// A table with a row for each of these rows, as an array of rows of this shape; without the axis of rows
+    /// if the row was given without it.
+    pub fn shaped<'py, T: Element>(
+        &self,
+        table: &Bound<'py, PyAny>,
+        row: &[usize],
+    ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+        let count = [self.count];
+        let rows = if self.one { &[][..] } else { &count[..] };
+        Ok(table.call_method1("reshape", ([rows, row].concat(),))?.cast_into()?)
+    }
+
+    /// The same, read-only.
+    pub fn frozen<T: Element>(
+        &self,
+        table: &Bound<'_, PyAny>,
+        row: &[usize],
+    ) -> PyResult<Py<PyArrayDyn<T>>> {
+        frozen(self.shaped(table, row)?)
     }
 }
 

@@ -1,6 +1,5 @@
 //! The solids with which a mechanism is drawn in a pose.
 
-use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
@@ -63,7 +62,7 @@ impl Manipulator {
         let manipulator = &self.inner;
         let mode = self.mode(mode)?;
         let pose = match pose {
-            Some(given) => arguments::row(given, "pose", &self.pose_names())?,
+            Some(given) => self.pose(given, "pose")?,
             None => manipulator.home_pose(),
         };
         let mut solution = manipulator.solution();

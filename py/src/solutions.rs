@@ -48,17 +48,17 @@ pub struct Solutions {
 }
 
 impl Solutions {
-    /// Inverse kinematics of every pose in one mode, straight into arrays of NumPy. The result does not
-    /// depend on the number of threads.
+    /// Inverse kinematics of every pose in one mode, straight into arrays of NumPy, with these columns of joints. The
+    /// result does not depend on the number of threads.
     pub fn find(
         py: Python<'_>,
         manipulator: &Manipulator,
         poses: &Rows<'_>,
-        mode: Mode,
+        (mode, columns): (Mode, &[usize]),
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
-        let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
+        let widths = [columns.len(), manipulator.imaginary().len()];
         // NumPy allocates these, and raises an exception if there is no memory.
         let table = |width| -> PyResult<Bound<'_, PyArrayDyn<f64>>> {
             Ok(numpy.call_method1("empty", ((poses.count, width),))?.cast_into()?)
@@ -78,26 +78,29 @@ impl Solutions {
                 within_limits: within_limits.readwrite().as_slice_mut()?,
             },
         }
-        .solve(py, manipulator, mode, threads)?;
-        let tables = [joints, imaginary];
-        let names = Names::of(manipulator, Some(mode));
-        Self::new(names, poses.count, tables, [reachable, within_limits])
+        .solve(py, manipulator, (mode, columns), threads)?;
+        let tables =
+            [poses.shaped(&joints, &widths[..1])?, poses.shaped(&imaginary, &widths[1..])?];
+        let answers = [poses.shaped(&reachable, &[])?, poses.shaped(&within_limits, &[])?];
+        Self::new(Names::of(manipulator, Some(mode), columns), poses.count, tables, answers)
     }
 
-    /// Makes solutions from tables with one row for each mode of each pose, the modes of a pose together.
+    /// Makes solutions from tables with one row for each mode of each of these rows, the modes of a row together.
     pub fn of_all_modes(
-        py: Python<'_>,
         names: Names,
-        rows: usize,
-        tables: Tables<'_, 2>,
+        rows: &Rows<'_>,
+        mut tables: Tables<'_, 2>,
     ) -> PyResult<Self> {
         let modes = names.modes.len();
-        let widths = [names.joints.len(), names.imaginary.len()];
-        let [joints, imaginary] = widths.map(|width| vec![rows, modes, width]);
-        let numbers = [tables.table(0).reshape(joints)?, tables.table(1).reshape(imaginary)?];
-        let [reachable, within_limits] =
-            tables.answers.map(|answers| answers.into_pyarray(py).reshape(vec![rows, modes]));
-        Self::new(names, rows, numbers, [reachable?, within_limits?])
+        let [joints, imaginary] = [names.joints.len(), names.imaginary.len()];
+        let numbers = [
+            rows.shaped(&tables.table(0), &[modes, joints])?,
+            rows.shaped(&tables.table(1), &[modes, imaginary])?,
+        ];
+        let py = numbers[0].py();
+        let [reachable, within_limits] = std::mem::take(&mut tables.answers)
+            .map(|answers| rows.shaped(&answers.into_pyarray(py), &[modes]));
+        Self::new(names, rows.count, numbers, [reachable?, within_limits?])
     }
 
     /// The arrays and the names along their axes.
@@ -133,11 +136,12 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names and units of a manipulator's joints in one mode, or in all.
-    pub fn of(manipulator: &Manipulator, mode: Option<Mode>) -> Self {
+    /// The names and units of these columns of a manipulator's joints in one mode, or in all.
+    pub fn of(manipulator: &Manipulator, mode: Option<Mode>, columns: &[usize]) -> Self {
         let format = |mode| manipulator.format_mode(mode);
+        let coordinates = manipulator.coordinates();
         Self {
-            joints: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
+            joints: columns.iter().map(|&column| coordinates[column].name.clone()).collect(),
             imaginary: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
             units: units(manipulator),
             mode: mode.map_or_else(|| "all".to_owned(), format),
@@ -163,6 +167,23 @@ impl Names {
     }
 }
 
+/// The working memory of a thread.
+struct Scratch {
+    batch: Batch,
+    home: Vec<f64>,
+    /// Poses without NaN.
+    patched: Vec<f64>,
+    /// Every joint, of which some columns are wanted.
+    joints: Vec<f64>,
+}
+
+impl Scratch {
+    fn new(manipulator: &Manipulator) -> Self {
+        let (batch, home) = (manipulator.batch(), manipulator.home_pose());
+        Self { batch, home, patched: Vec::new(), joints: Vec::new() }
+    }
+}
+
 /// Some of the poses, and the memory for their results.
 struct Part<'a> {
     /// Index of the first pose.
@@ -176,27 +197,29 @@ impl Part<'_> {
         self,
         py: Python<'_>,
         manipulator: &Manipulator,
-        mode: Mode,
+        (mode, columns): (Mode, &[usize]),
         threads: Option<NonZeroUsize>,
     ) -> PyResult<()> {
         let stop = AtomicBool::new(false);
-        let work = |batch: &mut Batch, Part { first, poses, mut out }: Part<'_>| {
+        let work = |scratch: &mut Scratch, part: Part<'_>| {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let solved = manipulator.inverse_many(poses, mode, batch, &mut out);
+            let first = part.first;
+            let solved = part.solve_here(manipulator, (mode, columns), scratch);
             solved.err().map(|error| match error {
                 BatchError::Pose { row, error } => BatchError::Pose { row: first + row, error },
                 other => other,
             })
         };
+        let scratch = || Scratch::new(manipulator);
         // If several poses are wrong, the message is about the first.
         let wrong = if self.out.reachable.len() <= PART {
-            work(&mut manipulator.batch(), self)
+            work(&mut scratch(), self)
         } else {
-            let parts = self.parts(manipulator);
+            let parts = self.parts(manipulator, columns.len());
             let all = || {
-                let parts = parts.into_par_iter().map_init(|| manipulator.batch(), work);
+                let parts = parts.into_par_iter().map_init(scratch, work);
                 parts.flatten().min_by_key(|error| match error {
                     BatchError::Pose { row, .. } => *row,
                     _ => 0,
@@ -207,12 +230,51 @@ impl Part<'_> {
         wrong.map_or(Ok(()), |error| Err(failed(&error)))
     }
 
-    fn parts(self, manipulator: &Manipulator) -> Vec<Self> {
-        let [width, joints, imaginary] = [
-            manipulator.task_coordinates().len(),
-            manipulator.coordinates().len(),
-            manipulator.imaginary().len(),
-        ];
+    /// Solves these poses. Rows with NaN are solved at home, and then marked as out of reach.
+    fn solve_here(
+        self,
+        manipulator: &Manipulator,
+        (mode, columns): (Mode, &[usize]),
+        scratch: &mut Scratch,
+    ) -> Result<(), BatchError> {
+        let Part { poses, mut out, .. } = self;
+        let Scratch { batch, home, patched, joints } = scratch;
+        let (width, all) = (home.len(), manipulator.coordinates().len());
+        let missing = |pose: &[f64]| pose.iter().any(|value| value.is_nan());
+        let whole = !missing(poses);
+        if !whole {
+            patched.clear();
+            for pose in poses.chunks_exact(width) {
+                patched.extend_from_slice(if missing(pose) { home } else { pose });
+            }
+        }
+        let solved = if whole { poses } else { patched };
+        if columns.len() == all {
+            manipulator.inverse_many(solved, mode, batch, &mut out)?;
+        } else {
+            joints.resize(all * out.reachable.len(), f64::NAN);
+            let BatchOutput { joints: some, imaginary, reachable, within_limits } = &mut out;
+            let mut every = BatchOutput { joints, imaginary, reachable, within_limits };
+            manipulator.inverse_many(solved, mode, batch, &mut every)?;
+            let rows = some.chunks_exact_mut(columns.len()).zip(every.joints.chunks_exact(all));
+            for (some, every) in rows {
+                some.iter_mut().zip(columns).for_each(|(to, &column)| *to = every[column]);
+            }
+        }
+        if !whole {
+            let imaginary = manipulator.imaginary().len();
+            for (row, _) in poses.chunks_exact(width).enumerate().filter(|(_, p)| missing(p)) {
+                out.joints[row * columns.len()..][..columns.len()].fill(f64::NAN);
+                out.imaginary[row * imaginary..][..imaginary].fill(f64::NAN);
+                (out.reachable[row], out.within_limits[row]) = (false, false);
+            }
+        }
+        Ok(())
+    }
+
+    fn parts(self, manipulator: &Manipulator, joints: usize) -> Vec<Self> {
+        let [width, imaginary] =
+            [manipulator.task_coordinates().len(), manipulator.imaginary().len()];
         let Self { mut first, poses, mut out } = self;
         let mut parts = Vec::with_capacity(out.reachable.len().div_ceil(PART));
         for poses in poses.chunks(PART * width) {

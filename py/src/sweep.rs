@@ -19,6 +19,7 @@ pub use query::modes;
 pub use questions::{Inscribed, Rejection};
 
 use crate::arguments;
+use crate::columns::table;
 use crate::error::request;
 use crate::html;
 use crate::manipulator::Manipulator;
@@ -92,9 +93,9 @@ pub struct Sweep {
 ///     How many parts the executor gets: 8 for each worker if not given, 64 if it does not say how many it has; fewer for
 ///     small grids.
 /// **axes
-///     For each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. A coordinate
-///     that is not given stays at home. If none is given, the grid is fitted to the workspace, with a warning if the
-///     workspace continues beyond it.
+///     For each coordinate one value, or ``(min, max, count)`` with both ends on the grid, or a list or an array of evenly
+///     spaced values, such as ``numpy.linspace`` gives; metres and radians. A coordinate that is not given stays at home. If
+///     none is given, the grid is fitted to the workspace, with a warning if the workspace continues beyond it.
 ///
 /// Raises
 /// ------
@@ -257,6 +258,16 @@ impl Sweep {
         self.of.get() == other.of.get()
             && self.mode == other.mode
             && self.workspace.has_request_of(&other.workspace)
+    }
+
+    /// The points as a table of pandas, with a column for each coordinate.
+    fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        table(slf.as_any(), "sweep_to_pandas")
+    }
+
+    /// The mask as an array of xarray, with the values of each coordinate along its axes.
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        table(slf.as_any(), "sweep_to_xarray")
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

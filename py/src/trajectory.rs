@@ -277,7 +277,7 @@ fn through(
     times: Option<&[f64]>,
     ends: Ends,
 ) -> PyResult<Read> {
-    let poses = arguments::rows(poses, "motion", &manipulator.pose_names())?;
+    let poses = manipulator.poses_of(poses, "motion")?;
     let poses = Rows::new(&poses)?;
     let seconds: Vec<f64> = (0..poses.count).map(|row| row as f64).collect();
     let times = times.unwrap_or(&seconds);
@@ -772,6 +772,13 @@ impl Trajectory {
         };
         interrupt::run(py, NonZeroUsize::new(1), work, || stop.store(true, Ordering::Relaxed))?
             .map_err(study)
+    }
+
+    /// Names of the columns of `poses`.
+    #[getter]
+    fn pose_names(&self) -> Vec<String> {
+        let manipulator = self.source.manipulator.get();
+        manipulator.pose_names().into_iter().map(str::to_owned).collect()
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

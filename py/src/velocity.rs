@@ -2,11 +2,12 @@
 
 use crate::arguments;
 use crate::error::{request, wrong};
+use crate::given::Columns;
 use crate::html;
 use crate::manipulator::Manipulator;
-use crate::pickle::{frozen, pickled};
+use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use numpy::{IntoPyArray, PyArrayDyn};
 use opm_core::manipulator::{self as core, Mode, Solution};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -15,17 +16,17 @@ use std::num::NonZeroUsize;
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Motion {
     /// (n, k), rad/s and m/s.
-    joint_rates: Py<PyArray2<f64>>,
+    joint_rates: Py<PyArrayDyn<f64>>,
     /// (n, k), rad/s² and m/s².
-    joint_accelerations: Py<PyArray2<f64>>,
+    joint_accelerations: Py<PyArrayDyn<f64>>,
     /// (n, j), rad/s and m/s.
-    imaginary_rates: Py<PyArray2<f64>>,
+    imaginary_rates: Py<PyArrayDyn<f64>>,
     /// (n, j), rad/s² and m/s².
-    imaginary_accelerations: Py<PyArray2<f64>>,
+    imaginary_accelerations: Py<PyArrayDyn<f64>>,
     /// (n,): whether the pose is in reach, joint limits not considered.
-    reachable: Py<PyArray1<bool>>,
+    reachable: Py<PyArrayDyn<bool>>,
     /// (n,): whether the pose is in reach and every joint has a rate.
-    regular: Py<PyArray1<bool>>,
+    regular: Py<PyArrayDyn<bool>>,
 }
 
 /// How near many poses are to a singularity: signed measures without unit, (n,) each, that vanish at a singularity.
@@ -34,27 +35,27 @@ pub struct Motion {
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Singularity {
     /// (n,), no unit: a measure of the upper section that is zero where the chain of a leg is singular.
-    upper_serial: Py<PyArray1<f64>>,
+    upper_serial: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: a measure of the upper section that is zero where its inputs do not hold it.
-    upper_parallel: Py<PyArray1<f64>>,
+    upper_parallel: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: a measure of the lower section that is zero where the chain of a leg is singular.
-    lower_serial: Py<PyArray1<f64>>,
+    lower_serial: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: a measure of the lower section that is zero where its inputs do not hold it.
-    lower_parallel: Py<PyArray1<f64>>,
+    lower_parallel: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: the measure of this kind for the whole mechanism.
-    serial: Py<PyArray1<f64>>,
+    serial: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: the measure of this kind for the whole mechanism.
-    parallel: Py<PyArray1<f64>>,
+    parallel: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist;
     /// infinite at a singularity.
-    condition: Py<PyArray1<f64>>,
+    condition: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
     /// characteristic length.
-    manipulability: Py<PyArray1<f64>>,
+    manipulability: Py<PyArrayDyn<f64>>,
     /// (n,), no unit: zero where the coordinates of the pose are singular; this is not a singularity of the mechanism.
-    coordinates: Py<PyArray1<f64>>,
+    coordinates: Py<PyArrayDyn<f64>>,
     /// (n,): whether the pose is in reach, joint limits not considered.
-    reachable: Py<PyArray1<bool>>,
+    reachable: Py<PyArrayDyn<bool>>,
 }
 
 pickled!(Motion {
@@ -101,13 +102,13 @@ impl Singularity {
 /// The number of poses, and the number of poses for which each flag is true.
 fn counted<const N: usize>(
     py: Python<'_>,
-    answers: [&Py<PyArray1<bool>>; N],
+    answers: [&Py<PyArrayDyn<bool>>; N],
 ) -> PyResult<(usize, [usize; N])> {
     let mut counts = [0; N];
     for (count, answers) in counts.iter_mut().zip(answers) {
         *count = answers.bind(py).call_method0("sum")?.extract()?;
     }
-    Ok((answers[0].bind(py).len()?, counts))
+    Ok((answers[0].bind(py).getattr("size")?.extract()?, counts))
 }
 
 #[pymethods]
@@ -116,8 +117,8 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// joints : str
@@ -137,18 +138,10 @@ impl Manipulator {
         mode: &str,
         joints: &str,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
         let poses = Rows::new(&poses)?;
-        let rows: Vec<usize> = match joints {
-            "actuated" => self.inner.actuated().to_vec(),
-            "all" => (0..self.inner.coordinates().len()).collect(),
-            other => {
-                return Err(wrong(format!(
-                    "joints is {other:?}, expected \"actuated\" or \"all\""
-                )));
-            }
-        };
+        let rows = self.columns(joints)?;
         let columns = self.inner.task_coordinates().len();
         let tables = Tables::fill(
             py,
@@ -157,7 +150,7 @@ impl Manipulator {
             threads,
             || (self.inner.solution(), self.inner.jacobians()),
             |(at, jacobians), row, [out]| {
-                if !self.solve(poses.row(row), mode, at)? {
+                if !self.solve(&poses, row, mode, at)? {
                     return Ok([false; 2]);
                 }
                 let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
@@ -176,15 +169,15 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        tables.table(0).reshape([poses.count, rows.len(), columns])
+        poses.shaped(&tables.table(0), &[rows.len(), columns])
     }
 
     /// The platform's twist for unit rates of the task coordinates.
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// threads : int, optional
@@ -202,7 +195,7 @@ impl Manipulator {
         poses: &Bound<'py, PyAny>,
         mode: &str,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
         let poses = Rows::new(&poses)?;
         let columns = self.inner.task_coordinates().len();
@@ -213,7 +206,7 @@ impl Manipulator {
             threads,
             || (self.inner.solution(), self.inner.jacobians()),
             |(at, jacobians), row, [out]| {
-                if !self.solve(poses.row(row), mode, at)? {
+                if !self.solve(&poses, row, mode, at)? {
                     return Ok([false; 2]);
                 }
                 let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
@@ -222,18 +215,19 @@ impl Manipulator {
                 Ok([true, regular])
             },
         )?;
-        tables.table(0).reshape([poses.count, 6, columns])
+        poses.shaped(&tables.table(0), &[6, columns])
     }
 
     /// Rates and accelerations of every joint.
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
-    /// rates : (n, d) or (1, d) array_like
-    ///     First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
-    /// accelerations : (n, d) or (1, d) array_like, optional
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
+    /// rates : (d,) or (n, d) array_like, or mapping
+    ///     First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses. By name, those that are
+    ///     not given are zero.
+    /// accelerations : (d,) or (n, d) array_like, or mapping, optional
     ///     Second derivatives, m/s² and rad/s²; zero if not given.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
@@ -256,6 +250,8 @@ impl Manipulator {
     ) -> PyResult<Motion> {
         let mode = self.mode(mode)?;
         let names = self.pose_names();
+        let none = vec![0.0; names.len()];
+        let columns = Columns { names: &names, otherwise: Some(&none) };
         let poses = self.poses(poses)?;
         let poses = Rows::new(&poses)?;
         let per_pose = |rows: &Rows<'_>, what: &str| {
@@ -266,15 +262,13 @@ impl Manipulator {
             }
             Ok(())
         };
-        let rates = arguments::rows(rates, "rates", &names)?;
+        let rates = columns.read(rates, "rates")?;
         let rates = Rows::new(&rates)?;
         per_pose(&rates, "rates")?;
-        let accelerations = accelerations
-            .map(|given| arguments::rows(given, "accelerations", &names))
-            .transpose()?;
+        let accelerations =
+            accelerations.map(|given| columns.read(given, "accelerations")).transpose()?;
         let accelerations = accelerations.as_ref().map(Rows::new).transpose()?;
         accelerations.iter().try_for_each(|rows| per_pose(rows, "accelerations"))?;
-        let none = vec![0.0; names.len()];
         let (joints, imaginary) = (self.inner.coordinates().len(), self.inner.imaginary().len());
         let mut tables = Tables::fill(
             py,
@@ -283,7 +277,7 @@ impl Manipulator {
             threads,
             || (self.inner.solution(), self.inner.joint_motion()),
             |(at, motion), row, out| {
-                if !self.solve(poses.row(row), mode, at)? {
+                if !self.solve(&poses, row, mode, at)? {
                     return Ok([false; 2]);
                 }
                 let of = |rows: &Rows<'_>| row.min(rows.count - 1);
@@ -318,12 +312,12 @@ impl Manipulator {
         let [reachable, regular] =
             std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
         Ok(Motion {
-            joint_rates: frozen(tables.table(0))?,
-            joint_accelerations: frozen(tables.table(1))?,
-            imaginary_rates: frozen(tables.table(2))?,
-            imaginary_accelerations: frozen(tables.table(3))?,
-            reachable: frozen(reachable)?,
-            regular: frozen(regular)?,
+            joint_rates: poses.frozen(&tables.table(0), &[joints])?,
+            joint_accelerations: poses.frozen(&tables.table(1), &[joints])?,
+            imaginary_rates: poses.frozen(&tables.table(2), &[imaginary])?,
+            imaginary_accelerations: poses.frozen(&tables.table(3), &[imaginary])?,
+            reachable: poses.frozen(&reachable, &[])?,
+            regular: poses.frozen(&regular, &[])?,
         })
     }
 
@@ -331,8 +325,8 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
-    ///     One row for each pose, one column for each task coordinate; metres and radians.
+    /// poses : (d,) or (n, d) array_like, or mapping
+    ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// length : float, optional
@@ -363,7 +357,7 @@ impl Manipulator {
             threads,
             || (self.inner.solution(), self.inner.jacobians(), self.inner.singularities()),
             |(at, jacobians, measured), row, out| {
-                if !self.solve(poses.row(row), mode, at)? {
+                if !self.solve(&poses, row, mode, at)? {
                     return Ok([false; 2]);
                 }
                 let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
@@ -389,7 +383,7 @@ impl Manipulator {
         )?;
         let [reachable, _] =
             std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
-        let take = |number: usize| frozen(tables.table(number).reshape([poses.count])?);
+        let take = |number: usize| poses.frozen(&tables.table(number), &[]);
         Ok(Singularity {
             upper_serial: take(0)?,
             upper_parallel: take(1)?,
@@ -400,7 +394,7 @@ impl Manipulator {
             condition: take(6)?,
             manipulability: take(7)?,
             coordinates: take(8)?,
-            reachable: frozen(reachable)?,
+            reachable: poses.frozen(&reachable, &[])?,
         })
     }
 }
@@ -411,8 +405,18 @@ pub fn characteristic_length(inner: &core::Manipulator, given: Option<f64>) -> P
 }
 
 impl Manipulator {
-    fn solve(&self, pose: &[f64], mode: Mode, at: &mut Solution) -> Result<bool, String> {
-        let found = self.inner.inverse(pose, mode, at).map_err(|error| error.to_string())?;
-        Ok(found.is_some())
+    /// Solves the pose of one row; `false` where it is out of reach.
+    pub fn solve(
+        &self,
+        poses: &Rows<'_>,
+        row: usize,
+        mode: Mode,
+        at: &mut Solution,
+    ) -> Result<bool, String> {
+        if poses.missing(row) {
+            return Ok(false);
+        }
+        let found = self.inner.inverse(poses.row(row), mode, at);
+        Ok(found.map_err(|error| format!("pose {row}: {error}"))?.is_some())
     }
 }

@@ -60,7 +60,7 @@ def limited(name, effort):
     """A mechanism whose actuated joints have largest efforts, and these."""
     text = opm.examples.load(name).to_joints()
     m = opm.Manipulator.parse(text)
-    changes = {f"{m.joints[i]}.max_effort": effort + 0.1 * k for k, i in enumerate(m.actuated)}
+    changes = {f"{m.joint_names[i]}.max_effort": effort + 0.1 * k for k, i in enumerate(m.actuated)}
     return m.with_parameters(changes), np.array(list(changes.values()))
 
 

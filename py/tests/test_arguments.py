@@ -9,7 +9,7 @@ import numpy as np
 import opm_kinematics as opm
 import pytest
 
-POSES = "expected (n, 5): x, y, zeta, xi, psi"
+POSES = "expected (5,) or (n, 5): x, y, zeta, xi, psi"
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def test_threads_are_as_many_as_the_program_allows(manipulator, threads):
 @pytest.mark.parametrize(
     ("poses", "given"),
     [
-        (np.zeros(5), "has shape (5,)"),
+        (np.zeros(4), "has shape (4,)"),
         ([], "has shape (0,)"),
         (np.zeros((2, 3)), "has shape (2, 3)"),
         (np.zeros((1, 2, 5)), "has shape (1, 2, 5)"),

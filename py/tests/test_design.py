@@ -102,7 +102,7 @@ def test_both_ways_to_design_improve_on_chance(manipulator):
     asked = {"places": PLACES, "orientations": ORIENTATIONS}
     split = design.sections(manipulator, upper, lower, budget=120, seed=1, **asked)
     whole = design.undivided(manipulator, upper | lower, budget=120, seed=1, **asked)
-    assert split.evaluations == whole.evaluations == 120 and set(split.imaginary_range) == set(manipulator.imaginary)
+    assert split.evaluations == whole.evaluations == 120 and set(split.imaginary_range) == set(manipulator.imaginary_names)
     for found in (split, whole):
         # Dexterous: every orientation, by one call of inverse kinematics a pose.
         grid = np.stack(np.meshgrid(*(np.linspace(*axis) for axis in (*PLACES.values(), *ORIENTATIONS.values())), indexing="ij"))

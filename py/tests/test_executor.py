@@ -546,7 +546,7 @@ def test_measures_ask_executors_for_large_rounds(manipulator, measured):
 
 
 def test_measures_of_every_section_and_mode_on_executors(manipulator):
-    theta = {name: (-0.5, 0.5) for name in manipulator.imaginary}
+    theta = {name: (-0.5, 0.5) for name in manipulator.imaginary_names}
     for options in [
         {"section": "upper"},
         {"section": "lower", "over": {"x": (-0.2, 0.2), "y": (-0.2, 0.2), **theta}},

@@ -26,7 +26,7 @@ def test_a_model_is_that_of_the_command(mechanism):
     model = ElementTree.fromstring(mechanism.to_mjcf())
     names = {joint.get("name") for joint in model.iter("joint")}
     balls = {joint.get("name") for joint in model.iter("joint") if joint.get("type") == "ball"}
-    assert names == {name.split(".")[0] if name.split(".")[0] in balls else name for name in mechanism.joints}
+    assert names == {name.split(".")[0] if name.split(".")[0] in balls else name for name in mechanism.joint_names}
 
 
 def test_a_tree_and_its_closures_are_those_of_the_command(tmp_path):
@@ -59,7 +59,7 @@ def test_joints_are_data():
     mechanism = opm.examples.plano_spherical()
     assert list(mechanism.legs) == ["leg1", "leg2", "leg3", "leg4"]
     joints = [joint for leg in mechanism.legs.values() for joint in leg]
-    assert [name for joint in joints for name in joint.coordinates] == mechanism.joints
+    assert [name for joint in joints for name in joint.coordinates] == mechanism.joint_names
     slider, ball = joints[0], joints[-1]
     assert (slider.name, slider.kind, slider.actuated, slider.units) == ("S1", "prismatic", True, ["m"])
     assert (ball.kind, ball.axis, ball.pitch, len(ball.home)) == ("spherical", None, None, 3)

@@ -23,8 +23,8 @@ def poses():
 def test_all_modes_are_each_mode(manipulator, poses):
     every = manipulator.inverse(poses, mode="all")
     assert every.modes == manipulator.modes and len(set(every.modes)) == 128 and every.mode == "all"
-    assert every.joints.shape == (2000, 128, len(manipulator.joints)) and every.imaginary.shape == (2000, 128, 3)
-    assert every.reachable.shape == every.within_limits.shape == (2000, 128) and len(every) == 2000
+    assert every.joints.shape == (2000, 128, len(manipulator.joint_names)) and every.imaginary.shape == (2000, 128, 3)
+    assert every.reachable.shape == every.within_limits.shape == (2000, 128) and every.rows == 2000
     for number in range(0, 128, 9):
         one = manipulator.inverse(poses, mode=every.modes[number])
         assert one.modes == [one.mode] == [every.modes[number]]
@@ -50,8 +50,8 @@ def test_joints_by_name_are_views(manipulator, poses):
 def test_a_mechanism_without_choices_has_one_mode():
     manipulator = opm.examples.load("translational-helical-3dof")
     every = manipulator.inverse([manipulator.home] * 3, mode="all")
-    assert every.modes == [""] and every.joints.shape == (3, 1, len(manipulator.joints))
-    assert manipulator.inverse(np.zeros((0, 3)), mode="all").joints.shape == (0, 1, len(manipulator.joints))
+    assert every.modes == [""] and every.joints.shape == (3, 1, len(manipulator.joint_names))
+    assert manipulator.inverse(np.zeros((0, 3)), mode="all").joints.shape == (0, 1, len(manipulator.joint_names))
 
 
 def test_it_is_what_the_command_line_says(manipulator):

@@ -50,7 +50,7 @@ def test_rejections_are_those_of_inverse_kinematics() -> None:
     assert sum(one.alone for one in found) <= rejected
     # Where every leg closes, the limits alone reject.
     limit = 0.3
-    past = {name: np.abs(solved.joints[:, m.joints.index(name)]) > limit for name in ("S1", "S2", "S3")}
+    past = {name: np.abs(solved.joints[:, m.joint_names.index(name)]) > limit for name in ("S1", "S2", "S3")}
     count = sum(past.values())
     for name, where in past.items():
         alone = np.count_nonzero(solved.reachable & where & (count == 1))

@@ -59,7 +59,7 @@ def test_the_helical_manipulator_from_its_geometry():
     d = m.decomposition
     assert (d.lower, d.upper, d.intersection.kind) == ("translational plane", "cylindrical", "translation")
     assert (d.rank, d.mobility, d.imaginary_joints, d.first_section_motions) == (3, 3, 1, 2)
-    assert m.joints == [f"q{i}_{j}" for i in (1, 2, 3) for j in (1, 2, 3)] and m.name == "2-PPR + PPH"
+    assert m.joint_names == [f"q{i}_{j}" for i in (1, 2, 3) for j in (1, 2, 3)] and m.name == "2-PPR + PPH"
     same = opm.examples.load("translational-helical-3dof")
     x, y, phi = np.random.default_rng(6).uniform(-1, 1, (3, 200)) * [[0.1], [0.1], [3]]
     poses = np.stack([x, y, phi], axis=1)
@@ -78,11 +78,11 @@ def test_closure_of_every_leg_by_its_own_exponentials(name):
     found, home = m.inverse(poses), m.inverse([m.home]).joints[0]
     rows = np.cumsum([0, *(len(screws) for screws in m.screws.values())])
     # A ball's three coordinates are one rotation vector: legs with one are left to the Rust tests.
-    balls = {n[:-2] for n in m.joints if n.endswith(".z")}
+    balls = {n[:-2] for n in m.joint_names if n.endswith(".z")}
     legs = [
         (screws, slice(a, b))
         for screws, a, b in zip(m.screws.values(), rows, rows[1:], strict=False)
-        if not any(n[:-2] in balls for n in m.joints[a:b])
+        if not any(n[:-2] in balls for n in m.joint_names[a:b])
     ]
     assert found.reachable.mean() > 0.5 and len(legs) >= 2
     for q in found.joints[found.reachable]:
@@ -114,20 +114,20 @@ def test_a_mechanism_moved_as_a_whole_is_the_same(rotation, shift, lengths):
 
 def test_the_screws_of_a_mechanism_make_it_again():
     m = opm.examples.load("schoenflies-4dof")
-    singles = [n for n in m.joints if n.rsplit(".", 1)[-1] not in ("x", "y", "z", "1", "2", "angle", "slide")]
-    if len(singles) != len(m.joints):
+    singles = [n for n in m.joint_names if n.rsplit(".", 1)[-1] not in ("x", "y", "z", "1", "2", "angle", "slide")]
+    if len(singles) != len(m.joint_names):
         pytest.skip("a joint of several freedoms")
     ends = np.cumsum([0, *(len(s) for s in m.screws.values())])
     parts = [slice(a, b) for a, b in zip(ends, ends[1:], strict=False)]
-    flags = np.isin(np.arange(len(m.joints)), m.actuated)
+    flags = np.isin(np.arange(len(m.joint_names)), m.actuated)
     again = opm.Manipulator.from_screws(
-        m.screws, [flags[p] for p in parts], joints=[m.joints[p] for p in parts], home=[m.inverse([m.home]).joints[0][p] for p in parts]
+        m.screws, [flags[p] for p in parts], joints=[m.joint_names[p] for p in parts], home=[m.inverse([m.home]).joints[0][p] for p in parts]
     )
-    assert again.joints == m.joints and again.actuated == m.actuated and list(again.screws) == list(m.screws)
+    assert again.joint_names == m.joint_names and again.actuated == m.actuated and list(again.screws) == list(m.screws)
     for mine, theirs in zip(again.screws.values(), m.screws.values(), strict=True):
         np.testing.assert_allclose(mine, theirs, atol=1e-14)
     assert pickle.loads(pickle.dumps(again)).text == again.text
-    assert opm.Manipulator.parse(again.text).joints == again.joints
+    assert opm.Manipulator.parse(again.text).joint_names == again.joint_names
 
 
 

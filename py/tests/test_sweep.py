@@ -32,7 +32,7 @@ def test_a_sweep_is_inverse_kinematics_of_its_grid(manipulator):
     np.testing.assert_array_equal(mask.ravel(), solutions.within_limits)
     assert swept.poses == mask.size and swept.count == mask.sum() and 0 < swept.fraction < 1
     assert swept.fraction == swept.count / swept.poses
-    for column, name in enumerate(manipulator.imaginary):
+    for column, name in enumerate(manipulator.imaginary_names):
         values = solutions.imaginary[solutions.within_limits, column]
         np.testing.assert_allclose(swept.imaginary_range[name], (values.min(), values.max()), atol=1e-12)
     # The grid's first coordinate is the fastest of the points.

@@ -43,7 +43,7 @@ def test_the_shipped_motion_is_its_sinusoids(manipulator, followed):
     np.testing.assert_allclose(followed.condition, manipulator.singularity(followed.poses).condition, rtol=1e-9)
     assert followed.reachable.all() and followed.regular.all() and followed.violations == []
     assert np.abs(np.diff(followed.joints, axis=0)).max() < 0.2  # no jump by a turn
-    assert len(followed) == 1001 and "0 violations" in repr(followed)
+    assert followed.rows == 1001 and "0 violations" in repr(followed)
 
 
 def test_it_is_what_the_command_line_says(manipulator, tmp_path):
@@ -61,7 +61,7 @@ def test_it_is_what_the_command_line_says(manipulator, tmp_path):
         opm.trajectory(manipulator, path, rate=50),
         opm.trajectory(manipulator, poses, times=times, rate=50),
     ):
-        assert (len(found), int(found.reachable.sum()), int(found.within_limits.sum())) == (
+        assert (found.rows, int(found.reachable.sum()), int(found.within_limits.sum())) == (
             told["samples"], told["reached"], told["valid"],
         )  # fmt: skip
         assert 0 < told["reached"] < told["samples"] and told["violations"]
@@ -76,7 +76,7 @@ def test_it_is_what_the_command_line_says(manipulator, tmp_path):
 
 def test_the_mode_is_that_which_was_asked_for(manipulator):
     found = opm.trajectory(manipulator, "plano-spherical-sinusoids", mode="++ ++ ++ -", rate=20)
-    assert found.mode == "++ ++ ++ -" and len(found) == 201
+    assert found.mode == "++ ++ ++ -" and found.rows == 201
     solutions = manipulator.inverse(found.poses, mode="++ ++ ++ -")
     # A ball's rotation vector may be the other way round, once it is past half a turn.
     for name in (n for n in found.joint_names if not n.startswith("s4.")):

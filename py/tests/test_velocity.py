@@ -63,7 +63,7 @@ def test_the_jacobian_gives_the_rates(manipulator, poses):
     whole = manipulator.jacobian(poses, joints="all")
     np.testing.assert_allclose(whole @ rates[0], motion.joint_rates, atol=1e-9)
     np.testing.assert_array_equal(manipulator.jacobian(poses), whole[:, manipulator.actuated])
-    assert whole.shape == (len(poses), len(manipulator.joints), 5)
+    assert whole.shape == (len(poses), len(manipulator.joint_names), 5)
 
 
 def test_the_helical_jacobian_is_the_printed_one():
@@ -101,11 +101,11 @@ def test_wrong_input_is_told(manipulator):
         manipulator.jacobian(home, joints="none")
     with pytest.raises(opm.OpmError, match="2 rows of rates, expected 1"):
         manipulator.velocity(home, np.zeros((2, 5)))
-    with pytest.raises(opm.OpmError, match=r"rates has shape \(\d+, 4\), expected \(n, 5\)"):
+    with pytest.raises(opm.OpmError, match=r"rates has shape \(\d+, 4\), expected \(5,\) or \(n, 5\)"):
         manipulator.velocity(home, np.zeros((1, 4)))
     with pytest.raises(opm.OpmError, match="length is -1"):
         manipulator.singularity(home, length=-1.0)
-    with pytest.raises(opm.OpmError, match=r"joints has shape \(\d+, 2\), expected \(n, 5\): S1, S2, S3, phi14, phi24"):
+    with pytest.raises(opm.OpmError, match=r"joints has shape \(\d+, 2\), expected \(5,\) or \(n, 5\): S1, S2, S3, phi14, phi24"):
         manipulator.forward(np.zeros((1, 2)))
     with pytest.raises(opm.OpmError):
-        manipulator.forward([[np.nan] * 5])
+        manipulator.forward([[np.inf] * 5])

@@ -27,7 +27,7 @@ def decomposition(found: Decomposition) -> str:
 
 def manipulator(found: Manipulator) -> str:
     coordinates = ([c.name, _number(c.home), c.unit] for c in found.task_coordinates)
-    actuated = ", ".join(escape(found.joints[column]) for column in found.actuated)
+    actuated = ", ".join(escape(found.joint_names[column]) for column in found.actuated)
     modes = f"2<sup>{found.choices}</sup> working modes, home {escape(found.home_mode)}" if found.choices else ""
     return (
         decomposition(found.decomposition)
@@ -68,10 +68,10 @@ def singularity(found: Singularity) -> str:
     head = ["pose", *measures, "condition"]
 
     def cells(row: int) -> list[str]:
-        return [str(row), *(_number(getattr(found, name)[row]) for name in head[1:])]
+        return [str(row), *(_number(np.ravel(getattr(found, name))[row]) for name in head[1:])]
 
     names = [name.replace("_", " ") for name in head]
-    return _paragraph(_summary(found)) + _table(names, _some(len(found.reachable), cells, len(head)))
+    return _paragraph(_summary(found)) + _table(names, _some(found.reachable.size, cells, len(head)))
 
 
 def trajectory(found: Trajectory) -> str:

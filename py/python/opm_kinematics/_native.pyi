@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, ItemsView, Iterator, KeysView, Mapping, Sequence, ValuesView
 from concurrent.futures import Executor
 from os import PathLike
 from typing import Any, Literal, SupportsIndex, TypeAlias, final
@@ -10,9 +10,12 @@ __all__ = [
     "Accuracy",
     "Aspect",
     "Analysis",
+    "Assemblies",
     "Assembly",
     "Calibration",
+    "Certificate",
     "Clearance",
+    "Comparison",
     "Conditioning",
     "Decomposition",
     "Explorer",
@@ -42,6 +45,7 @@ __all__ = [
     "examples",
     "explore",
     "measure",
+    "recover",
     "sweep",
     "trajectory",
 ]
@@ -52,6 +56,9 @@ class OpmError(ValueError):
     """A mechanism, a pose or an option with which opm cannot compute."""
 
 _Parameter: TypeAlias = float | Sequence[float] | NDArray[np.float64] | None
+
+# Numbers, one row or many; or numbers or columns by name.
+_Rows: TypeAlias = ArrayLike | Mapping[str, ArrayLike] | Any
 
 _Executor: TypeAlias = Executor | Callable[[], Executor]
 
@@ -295,10 +302,10 @@ class Linkage:
     def text(self) -> str:
         """The mechanism file."""
     @property
-    def joints(self) -> list[str]:
+    def joint_names(self) -> list[str]:
         """Names of all joint coordinates: the columns of joint values."""
     @property
-    def imaginary(self) -> str:
+    def imaginary_name(self) -> str:
         """Name of the imaginary joint."""
     @property
     def home(self) -> list[float]:
@@ -402,8 +409,9 @@ class Linkage:
 
         Parameters
         ----------
-        values : (n,) array_like
-            Values of the joint that moves the linkage, radians or metres.
+        values : float or (n,) array_like
+            Values of the joint that moves the linkage, radians or metres. One value gives arrays without the first axis. Where
+            a value is NaN, so is the position.
         input : str, optional
             Name of that joint; the actuated one if not given.
         threads : int, optional
@@ -419,7 +427,7 @@ class Linkage:
         Raises
         ------
         OpmError
-            There is no joint of this name, or a value is not finite; the message gives its index, counted from zero.
+            There is no joint of this name, or a value is infinite; the message gives its index, counted from zero.
         """
 
 @final
@@ -603,13 +611,13 @@ class Manipulator:
         mechanisms. :meth:`dependent` gives their values.
         """
     @property
-    def joints(self) -> list[str]:
+    def joint_names(self) -> list[str]:
         """Names of all joint coordinates: the columns of joint values."""
     @property
     def actuated(self) -> list[int]:
         """Columns of the actuated joints."""
     @property
-    def imaginary(self) -> list[str]:
+    def imaginary_names(self) -> list[str]:
         """Names of the imaginary joints: the columns of their values."""
     @property
     def home(self) -> list[float]:
@@ -630,7 +638,7 @@ class Manipulator:
     def screws(self) -> dict[str, NDArray[np.float64]]:
         """The joints' unit screws by leg, (f, 6) each: (omega; v) in base coordinates, as they are at home, one row for each degree of freedom."""
     def clearance(
-        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+        self, poses: _Rows, *, mode: str = "home", threads: int | None = None
     ) -> Clearance:
         """The two bodies that are nearest to each other at every pose, and how far apart they are.
 
@@ -639,8 +647,8 @@ class Manipulator:
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         threads : int, optional
@@ -665,7 +673,7 @@ class Manipulator:
         >>> bool(clearance.distance[0] > 0)
         True
         """
-    def solids(self, pose: Sequence[float] | NDArray[np.float64] | None = None, *, mode: str = "home") -> list[Solid]:
+    def solids(self, pose: _Rows | None = None, *, mode: str = "home") -> list[Solid]:
         """The solids that the mechanism is drawn with, from its joint screws alone.
 
         Parameters
@@ -763,14 +771,14 @@ class Manipulator:
     def reference_point(self) -> tuple[float, float, float]:
         """The platform's reference point at home, base coordinates, metres."""
     def twist_jacobian(
-        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+        self, poses: _Rows, *, mode: str = "home", threads: int | None = None
     ) -> NDArray[np.float64]:
         """The platform's twist for unit rates of the task coordinates.
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         threads : int, optional
@@ -900,18 +908,33 @@ class Manipulator:
             :meth:`Explorer.save` writes it to a file, as ``opm explore`` does.
         """
     def _repr_html_(self) -> str: ...
-    def inverse(self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None) -> Solutions:
-        """Inverse kinematics of many poses, in one working mode or in all of them.
+    def inverse(
+        self,
+        poses: _Rows | None = None,
+        *,
+        transforms: ArrayLike | None = None,
+        mode: str = "home",
+        joints: str = "all",
+        threads: int | None = None,
+    ) -> Solutions:
+        """Inverse kinematics of one pose or of many, in one working mode or in all of them.
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians. A float64 array in C order is used
-            without a copy and must not be written to meanwhile; anything else is copied and converted first.
+        poses : (d,) or (n, d) array_like, or mapping, optional
+            One row for each pose, one column for each task coordinate; metres and radians. One pose gives arrays without the
+            first axis. A mapping or a data frame has numbers or columns by name, in any order; coordinates that are not among
+            them are at home. A row with NaN or a masked entry is out of reach. A float64 array in C order is used without a
+            copy and must not be written to meanwhile; anything else is copied and converted first.
+        transforms : (4, 4) or (n, 4, 4) array_like, optional
+            Homogeneous matrices, metres, in place of poses: where the platform is to be, as :meth:`transform` gives it. What is
+            outside the manipulator's motion is out of reach; :meth:`nearest` says by how much.
         mode : str
             ``"home"``; or a sign for every two-valued choice, one group for each leg: ``"++ ++ ++ +"``; or ``"all"``, which
             gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
             of the ``m = 2**choices`` modes of `modes`.
+        joints : str
+            Which joints the ``k`` columns are: ``"all"`` for every joint coordinate, or ``"actuated"``, which takes less memory.
         threads : int, optional
             1 to 1024; the result does not depend on it. One for each processor if not given.
 
@@ -924,19 +947,28 @@ class Manipulator:
         Raises
         ------
         OpmError
-            The columns are not the task coordinates, a number is not finite (the message gives the index of its pose, counted
-            from zero), or the mode is unknown.
+            The columns are not the task coordinates, a number is infinite (the message gives the index of its pose, counted
+            from zero), a matrix is not a rotation and a position, or the mode is unknown.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("plano-spherical-5dof")
+        >>> one = m.inverse({"x": 0.01, "xi": 0.1})
+        >>> same = m.inverse(transforms=m.transform({"x": 0.01, "xi": 0.1}))
+        >>> bool(one.reachable), one["S1"].shape, bool(abs(one["S1"] - same["S1"]) < 1e-12)
+        (True, (), True)
         """
 
     def jacobian(
-        self, poses: ArrayLike, *, mode: str = "home", joints: str = "actuated", threads: int | None = None
+        self, poses: _Rows, *, mode: str = "home", joints: str = "actuated", threads: int | None = None
     ) -> NDArray[np.float64]:
         """Rates of joints for unit rates of the task coordinates.
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         joints : str
@@ -951,9 +983,9 @@ class Manipulator:
         """
     def velocity(
         self,
-        poses: ArrayLike,
-        rates: ArrayLike,
-        accelerations: ArrayLike | None = None,
+        poses: _Rows,
+        rates: _Rows,
+        accelerations: _Rows | None = None,
         *,
         mode: str = "home",
         threads: int | None = None,
@@ -962,11 +994,12 @@ class Manipulator:
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
-        rates : (n, d) or (1, d) array_like
-            First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses.
-        accelerations : (n, d) or (1, d) array_like, optional
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
+        rates : (d,) or (n, d) array_like, or mapping
+            First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses. By name, those that are
+            not given are zero.
+        accelerations : (d,) or (n, d) array_like, or mapping, optional
             Second derivatives, m/s² and rad/s²; zero if not given.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
@@ -979,14 +1012,14 @@ class Manipulator:
             NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
         """
     def singularity(
-        self, poses: ArrayLike, *, mode: str = "home", length: float | None = None, threads: int | None = None
+        self, poses: _Rows, *, mode: str = "home", length: float | None = None, threads: int | None = None
     ) -> Singularity:
         """How near each pose is to a singularity, by section.
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         length : float, optional
@@ -1054,9 +1087,9 @@ class Manipulator:
         """
     def analyze(
         self,
-        poses: ArrayLike,
+        poses: _Rows,
         *,
-        wrench: ArrayLike | None = None,
+        wrench: _Rows | None = None,
         at: str | ArrayLike | None = None,
         frame: str = "base",
         gravity: ArrayLike | None = None,
@@ -1071,9 +1104,9 @@ class Manipulator:
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
-        wrench : (6,) or (n, 6) array_like, optional
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
+        wrench : (6,) or (n, 6) array_like, or mapping, optional
             The load on the platform, a force and a moment: FX, FY, FZ in N, MX, MY, MZ in N m. No load if not given.
         at : str or (3,) array_like
             Where the force acts: ``"platform"``, its reference point; ``"base"``, the base's origin; or a point of the platform,
@@ -1110,42 +1143,61 @@ class Manipulator:
         >>> found.efforts.round(3).tolist(), found.lti.round(3).tolist()
         ([[0.515, 0.515, 0.515]], [0.697])
         """
+    def check(self, *, samples: int = 200, seed: int = 1) -> Certificate:
+        """"""
     def forward(
         self,
-        joints: ArrayLike,
+        joints: _Rows,
         *,
-        near: ArrayLike | None = None,
+        near: _Rows | None = None,
         mode: str | None = None,
+        method: str | None = None,
         threads: int | None = None,
-    ) -> list[list[Assembly]]:
-        """Every assembly for each row of actuated joint values; or, near a pose, the one that Newton's method finds.
+    ) -> Assemblies:
+        """Every assembly for actuated joint values, in closed form; or the one near a pose that Newton's method finds.
+
+        In a mechanism with screws, full revolutions can matter: each of them is another assembly, one advance of the screw
+        away, and there are infinitely many. Of these, the one is given whose actuated joints have the full revolutions that
+        `joints` has, and whose passive joints are within π of home.
 
         Parameters
         ----------
-        joints : (n, a) array_like
-            Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
-        near : (d,) or (n, d) array_like, optional
-            The pose from which Newton's method begins, metres and radians; one row is used for all. Newton's method works for
-            every mechanism, the closed form only for some.
+        joints : (a,) or (n, a) array_like, or mapping
+            Values of the actuated joints, in the order of `actuated`, or by name; metres and radians. One row gives arrays
+            without the first axis. There is no assembly for a row with NaN.
+        near : (d,) or (n, d) array_like, or mapping, optional
+            The pose from which assemblies are sorted, the nearest first, and from which Newton's method begins; metres and
+            radians; one pose is used for all rows. Home if not given.
         mode : str, optional
             Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Newton's method
             stays in this mode, or in the home mode if not given.
+        method : str, optional
+            ``"every"``: all assemblies, by the closed form that most mechanisms have. ``"newton"``: one, near `near`, for every
+            mechanism. If not given, ``"every"`` where there is a closed form, otherwise ``"newton"`` if `near` is given.
         threads : int, optional
             1 to 1024; the result does not depend on it. One for each processor if not given.
 
         Returns
         -------
-        list of list of Assembly
-            One list for each row, the assembly nearest to home first: empty where there is no assembly, or where Newton's
-            method does not converge.
+        Assemblies
+            Arrays, and a list of :class:`Assembly` for each row: empty where there is no assembly, or where Newton's method
+            does not converge.
 
         Raises
         ------
         OpmError
             The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("planar-3rrr")
+        >>> found = m.forward(m.inverse(m.home, joints="actuated").joints)
+        >>> int(found.counts), found.poses.shape, bool(abs(found.poses[0] - m.home).max() < 1e-9)
+        (2, (2, 3), True)
         """
     def forward_track(
-        self, joints: ArrayLike, *, near: ArrayLike | None = None, mode: str = "home"
+        self, joints: _Rows, *, near: _Rows | None = None, mode: str = "home"
     ) -> NDArray[np.float64]:
         """The pose for each row of actuated joint values, near the pose of the row before it, in one working mode.
 
@@ -1154,9 +1206,10 @@ class Manipulator:
 
         Parameters
         ----------
-        joints : (n, a) array_like
-            Each row has the values of the actuated joints, in the order of `actuated`; metres and radians.
-        near : (d,) array_like, optional
+        joints : (n, a) array_like, or mapping
+            Each row has the values of the actuated joints, in the order of `actuated`, or by name; metres and radians. A row
+            with NaN is passed over.
+        near : (d,) array_like, or mapping, optional
             The pose before the first row; home if not given.
         mode : str, optional
             ``"home"``, or a sign for every two-valued choice.
@@ -1169,17 +1222,17 @@ class Manipulator:
         Raises
         ------
         OpmError
-            A value is not a finite number.
+            A value is infinite.
         """
     def transform(
-        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+        self, poses: _Rows, *, mode: str = "home", threads: int | None = None
     ) -> NDArray[np.float64]:
         """The displacement of the platform at each pose, in SE(3): its reference point and its orientation, in base coordinates.
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
         mode : str
             The working mode, or ``"home"``: dependent coordinates depend on it.
         threads : int, optional
@@ -1192,14 +1245,14 @@ class Manipulator:
             position, metres. NaN where dependent coordinates have no solution.
         """
     def dependent(
-        self, poses: ArrayLike, *, mode: str = "home", threads: int | None = None
+        self, poses: _Rows, *, mode: str = "home", threads: int | None = None
     ) -> NDArray[np.float64]:
         """The dependent coordinates of each pose.
 
         Parameters
         ----------
-        poses : (n, d) array_like
-            One row for each pose, one column for each task coordinate; metres and radians.
+        poses : (d,) or (n, d) array_like, or mapping
+            As for :meth:`inverse`.
         mode : str
             The working mode, or ``"home"``.
         threads : int, optional
@@ -1215,7 +1268,7 @@ class Manipulator:
 
         Parameters
         ----------
-        transforms : (n, 4, 4) array_like
+        transforms : (4, 4) or (n, 4, 4) array_like
             Homogeneous matrices, metres.
         threads : int, optional
             1 to 1024; the result does not depend on it. One for each processor if not given.
@@ -1236,7 +1289,7 @@ class Manipulator:
 
         Parameters
         ----------
-        transforms : (n, 4, 4) array_like
+        transforms : (4, 4) or (n, 4, 4) array_like
             Homogeneous matrices, metres.
         threads : int, optional
             1 to 1024; the result does not depend on it. One for each processor if not given.
@@ -1384,6 +1437,51 @@ class Analysis:
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
+class Assemblies:
+    """Every assembly for each of ``n`` rows of actuated joint values: arrays, and a sequence of lists of :class:`Assembly`.
+
+    The arrays have an axis for the assemblies of a row, sorted, with ``m`` places: as many as the row with the most. Places
+    beyond a row's `counts` are NaN. For one row alone the arrays have no first axis, and it is a sequence of assemblies.
+    """
+
+    @property
+    def counts(self) -> NDArray[np.int64]:
+        """(n,): number of assemblies of each row."""
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(n, m, d): task coordinates, metres and radians."""
+    @property
+    def transforms(self) -> NDArray[np.float64]:
+        """(n, m, 4, 4): homogeneous matrices of the platform, as :meth:`Manipulator.transform` gives them, metres."""
+    @property
+    def joints(self) -> NDArray[np.float64]:
+        """(n, m, k): every joint coordinate, metres and radians."""
+    @property
+    def imaginary(self) -> NDArray[np.float64]:
+        """(n, m, j): every imaginary joint, metres and radians."""
+    @property
+    def within_limits(self) -> NDArray[np.bool_]:
+        """(n, m): whether all joints are within their limits."""
+    @property
+    def residuals(self) -> NDArray[np.float64]:
+        """(n, m), no unit: closure error of the legs: radians, and lengths divided by the mechanism's size."""
+    @property
+    def modes(self) -> list[Any]:
+        """The working modes of the assemblies: a list for each row; a list of modes for one row alone."""
+    @property
+    def joint_names(self) -> list[str]:
+        """Names along the last axis of `joints`."""
+    @property
+    def imaginary_names(self) -> list[str]:
+        """Names along the last axis of `imaginary`."""
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[Any]: ...
+    def __getitem__(self, number: int, /) -> Any:
+        """Return self[key]."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
 class Assembly:
     """One way in which a mechanism can be assembled for given actuated joints."""
 
@@ -1487,6 +1585,62 @@ class Singularity:
         """(n,): whether the pose is in reach, joint limits not considered."""
 
 @final
+class Certificate:
+    """"""
+
+    @property
+    def name(self) -> str:
+        """"""
+    @property
+    def samples(self) -> int:
+        """"""
+    @property
+    def seed(self) -> int:
+        """"""
+    @property
+    def holds(self) -> bool:
+        """"""
+    @property
+    def comparisons(self) -> list[Comparison]:
+        """"""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Comparison:
+    """"""
+
+    @property
+    def name(self) -> str:
+        """"""
+    @property
+    def what(self) -> str:
+        """"""
+    @property
+    def holds(self) -> bool:
+        """"""
+    @property
+    def compared(self) -> int:
+        """"""
+    @property
+    def left_out(self) -> int:
+        """"""
+    @property
+    def because(self) -> str | None:
+        """"""
+    @property
+    def worst(self) -> float | None:
+        """"""
+    @property
+    def tolerance(self) -> float | None:
+        """"""
+    @property
+    def problem(self) -> str | None:
+        """"""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
 class Clearance:
     """The two bodies that are nearest to each other, at each of ``n`` poses.
 
@@ -1569,8 +1723,30 @@ class Solutions:
     def rows(self) -> int:
         """Number of rows, n."""
     def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __contains__(self, name: object, /) -> bool: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
         """The values of one joint or imaginary joint, (n,): a view."""
+    def keys(self) -> KeysView[str]:
+        """The names of the joints, then of the imaginary joints."""
+    def values(self) -> ValuesView[NDArray[np.float64]]:
+        """The values of each joint and imaginary joint: views."""
+    def items(self) -> ItemsView[str, NDArray[np.float64]]:
+        """Names and values."""
+    def get(self, name: str, default: Any = None, /) -> Any:
+        """The values of one joint or imaginary joint, or something else if there is none of this name.
+
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+        default : object, optional
+            What is returned if there is none.
+        """
+    def to_pandas(self) -> Any:
+        """A table of pandas, with a row for each row of the arrays and each mode, and a column for each joint."""
+    def to_xarray(self) -> Any:
+        """A dataset of xarray, with a variable for each joint, which has its unit."""
     def _repr_html_(self) -> str: ...
 
 @final
@@ -1745,6 +1921,10 @@ class Sweep:
     @property
     def length(self) -> float:
         """Characteristic length of condition numbers, metres."""
+    def to_pandas(self) -> Any:
+        """The points as a table of pandas, with a column for each coordinate."""
+    def to_xarray(self) -> Any:
+        """The mask as an array of xarray, with the values of each coordinate along its axes."""
     def _repr_html_(self) -> str: ...
     @property
     def count(self) -> int:
@@ -2208,6 +2388,8 @@ def calibrate(
     OpmError
         A column or a parameter is unknown, or the measurements say nothing.
     """
+def recover(path: str | PathLike[str], output: str | PathLike[str] | None = None) -> str:
+    """"""
 
 def sweep(
     manipulator: Manipulator,
@@ -2274,9 +2456,9 @@ def sweep(
         How many parts the executor gets: 8 for each worker if not given, 64 if it does not say how many it has; fewer for
         small grids.
     **axes
-        For each coordinate one value, or ``(min, max, count)`` with both ends on the grid; metres and radians. A coordinate
-        that is not given stays at home. If none is given, the grid is fitted to the workspace, with a warning if the
-        workspace continues beyond it.
+        For each coordinate one value, or ``(min, max, count)`` with both ends on the grid, or a list or an array of evenly
+        spaced values, such as ``numpy.linspace`` gives; metres and radians. A coordinate that is not given stays at home. If
+        none is given, the grid is fitted to the workspace, with a warning if the workspace continues beyond it.
 
     Raises
     ------
@@ -2417,12 +2599,37 @@ class Trajectory:
     def units(self) -> dict[str, str]:
         """``"m"`` or ``"rad"`` of every joint and imaginary joint, by name."""
     @property
+    def pose_names(self) -> list[str]:
+        """Names of the columns of `poses`."""
+    @property
     def rows(self) -> int:
         """Number of rows, n."""
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __contains__(self, name: object, /) -> bool: ...
     def __getitem__(self, name: str, /) -> NDArray[np.float64]:
         """The values of one joint or imaginary joint, (n,): a view."""
+    def keys(self) -> KeysView[str]:
+        """The names of the joints, then of the imaginary joints."""
+    def values(self) -> ValuesView[NDArray[np.float64]]:
+        """The values of each joint and imaginary joint: views."""
+    def items(self) -> ItemsView[str, NDArray[np.float64]]:
+        """Names and values."""
+    def get(self, name: str, default: Any = None, /) -> Any:
+        """The values of one joint or imaginary joint, or something else if there is none of this name.
+
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+        default : object, optional
+            What is returned if there is none.
+        """
+    def to_pandas(self) -> Any:
+        """A table of pandas, with a row for each row of the arrays and each mode, and a column for each joint."""
+    def to_xarray(self) -> Any:
+        """A dataset of xarray, with a variable for each joint, which has its unit."""
     def write_mcap(self, path: str | PathLike[str], *, indices: bool = False) -> None:
         """Record the motion as ``opm trajectory -o`` does, byte for byte: it plays in Foxglove, Lichtblick and Rerun.
 

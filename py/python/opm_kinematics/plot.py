@@ -281,7 +281,7 @@ def joints(
         if rates or followed.mode == "all":
             raise OpmError(f"{followed!r} has no curves of this kind, expected a Trajectory, or one working mode")
         curves = {name: followed[name] for name in names}
-    if t.shape != (len(followed),):
+    if t.shape != (followed.rows,):
         raise OpmError(f"times of shape {t.shape} for {followed!r}, expected a time a pose")
     return _curves(t, curves, units, ax)
 

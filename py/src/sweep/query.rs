@@ -1,5 +1,6 @@
 //! The query of a sweep as Python gives it: kind, working modes and axes.
 
+use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
@@ -7,6 +8,7 @@ use opm_study::{CheckedRequest, Workspace, WorkspaceKind};
 use opm_workspace::{Axis, Modes, Progress};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::num::NonZeroUsize;
@@ -18,17 +20,53 @@ enum Range {
     Several((f64, f64, u64)),
 }
 
+/// How far listed values may be from even steps, as a share of their range: what single precision leaves of them.
+const EVEN: f64 = 1e-6;
+
+/// What an axis can be.
+const EXPECTED: &str = "expected a number, (min, max, count), or evenly spaced values";
+
 /// The axes with these names.
 pub fn axes(given: BTreeMap<String, Bound<'_, PyAny>>) -> PyResult<Vec<Axis>> {
-    let axis = |(name, range): (String, Bound<'_, PyAny>)| match range.extract::<Range>() {
-        Ok(Range::Fixed(value)) => Ok(Axis::fixed(name, value)),
-        Ok(Range::Several((min, max, count))) => Ok(Axis::new(name, min, max, count)),
-        Err(_) => {
-            let found = range.repr()?;
-            Err(wrong(format!("{name} is {found}, expected a number or (min, max, count)")))
+    let axis = |(name, range): (String, Bound<'_, PyAny>)| {
+        if range.is_instance_of::<PyList>() || range.getattr_opt("__array__")?.is_some() {
+            return listed(name, &range);
+        }
+        match range.extract::<Range>() {
+            Ok(Range::Fixed(value)) => Ok(Axis::fixed(name, value)),
+            Ok(Range::Several((min, max, count))) => Ok(Axis::new(name, min, max, count)),
+            Err(_) => Err(wrong(format!("{name} is {}, {EXPECTED}", arguments::shown(&range)))),
         }
     };
     given.into_iter().map(axis).collect()
+}
+
+/// The axis that has these values, which are those of `linspace`.
+fn listed(name: String, given: &Bound<'_, PyAny>) -> PyResult<Axis> {
+    if given.getattr_opt("ndim")?.is_some_and(|ndim| ndim.extract().is_ok_and(|n: usize| n == 0)) {
+        return Ok(Axis::fixed(name, given.extract()?));
+    }
+    let values = arguments::list(given, &name)?;
+    let [first, .., last] = values[..] else {
+        return match values.first() {
+            Some(&value) => Ok(Axis::fixed(name, value)),
+            None => Err(wrong(format!("{name} has no values, {EXPECTED}"))),
+        };
+    };
+    let steps = (values.len() - 1) as f64;
+    let even = |number: usize| first + (last - first) * (number as f64 / steps);
+    let off = |(number, value): (usize, &f64)| {
+        let off = (value - even(number)).abs();
+        // Negated, so that NaN is uneven.
+        !(off <= EVEN * (last - first).abs())
+    };
+    if let Some((number, value)) = values.iter().enumerate().find(|&entry| off(entry)) {
+        let expected = even(number);
+        return Err(wrong(format!(
+            "{name}[{number}] is {value:?}, expected {expected:?} for even steps from {first:?} to {last:?}"
+        )));
+    }
+    Ok(Axis::new(name, first, last, values.len() as u64))
 }
 
 /// The workspace of a request. If no grid is given, one is fitted, with a warning if the workspace continues

@@ -154,7 +154,19 @@ impl Manipulator {
         })
     }
 
-    /// The same with all task coordinates, as if they were independent.
+    /// Whether the platform has this pose at a pose and in a working mode: see [`Manipulator::platform_pose`]. Only
+    /// dependent coordinates depend on the mode.
+    pub fn is_at(&self, pose: &[f64], mode: Mode, platform: &Isometry3<f64>) -> bool {
+        let target = platform * self.home_placement().inverse();
+        let all = match &self.dependent {
+            None => Some(pose.to_vec()),
+            Some(_) => self.completed(pose, mode).ok(),
+        };
+        let scale = 1.0 / self.characteristic_length();
+        all.is_some_and(|all| self.miss(&target, &all, scale).norm() < ON)
+    }
+
+    /// As [`Manipulator::locate`], with all task coordinates, as if they were independent.
     fn locate_all(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
         let length = self.characteristic_length();
         let ([v, b], rise) = self.task.factors(displacement);

@@ -1,0 +1,168 @@
+//! The assemblies for many rows of joint values, as arrays and as lists.
+
+use super::Assembly;
+use crate::manipulator::Manipulator;
+use crate::pickle::{frozen, pickled};
+use crate::rows::Rows;
+use numpy::{Element, IntoPyArray, PyArrayDyn};
+use opm_core::forward as core;
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+/// Every assembly for each of ``n`` rows of actuated joint values: arrays, and a sequence of lists of :class:`Assembly`.
+///
+/// The arrays have an axis for the assemblies of a row, sorted, with ``m`` places: as many as the row with the most. Places
+/// beyond a row's `counts` are NaN. For one row alone the arrays have no first axis, and it is a sequence of assemblies.
+#[pyclass(frozen, get_all, module = "opm_kinematics")]
+pub struct Assemblies {
+    /// (n,): number of assemblies of each row.
+    counts: Py<PyArrayDyn<i64>>,
+    /// (n, m, d): task coordinates, metres and radians.
+    poses: Py<PyArrayDyn<f64>>,
+    /// (n, m, 4, 4): homogeneous matrices of the platform, as :meth:`Manipulator.transform` gives them, metres.
+    transforms: Py<PyArrayDyn<f64>>,
+    /// (n, m, k): every joint coordinate, metres and radians.
+    joints: Py<PyArrayDyn<f64>>,
+    /// (n, m, j): every imaginary joint, metres and radians.
+    imaginary: Py<PyArrayDyn<f64>>,
+    /// (n, m): whether all joints are within their limits.
+    within_limits: Py<PyArrayDyn<bool>>,
+    /// (n, m), no unit: closure error of the legs: radians, and lengths divided by the mechanism's size.
+    residuals: Py<PyArrayDyn<f64>>,
+    /// The working modes of the assemblies: a list for each row; a list of modes for one row alone.
+    modes: Py<PyList>,
+    /// Names along the last axis of `joints`.
+    joint_names: Vec<String>,
+    /// Names along the last axis of `imaginary`.
+    imaginary_names: Vec<String>,
+}
+
+pickled!(Assemblies {
+    counts,
+    poses,
+    transforms,
+    joints,
+    imaginary,
+    within_limits,
+    residuals,
+    modes,
+    joint_names,
+    imaginary_names,
+});
+
+impl Assemblies {
+    /// The assemblies of every row.
+    pub fn new(
+        py: Python<'_>,
+        manipulator: &Manipulator,
+        rows: &Rows<'_>,
+        found: &[Vec<core::Assembly>],
+    ) -> PyResult<Self> {
+        let inner = &manipulator.inner;
+        let most = found.iter().map(Vec::len).max().unwrap_or(0);
+        let table = |width: usize, of: &dyn Fn(&core::Assembly, &mut Vec<f64>)| {
+            let mut table = Vec::with_capacity(found.len() * most * width);
+            for (row, list) in found.iter().enumerate() {
+                list.iter().for_each(|assembly| of(assembly, &mut table));
+                table.resize((row + 1) * most * width, f64::NAN);
+            }
+            table.into_pyarray(py)
+        };
+        let [d, k, j] =
+            [inner.task_coordinates().len(), inner.coordinates().len(), inner.imaginary().len()];
+        let poses = table(d, &|assembly, to| to.extend(&assembly.pose));
+        let joints = table(k, &|assembly, to| to.extend(&assembly.joints));
+        let imaginary = table(j, &|assembly, to| to.extend(&assembly.imaginary));
+        let residuals = table(1, &|assembly, to| to.push(assembly.residual));
+        let transforms =
+            table(16, &|assembly, to| match inner.displacement_in(&assembly.pose, assembly.mode) {
+                Ok(g) => to.extend(inner.platform_at(&g).to_homogeneous().transpose().iter()),
+                Err(_) => to.extend([f64::NAN; 16]),
+            });
+        let mut within = Vec::with_capacity(found.len() * most);
+        let mut modes = Vec::with_capacity(found.len());
+        for (row, list) in found.iter().enumerate() {
+            within.extend(list.iter().map(|assembly| assembly.within_limits));
+            within.resize((row + 1) * most, false);
+            let signs = list.iter().map(|assembly| inner.format_mode(assembly.mode));
+            modes.push(PyList::new(py, signs)?);
+        }
+        let counts: Vec<i64> = found.iter().map(|list| list.len() as i64).collect();
+        let modes = match modes.pop() {
+            Some(only) if rows.one => only,
+            last => PyList::new(py, modes.into_iter().chain(last))?,
+        };
+        Ok(Self {
+            counts: rows.frozen(&counts.into_pyarray(py), &[])?,
+            poses: rows.frozen(&poses, &[most, d])?,
+            transforms: rows.frozen(&transforms, &[most, 4, 4])?,
+            joints: rows.frozen(&joints, &[most, k])?,
+            imaginary: rows.frozen(&imaginary, &[most, j])?,
+            within_limits: rows.frozen(&within.into_pyarray(py), &[most])?,
+            residuals: rows.frozen(&residuals, &[most])?,
+            modes: modes.unbind(),
+            joint_names: manipulator.joint_names(),
+            imaginary_names: manipulator.imaginary_names(),
+        })
+    }
+
+    /// The assembly at a place of all arrays: the row and its number there, or its number alone.
+    fn assembly(&self, py: Python<'_>, place: &[usize]) -> PyResult<Assembly> {
+        fn part<'py, T: Element>(
+            py: Python<'py>,
+            array: &Py<PyArrayDyn<T>>,
+            place: &[usize],
+        ) -> PyResult<Bound<'py, PyAny>> {
+            place.iter().try_fold(array.bind(py).clone().into_any(), |of, at| of.get_item(at))
+        }
+        let mode = place
+            .iter()
+            .try_fold(self.modes.bind(py).clone().into_any(), |of, at| of.get_item(at))?;
+        let vector = |array| -> PyResult<_> { frozen(part(py, array, place)?.cast_into()?) };
+        Ok(Assembly {
+            pose: vector(&self.poses)?,
+            mode: mode.extract()?,
+            joints: vector(&self.joints)?,
+            imaginary: vector(&self.imaginary)?,
+            within_limits: part(py, &self.within_limits, place)?.is_truthy()?,
+            residual: part(py, &self.residuals, place)?.extract()?,
+        })
+    }
+
+    /// Whether it is of one row alone.
+    fn one(&self, py: Python<'_>) -> PyResult<bool> {
+        Ok(self.counts.bind(py).getattr("ndim")?.extract::<usize>()? == 0)
+    }
+}
+
+#[pymethods]
+impl Assemblies {
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.modes.bind(py).len()
+    }
+
+    /// The assemblies of one row, a list; of one row alone, one assembly.
+    fn __getitem__<'py>(&self, py: Python<'py>, number: isize) -> PyResult<Bound<'py, PyAny>> {
+        let modes = self.modes.bind(py);
+        let length = modes.len();
+        let place = if number < 0 { number.checked_add_unsigned(length) } else { Some(number) };
+        let place = place.and_then(|place| usize::try_from(place).ok()).filter(|&at| at < length);
+        let place = place.ok_or_else(|| {
+            PyIndexError::new_err(format!("{number} is not an index of {length} entries"))
+        })?;
+        if self.one(py)? {
+            return Ok(Bound::new(py, self.assembly(py, &[place])?)?.into_any());
+        }
+        let count = modes.get_item(place)?.len()?;
+        let list = (0..count).map(|at| self.assembly(py, &[place, at]));
+        Ok(PyList::new(py, list.collect::<PyResult<Vec<_>>>()?)?.into_any())
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let total: usize = self.counts.bind(py).call_method0("sum")?.extract()?;
+        let rows: usize = self.counts.bind(py).getattr("size")?.extract()?;
+        let plural = if rows == 1 { "" } else { "s" };
+        Ok(format!("<Assemblies of {rows} row{plural}: {total} assemblies>"))
+    }
+}
