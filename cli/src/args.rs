@@ -3,6 +3,7 @@
 mod accuracy;
 mod analyze;
 mod calibrate;
+mod check;
 mod convert;
 mod explore;
 mod export;
@@ -18,6 +19,7 @@ mod workspace;
 pub use accuracy::AccuracyArgs;
 pub use analyze::AnalyzeArgs;
 pub use calibrate::CalibrateArgs;
+pub use check::CheckArgs;
 pub use convert::ConvertArgs;
 pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
@@ -26,8 +28,8 @@ pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use path::PathArgs;
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
-pub use recording::{InspectArgs, LayoutArgs, PlotArgs};
 pub use setup::SetupArgs;
+pub use recording::{InspectArgs, LayoutArgs, PlotArgs, RecoverArgs};
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
 use crate::change::Change;
@@ -64,6 +66,7 @@ const ROOT_EXAMPLES: &str = "\
 Examples:
   opm examples                                         what comes with opm
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
+  opm check plano-spherical-5dof                       its closed forms, held to independent computations
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
   opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
   opm analyze plano-spherical-5dof --wrench 0,0,0,1,0,0   what the actuators carry at a pose
@@ -80,6 +83,7 @@ Examples:
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds
+  opm recover cloud.mcap.partial                       what a run that was cut short has recorded
   opm layout cloud.mcap -o layout.json                 how Foxglove or Lichtblick shows it
   opm explore plano-spherical-5dof -o robot.html       a page for browsers, workspace and all
   opm convert plano-spherical-5dof --joints            a family as a list of joints
@@ -111,6 +115,7 @@ pub enum Format {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Decompose(DecomposeArgs),
+    Check(CheckArgs),
     Ik(IkArgs),
     Velocity(VelocityArgs),
     Analyze(AnalyzeArgs),
@@ -125,6 +130,7 @@ pub enum Command {
     Merge(MergeArgs),
     Plot(PlotArgs),
     Inspect(InspectArgs),
+    Recover(RecoverArgs),
     Layout(LayoutArgs),
     Explore(ExploreArgs),
     Convert(ConvertArgs),

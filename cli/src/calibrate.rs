@@ -55,6 +55,7 @@ pub fn run(args: &CalibrateArgs, output: &Output) -> Result<(), Failure> {
     let found = watch_steps(
         output,
         "calibrating",
+        None,
         || steps.load(Ordering::Relaxed),
         || {
             calibrate(&loaded.file, &table.measurements, &options, &mut |_| {

@@ -8,6 +8,7 @@ mod args;
 mod batch;
 mod calibrate;
 mod change;
+mod check;
 mod completions;
 mod convert;
 mod decompose;
@@ -34,6 +35,7 @@ mod path;
 mod plot;
 mod pose;
 mod progress;
+mod recover;
 mod runs;
 mod schema;
 mod stream;
@@ -74,6 +76,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     let output = &args.output;
     match &args.command {
         Command::Decompose(command) => decompose::run(command, output),
+        Command::Check(command) => check::run(command, output),
         Command::Ik(command) => ik::run(command, output),
         Command::Velocity(command) => velocity::run(command, output),
         Command::Analyze(command) => analyze::run(command, output),
@@ -88,6 +91,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Merge(command) => merge::run(command, output),
         Command::Plot(command) => plot::run(command, output),
         Command::Inspect(command) => inspect::run(command, output),
+        Command::Recover(command) => recover::run(command, output),
         Command::Layout(command) => layout::run(command, output),
         Command::Explore(command) => explore::run(command, output),
         Command::Convert(command) => convert::run(command, output),

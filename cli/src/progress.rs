@@ -59,15 +59,21 @@ pub fn watch_boxes<T>(
     show(output, &bar, label, done, work)
 }
 
-/// As [`watch`], for steps whose final number is unknown.
+/// As [`watch`], for this number of steps, or for steps whose final number is unknown.
 pub fn watch_steps<T>(
     output: &Output,
     label: &'static str,
+    total: Option<u64>,
     done: impl Fn() -> u64 + Send,
     work: impl FnOnce() -> T,
 ) -> T {
-    let bar =
-        ProgressBar::no_length().with_style(style("{spinner} {msg}: {human_pos} steps, {elapsed}"));
+    let bar = match total {
+        Some(total) => {
+            ProgressBar::new(total).with_style(style("{msg} {wide_bar} {percent}%, ETA {eta}"))
+        }
+        None => ProgressBar::no_length()
+            .with_style(style("{spinner} {msg}: {human_pos} steps, {elapsed}")),
+    };
     show(output, &bar, label, done, work)
 }
 

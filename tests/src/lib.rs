@@ -1,15 +1,15 @@
 //! Tests that span the crates, and what they share: the paper's formulas as an oracle, random
-//! mechanisms of every pair of partial subspaces, a numeric solver for their legs, central
-//! differences, and sweeps by one call per pose.
+//! mechanisms of every pair of partial subspaces. What also checks mechanisms of users, such as a numeric solver for
+//! legs, is in `opm-check`.
 
-pub mod by_inverse;
-pub mod differences;
 pub mod displace;
+pub mod fuzzed;
 pub mod height;
-pub mod newton;
 pub mod paper;
 pub mod random;
 pub mod structured;
+
+pub use opm_check::{by_inverse, differences};
 
 use nalgebra::Isometry3;
 use opm_core::manipulator::{Manipulator, Mode};

@@ -3,7 +3,8 @@
 
 use crate::displace::displace;
 use fastrand::Rng;
-use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vector3};
+pub use opm_check::closure::{apart, gap};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{Mechanism, examples, file};
@@ -128,22 +129,4 @@ pub fn placed(mechanism: &Mechanism) -> Vec<(Isometry3<f64>, Mechanism)> {
         }
     }
     places
-}
-
-/// How far two displacements are apart: entries of their matrices, the platform's way over the size.
-pub fn apart(m: &Manipulator, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
-    let turn =
-        a.rotation.to_rotation_matrix().into_inner() - b.rotation.to_rotation_matrix().into_inner();
-    let point: Point3<f64> = m.mechanism().platform;
-    turn.amax().max((a * point - b * point).amax() / m.characteristic_length())
-}
-
-/// By how much the legs miss the platform, as they stand in the mechanism, without any decomposition.
-pub fn gap(m: &Manipulator, joints: &[f64], target: &Isometry3<f64>) -> f64 {
-    let mut joints = joints;
-    m.mechanism().legs.iter().fold(0.0, |worst: f64, leg| {
-        let (own, rest) = joints.split_at(leg.coordinates().count());
-        joints = rest;
-        worst.max(apart(m, &leg.displacement(own).unwrap(), target))
-    })
 }

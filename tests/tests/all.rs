@@ -8,6 +8,7 @@ mod constraining_legs;
 mod default_grid;
 mod errata;
 mod forward;
+mod fuzzed;
 mod gallery;
 mod height;
 mod inclined;

@@ -83,6 +83,26 @@ pub struct InspectArgs {
     pub file: PathBuf,
 }
 
+/// Recover a recording that was cut short, as far as it goes
+///
+/// A run that is killed, or whose disk is full, leaves a .partial file, which has no end and no index. What it holds is
+/// copied into a recording that every viewer opens. Its metadata tell that it is not whole: `opm inspect` says so, and
+/// `opm merge` does not take a recovered shard. A damaged file is recovered up to the damage. Tables (.csv) need no
+/// recovery: every line of a .partial file but the last is whole.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  opm recover cloud.mcap.partial
+  opm recover play.mcap.partial -o play-until-it-broke.mcap")]
+pub struct RecoverArgs {
+    /// MCAP file that was cut short
+    #[arg(value_name = "FILE.mcap.partial", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Output file [default: NAME.recovered.mcap, beside the file]
+    #[arg(short, long, value_name = "OUT.mcap", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
+
 /// Lay a recording out for a viewer: Foxglove, Lichtblick or Rerun
 ///
 /// Of a workspace, the overview is beside the slice at the playhead. Of a motion, the mechanism and the log of

@@ -45,6 +45,7 @@ pub fn run(
     let (drawn, found) = watch_steps(
         output,
         "choosing poses",
+        None,
         || progress.done(),
         || {
             let drawn = match given {

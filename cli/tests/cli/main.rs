@@ -4,6 +4,7 @@ mod analyze;
 mod aspects;
 mod bad_input;
 mod batch;
+mod check;
 mod convert;
 mod decompose;
 mod explore;

@@ -8,11 +8,11 @@ use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::mechanism::leg::Leg;
 use std::f64::consts::PI;
 
-/// Residual of a solution, in radians and in metres for mechanisms of a few metres: rounding.
+/// Residual of a solution, in radians and lengths over the size: rounding.
 const SOLVED: f64 = 1e-11;
 /// The largest number of steps from one start.
 const STEPS: usize = 60;
-/// Starting values of sliders are within this many metres of home.
+/// Starting values of sliders are within this many sizes of home.
 const FAR: f64 = 4.0;
 
 /// A leg that shall bring the platform's point and orientation to `target`.
@@ -23,6 +23,8 @@ pub struct Closure<'a> {
     pub point: Point3<f64>,
     /// The platform's displacement from home.
     pub target: Isometry3<f64>,
+    /// The length that lengths are compared with, metres.
+    pub size: f64,
 }
 
 impl Closure<'_> {
@@ -33,7 +35,7 @@ impl Closure<'_> {
         let mut found = Vec::new();
         for _ in 0..starts {
             let start = quantities.iter().map(|quantity| {
-                let size = if *quantity == Quantity::Angle { PI } else { FAR };
+                let size = if *quantity == Quantity::Angle { PI } else { FAR * self.size };
                 size * (rng.f64() * 2.0 - 1.0)
             });
             let start = DVector::from_iterator(quantities.len(), start);
@@ -50,7 +52,13 @@ impl Closure<'_> {
                 return Some(q);
             }
             let normal = jacobian.tr_mul(&jacobian) + DMatrix::identity(q.len(), q.len()) * damping;
-            let tried = &q + normal.cholesky()?.solve(&jacobian.tr_mul(&miss));
+            let mut step = normal.cholesky()?.solve(&jacobian.tr_mul(&miss));
+            for (step, coordinate) in step.iter_mut().zip(self.leg.coordinates()) {
+                if coordinate.quantity == Quantity::Length {
+                    *step *= self.size;
+                }
+            }
+            let tried = &q + step;
             let (after, derivative) = self.linear(&tried, rates);
             if after.norm() < miss.norm() {
                 (q, miss, jacobian) = (tried, after, derivative);
@@ -74,7 +82,7 @@ impl Closure<'_> {
     }
 
     /// The error to the target (a rotation vector and the translation of the point), and the twist
-    /// of the platform for a unit rate of each coordinate, with the point's velocity.
+    /// of the platform for a unit rate of each coordinate, with the point's velocity. Lengths are over the size.
     fn linear(
         &self,
         q: &DVector<f64>,
@@ -112,7 +120,7 @@ impl Closure<'_> {
         let mut jacobian = Matrix6xX::zeros(lines.len());
         for (i, (axis, at, pitch, turns)) in lines.into_iter().enumerate() {
             let (turn, way) = if turns {
-                (axis, axis.cross(&(end - at)) + axis * pitch)
+                (axis, (axis.cross(&(end - at)) + axis * pitch) / self.size)
             } else {
                 (Vector3::zeros(), axis)
             };
@@ -120,7 +128,7 @@ impl Closure<'_> {
             jacobian.fixed_view_mut::<3, 1>(3, i).copy_from(&way);
         }
         let turn = (self.target.rotation * g.rotation.inverse()).scaled_axis();
-        let way = self.target * self.point - end;
+        let way = (self.target * self.point - end) / self.size;
         (Vector6::new(turn.x, turn.y, turn.z, way.x, way.y, way.z), jacobian)
     }
 }

@@ -97,6 +97,11 @@ impl PartialFile {
         Ok(Self { file, partial, target: target.into(), begun: false })
     }
 
+    /// The file as it is called until it is whole.
+    pub fn path(&self) -> &Path {
+        &self.partial
+    }
+
     /// Ends the file and removes it.
     pub fn discard(mut self) {
         self.begun = false;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use foxglove::Encode;
-use mcap::records::{MessageHeader, Metadata as MetadataRecord};
+use mcap::records::{self, MessageHeader, Metadata as MetadataRecord};
 use mcap::{Attachment, Compression, WriteOptions, Writer};
 
 use crate::{RecordError, Sink};
@@ -79,6 +79,20 @@ impl<W: Sink> Log<W> {
         self.attempt(|writer| {
             let schema = writer.add_schema(schema, "protobuf", descriptor)?;
             let channel = writer.add_channel(schema, name, "protobuf", &Metadata::new())?;
+            Ok(Topic { channel, sequence: 0 })
+        })
+    }
+
+    /// Adds a schema as it stands in another file.
+    pub fn schema(&mut self, name: &str, encoding: &str, data: &[u8]) -> Result<u16, RecordError> {
+        self.attempt(|writer| Ok(writer.add_schema(name, encoding, data)?))
+    }
+
+    /// Adds a topic as it stands in another file; `schema` is one that [`Log::schema`] gave, or 0.
+    pub fn channel(&mut self, schema: u16, like: &records::Channel) -> Result<Topic, RecordError> {
+        self.attempt(|writer| {
+            let encoding = &like.message_encoding;
+            let channel = writer.add_channel(schema, &like.topic, encoding, &like.metadata)?;
             Ok(Topic { channel, sequence: 0 })
         })
     }

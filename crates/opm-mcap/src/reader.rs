@@ -177,6 +177,30 @@ pub fn read<E: From<ReadError>>(
     path: &Path,
     mut visit: impl FnMut(&Message<'_>) -> Result<(), E>,
 ) -> Result<Recording, E> {
+    let mut contents = Contents::default();
+    let end = records(path, |opcode, data| contents.record(opcode, data, &mut visit))?;
+    match end {
+        End::Whole => Ok(contents.finish(true)),
+        End::Early => Ok(contents.finish(false)),
+        End::Damaged(error) => Err(error.into()),
+    }
+}
+
+/// Where reading has ended.
+pub(crate) enum End {
+    /// At the end of a whole file.
+    Whole,
+    /// At the end of a file that was cut short.
+    Early,
+    /// At damage.
+    Damaged(ReadError),
+}
+
+/// Shows every record of a file to `visit`, with its opcode, from front to back.
+pub(crate) fn records<E: From<ReadError>>(
+    path: &Path,
+    mut visit: impl FnMut(u8, &[u8]) -> Result<(), E>,
+) -> Result<End, E> {
     let failed = |source| ReadError::Io { path: path.into(), source };
     let mut file = File::open(path).map_err(failed)?;
     let options = LinearReaderOptions::default()
@@ -185,13 +209,12 @@ pub fn read<E: From<ReadError>>(
         .with_record_length_limit(RECORD_LIMIT);
     let options = LinearReaderOptions { prevalidate_chunk_crcs: true, ..options };
     let mut reader = LinearReader::new_with_options(options);
-    let mut contents = Contents::default();
     let mut offset = 0;
     let mut begun = false;
 
-    let ended = loop {
+    loop {
         match reader.next_event() {
-            None => break true,
+            None => return Ok(End::Whole),
             Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
                 // More at a time than asked for: the requests inside a chunk are small.
                 let count = file.read(reader.insert(wanted.max(1 << 16))).map_err(failed)?;
@@ -200,18 +223,20 @@ pub fn read<E: From<ReadError>>(
             }
             Some(Ok(LinearReadEvent::Record { opcode, data })) => {
                 begun = true;
-                contents.record(opcode, data, &mut visit)?;
+                visit(opcode, data)?;
             }
-            Some(Err(McapError::UnexpectedEof | McapError::UnexpectedEoc)) if begun => break false,
+            Some(Err(McapError::UnexpectedEof | McapError::UnexpectedEoc)) if begun => {
+                return Ok(End::Early);
+            }
             Some(Err(McapError::BadMagic | McapError::UnexpectedEof)) if !begun => {
                 return Err(ReadError::NotMcap { path: path.into() }.into());
             }
             Some(Err(source)) => {
-                return Err(ReadError::Damaged { path: path.into(), offset, source }.into());
+                let damage = ReadError::Damaged { path: path.into(), offset, source };
+                return Ok(End::Damaged(damage));
             }
         }
-    };
-    Ok(contents.finish(ended))
+    }
 }
 
 /// The content that was found so far.
@@ -352,7 +377,7 @@ fn range(values: Option<impl Iterator<Item = f64>>) -> Option<(f64, f64)> {
     })
 }
 
-fn parse(opcode: u8, data: &[u8]) -> Result<Record<'_>, ReadError> {
+pub(crate) fn parse(opcode: u8, data: &[u8]) -> Result<Record<'_>, ReadError> {
     mcap::parse_record(opcode, data).map_err(|reason| ReadError::Malformed {
         what: format!("record of type {opcode:#04x}"),
         reason: reason.to_string(),
@@ -361,7 +386,7 @@ fn parse(opcode: u8, data: &[u8]) -> Result<Record<'_>, ReadError> {
 
 /// What an attachment record holds, with its content if that is no longer than `room`. (The parser of `mcap`
 /// takes for granted that the record is long enough.)
-fn attachment(record: &[u8], room: usize) -> Result<AttachmentInfo, ReadError> {
+pub(crate) fn attachment(record: &[u8], room: usize) -> Result<AttachmentInfo, ReadError> {
     /// The bytes of log time and creation time.
     const TIMES: usize = 16;
     fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {

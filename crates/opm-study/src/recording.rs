@@ -51,6 +51,14 @@ pub fn partial(path: &Path) -> PathBuf {
     name.into()
 }
 
+/// Where an unfinished recording is recovered to if nothing is said: `NAME.mcap.partial` to `NAME.recovered.mcap`.
+pub fn recovered_name(path: &Path) -> PathBuf {
+    let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+    let stem = name.strip_suffix(".partial").unwrap_or(&name);
+    let stem = stem.strip_suffix(".mcap").unwrap_or(stem);
+    path.with_file_name(format!("{stem}.recovered.mcap"))
+}
+
 /// Checks that a name ends in `.mcap`, for content that is written as MCAP only.
 ///
 /// # Errors

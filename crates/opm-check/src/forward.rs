@@ -1,0 +1,96 @@
+//! Forward kinematics compared with the poses that joint values came from.
+
+use crate::certificate::{Comparison, Options, Place};
+use crate::closure::{apart, gap};
+use crate::poses::{pose, tolerance};
+use opm_core::manipulator::{Manipulator, Mode};
+
+/// The largest distance of an assembly from the pose that its joint values came from: radians, and lengths over the
+/// size.
+const SAME: f64 = 1e-6;
+
+/// A pose nearer to a singularity is left out: two assemblies merge there, or a family of poses has the same joint
+/// values. The measures have no unit.
+const SINGULAR: f64 = 1e-3;
+
+/// Every pose is among the assemblies for its joint values, by the closed form or near it by Newton's method, and
+/// every assembly closes.
+pub fn forward(
+    manipulator: &Manipulator,
+    options: &Options,
+    go_on: &mut impl FnMut() -> bool,
+) -> Option<Comparison> {
+    let closed_form = manipulator.forward_closed_form();
+    let what = match closed_form {
+        Ok(()) => {
+            "every assembly for joint values of inverse kinematics, with the poses that these came from"
+        }
+        Err(_) => {
+            "the assembly that Newton's method finds nearby, with the pose that its joint values came from"
+        }
+    };
+    let most = tolerance(manipulator, SAME);
+    let mut found = Comparison::new("forward", what, Some(most));
+    let mut rng = options.rng(4);
+    let (mut all, mut at) = (manipulator.all_modes(), manipulator.solution());
+    let (mut jacobians, mut measured) = (manipulator.jacobians(), manipulator.singularities());
+    for _ in 0..options.samples {
+        if !go_on() {
+            return None;
+        }
+        let pose = pose(&mut rng, manipulator);
+        if let Err(error) = manipulator.inverse_all(&pose, &mut all) {
+            found.fail(|| error.to_string());
+            continue;
+        }
+        let modes: Vec<Mode> = all.modes(manipulator).collect();
+        if modes.is_empty() {
+            found.leave_out("out of reach, or near a singularity");
+            continue;
+        }
+        let mode = modes[rng.usize(..modes.len())];
+        let place = || Place { manipulator, pose: &pose, mode }.to_string();
+        let regular = manipulator.solution_in_mode(&all, mode, &mut at).is_some()
+            && manipulator.differentiate(&at, &mut jacobians).is_ok_and(|regular| regular);
+        if regular {
+            manipulator.measure_singularities(&jacobians, &mut measured);
+        }
+        let near = |measure: f64| measure.abs() < SINGULAR;
+        if !regular || near(measured.whole.serial) || measured.whole.parallel.is_none_or(near) {
+            found.leave_out("out of reach, or near a singularity");
+            continue;
+        }
+        let target = at.displacement(manipulator);
+        let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| at.joints()[i]).collect();
+        let assemblies = match closed_form {
+            Ok(()) => match manipulator.forward(&actuated) {
+                Ok(found) => found.list,
+                Err(error) => {
+                    found.fail(|| format!("{error}: {}", place()));
+                    continue;
+                }
+            },
+            Err(_) => {
+                let step = |q: &f64| q + 1e-4 * (2.0 * rng.f64() - 1.0);
+                let start: Vec<f64> = pose.iter().map(step).collect();
+                manipulator.forward_near(&actuated, &start, mode).into_iter().collect()
+            }
+        };
+        let mut nearest = f64::INFINITY;
+        for assembly in &assemblies {
+            let Ok(there) = manipulator.displacement_in(&assembly.pose, assembly.mode) else {
+                found.fail(|| format!("an assembly without a place: {}", place()));
+                continue;
+            };
+            let open = gap(manipulator, &assembly.joints, &there);
+            if open.is_nan() || open > most {
+                found.fail(|| format!("an assembly whose legs are {open:.2e} open: {}", place()));
+            }
+            if assembly.mode == mode {
+                nearest = nearest.min(apart(manipulator, &there, &target));
+            }
+        }
+        found.note(nearest, place);
+    }
+    Some(found)
+}

@@ -1,0 +1,191 @@
+//! What is fuzzed: arbitrary bytes as mechanism files, motion files, recordings and joint lists. Nothing may panic or
+//! hang, and what is accepted has to hold. `fuzz/` has a target of `cargo fuzz` for each; a test replays the stored
+//! corpora and changes of them.
+
+use opm_check::{Comparison, Options, closures, rows};
+use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file;
+use opm_core::motion::{Ends, file as motion_file, table};
+use opm_mcap::{ReadError, read};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::sync::LazyLock;
+
+/// The manipulator that motions are read for.
+static PLANO: LazyLock<Manipulator> =
+    LazyLock::new(|| Manipulator::example("plano-spherical-5dof").unwrap());
+
+/// The largest closure error at poses that may be next to a singularity, where half of the digits are lost.
+const CLOSED: f64 = 1e-6;
+
+/// A mechanism file: read, decomposed, compiled, and its text read again.
+pub fn mechanism(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let Ok(read) = file::read(text) else { return };
+    let again = file::read(&read.text()).expect("a file that opm writes");
+    assert_eq!(again.mechanism.legs.len(), read.mechanism.legs.len());
+    if let Ok(manipulator) = Manipulator::new(read.mechanism) {
+        // The extremes of doubles are accepted by the reader; sizes beyond those of machines lose digits.
+        let size = manipulator.characteristic_length();
+        let home = manipulator.home_pose();
+        let mut solution = manipulator.solution();
+        if (1e-3..1e3).contains(&size) && home.iter().all(|value| value.abs() < 1e3) {
+            let _ = manipulator.inverse(&home, manipulator.home_mode(), &mut solution);
+        }
+    }
+}
+
+/// A motion file, or a table of poses if the first byte is odd.
+pub fn motion(data: &[u8]) {
+    let Some((first, rest)) = data.split_first() else { return };
+    let Ok(text) = std::str::from_utf8(rest) else { return };
+    let found = match first % 2 {
+        0 => motion_file::read(text, &PLANO),
+        _ => table::read(text, "table", &PLANO, Ends::default()),
+    };
+    match found {
+        Ok(motion) => assert!(motion.duration.is_finite() && motion.duration >= 0.0),
+        Err(errors) => assert!(!errors.problems.is_empty()),
+    }
+}
+
+/// A recording: read to its end, with every cloud and every table decoded; and recovered.
+pub fn recording(data: &[u8]) {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    file.write_all(data).unwrap();
+    let mut values = Vec::new();
+    let _ = read::<ReadError>(file.path(), |message| {
+        message.cloud()?;
+        message.values(&mut values)?;
+        message.runs()?;
+        Ok(())
+    });
+    let target = file.path().with_extension("recovered");
+    if opm_mcap::recover(file.path(), &target).is_ok() {
+        let _ = read::<ReadError>(&target, |_| Ok(()));
+        std::fs::remove_file(&target).unwrap();
+    }
+}
+
+/// A list of joints, made from bytes so that it often decomposes: closures and rows have to hold.
+pub fn joint_list(data: &[u8]) {
+    let text = joints(&mut Bytes(data));
+    let read = file::read(&text).unwrap_or_else(|errors| panic!("{errors}\n{text}"));
+    let Ok(manipulator) = Manipulator::new(read.mechanism) else { return };
+    let options = Options { samples: 3, seed: data.iter().map(|&byte| u64::from(byte)).sum() };
+    let holds = |found: Comparison| {
+        let off = found.worst.is_some_and(|worst| worst > CLOSED);
+        // A mechanism that nearly decomposes may close to a multiple of its deviation only.
+        let excused = found.tolerance.is_some_and(|tolerance| tolerance > CLOSED);
+        let wrong = found.problem.is_some() && (found.worst.is_none() || off);
+        assert!(!wrong || excused, "{found:?}\n{text}");
+    };
+    holds(closures(&manipulator, &options, &mut || true).unwrap());
+    if manipulator.choices() < 12 {
+        holds(rows(&manipulator, &options, &mut || true).unwrap());
+    }
+    let mut at = manipulator.solution();
+    let home = manipulator.home_pose();
+    if manipulator.forward_closed_form().is_ok()
+        && manipulator.inverse(&home, manipulator.home_mode(), &mut at).unwrap().is_some()
+    {
+        let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| at.joints()[i]).collect();
+        let _ = manipulator.forward(&actuated).unwrap();
+    }
+}
+
+/// Choices, made by bytes; zeros after the last.
+struct Bytes<'a>(&'a [u8]);
+
+impl Bytes<'_> {
+    fn next(&mut self) -> u8 {
+        let Some((first, rest)) = self.0.split_first() else { return 0 };
+        self.0 = rest;
+        *first
+    }
+
+    fn choose<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.next() as usize % of.len()]
+    }
+
+    /// A number from -2 to 2; most are round.
+    fn number(&mut self) -> f64 {
+        match self.next() {
+            byte if byte < 200 => f64::from(byte % 17) / 4.0 - 2.0,
+            _ => f64::from(self.next()) / 64.0 - 2.0,
+        }
+    }
+
+    fn vector(&mut self) -> [f64; 3] {
+        std::array::from_fn(|_| self.number())
+    }
+}
+
+/// A mechanism of two to four legs. A leg is a chain in one subgroup and a chain in another, as a rule the same two
+/// in all legs; some joints are anything.
+fn joints(bytes: &mut Bytes<'_>) -> String {
+    let mut text =
+        "format = 1\nname = \"fuzzed\"\n[platform]\npoint = [0.1, 0.2, 0.3]\n".to_owned();
+    let sections = [bytes.next() % 5, bytes.next() % 5];
+    let centres = [bytes.vector(), bytes.vector()];
+    let normals =
+        [[0.0, 0.0, 1.0], bytes.choose(&[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.6, 0.0, 0.8]])];
+    let mut number = 0;
+    for leg in 0..2 + bytes.next() % 3 {
+        let _ = writeln!(text, "[[leg]]\nname = \"leg{leg}\"\njoints = [");
+        for section in 0..2 {
+            for _ in 0..1 + bytes.next() % 3 {
+                number += 1;
+                let (kind, axis, point) =
+                    joint(bytes, sections[section], normals[section], centres[section]);
+                let actuated = if bytes.next() % 3 == 0 { ", actuated = true" } else { "" };
+                let limits = if bytes.next() % 4 == 0 { ", limits = [-1.5, 1.0]" } else { "" };
+                let pitch = if kind == "helical" { ", pitch = 0.1" } else { "" };
+                let point = match kind {
+                    "prismatic" => String::new(),
+                    _ => format!(", point = {point:?}"),
+                };
+                let _ = writeln!(
+                    text,
+                    "  {{ name = \"q{number}\", type = \"{kind}\", axis = {axis:?}{point}{pitch}{actuated}{limits} }},"
+                );
+            }
+        }
+        // At least one is actuated.
+        number += 1;
+        let _ = writeln!(
+            text,
+            "  {{ name = \"q{number}\", type = \"revolute\", axis = {:?}, point = {:?}, actuated = true }},\n]",
+            normals[1], centres[1]
+        );
+    }
+    text
+}
+
+/// A joint of a subgroup: planar, spherical, cylindrical, translations of a plane, of space; now and then of none.
+fn joint(
+    bytes: &mut Bytes<'_>,
+    section: u8,
+    normal: [f64; 3],
+    centre: [f64; 3],
+) -> (&'static str, [f64; 3], [f64; 3]) {
+    let across = match normal {
+        [0.0, 0.0, _] => [bytes.number(), 1.0, 0.0],
+        [x, y, z] => [-z, bytes.number(), x + y * 0.0],
+    };
+    let any = |bytes: &mut Bytes<'_>| {
+        let [x, y, z] = bytes.vector();
+        if [x, y, z] == [0.0; 3] { [0.0, 0.0, 1.0] } else { [x, y, z] }
+    };
+    if bytes.next() % 32 == 31 {
+        let kind = bytes.choose(&["revolute", "prismatic", "helical"]);
+        return (kind, any(bytes), bytes.vector());
+    }
+    match section {
+        0 if bytes.next() % 2 == 0 => ("revolute", normal, bytes.vector()),
+        0 | 3 => ("prismatic", across, centre),
+        1 => ("revolute", any(bytes), centre),
+        2 => (bytes.choose(&["revolute", "prismatic", "helical"]), normal, centre),
+        _ => ("prismatic", any(bytes), centre),
+    }
+}
