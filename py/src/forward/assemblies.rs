@@ -8,7 +8,7 @@ use numpy::{Element, IntoPyArray, PyArrayDyn};
 use opm_core::forward as core;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyIterator, PyList};
 
 /// Every assembly for each of ``n`` rows of actuated joint values: arrays, and a sequence of lists of :class:`Assembly`.
 ///
@@ -140,6 +140,11 @@ impl Assemblies {
 impl Assemblies {
     fn __len__(&self, py: Python<'_>) -> usize {
         self.modes.bind(py).len()
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        let items = (0..self.__len__(py)).map(|at| self.__getitem__(py, at.cast_signed()));
+        PyList::new(py, items.collect::<PyResult<Vec<_>>>()?)?.try_iter()
     }
 
     /// The assemblies of one row, a list; of one row alone, one assembly.
