@@ -16,7 +16,7 @@ FEATURES := --features opm-core/serde
 # One target after the other, also with -j: the order is part of what is read on the screen.
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: docs dist notices help test lint test-rust test-python kills bench guard guard-store figures web gallery python
+.PHONY: docs dist notices help test lint test-rust test-python kills fuzz bench guard guard-store figures web gallery python
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -43,6 +43,12 @@ test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's re
 # A few dozen are part of test-python.
 kills: $(TESTS_VENV)/made ## Kill a thousand runs at random moments, and check what is left
 	OPM_KILLS=1000 $(TESTS_VENV)/bin/python -m pytest -q -s tests/python/test_faults.py
+
+# The stored inputs, and changes of them, are part of test-rust.
+fuzz: ## Fuzz each target for a minute; needs a nightly toolchain and cargo-fuzz
+	for target in mechanism motion recording joint_list; do \
+	  $(CARGO) +nightly fuzz run $$target -- -max_total_time=60 -timeout=20 || exit 1; \
+	done
 
 bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md
 	$(PEERS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check ./py
