@@ -1144,7 +1144,35 @@ class Manipulator:
         ([[0.515, 0.515, 0.515]], [0.697])
         """
     def check(self, *, samples: int = 200, seed: int = 1) -> Certificate:
-        """"""
+        """Hold the closed forms of the mechanism to independent computations at random poses.
+
+        Closures of the undecomposed legs, numbers of branches against a numeric solver, derivatives against differences, rows
+        of sweeps against inverse kinematics of every pose, forward kinematics against the poses that joint values came
+        from. It is what ``opm check`` prints.
+
+        Parameters
+        ----------
+        samples : int
+            Random poses of each comparison.
+        seed : int
+            Seed of the random poses: the same one gives the same certificate.
+
+        Returns
+        -------
+        Certificate
+            What was held, and to what.
+
+        Raises
+        ------
+        OpmError
+            There are no samples.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> opm.examples.load("planar-3rrr").check(samples=20)
+        <Certificate of planar-3rrr: everything compared holds, 20 samples>
+        """
     def forward(
         self,
         joints: _Rows,
@@ -1586,57 +1614,57 @@ class Singularity:
 
 @final
 class Certificate:
-    """"""
+    """What was held of a mechanism, and to what: the result of :meth:`Manipulator.check`."""
 
     @property
     def name(self) -> str:
-        """"""
+        """Name of the mechanism."""
     @property
     def samples(self) -> int:
-        """"""
+        """Random poses of each comparison."""
     @property
     def seed(self) -> int:
-        """"""
+        """Seed of the random poses."""
     @property
     def holds(self) -> bool:
-        """"""
+        """Whether every comparison holds."""
     @property
     def comparisons(self) -> list[Comparison]:
-        """"""
+        """Every kind of comparison."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Comparison:
-    """"""
+    """One kind of comparison of a :class:`Certificate`."""
 
     @property
     def name(self) -> str:
-        """"""
+        """``"closure"``, ``"branches"``, ``"derivatives"``, ``"rows"`` or ``"forward"``."""
     @property
     def what(self) -> str:
-        """"""
+        """What was compared with what."""
     @property
     def holds(self) -> bool:
-        """"""
+        """Whether all that was compared agrees."""
     @property
     def compared(self) -> int:
-        """"""
+        """The number of comparisons that were made."""
     @property
     def left_out(self) -> int:
-        """"""
+        """The number that was left out, because the two cannot be expected to agree."""
     @property
     def because(self) -> str | None:
-        """"""
+        """Why some were left out."""
     @property
     def worst(self) -> float | None:
-        """"""
+        """The largest difference, if it is one of numbers."""
     @property
     def tolerance(self) -> float | None:
-        """"""
+        """The largest difference that is allowed."""
     @property
     def problem(self) -> str | None:
-        """"""
+        """The first comparison that does not hold: what differs, and where."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -2389,7 +2417,28 @@ def calibrate(
         A column or a parameter is unknown, or the measurements say nothing.
     """
 def recover(path: str | PathLike[str], output: str | PathLike[str] | None = None) -> str:
-    """"""
+    """Recover a recording that was cut short, as far as it goes.
+
+    A run that is killed, or whose disk is full, leaves a ``.partial`` file. What it holds is copied into a recording that every
+    viewer opens, and that says that it is not whole. It is what ``opm recover`` does.
+
+    Parameters
+    ----------
+    path : path
+        The MCAP file that was cut short.
+    output : path, optional
+        The file to write; ``NAME.recovered.mcap``, beside it, if not given.
+
+    Returns
+    -------
+    str
+        Name of the file that was written.
+
+    Raises
+    ------
+    OpmError
+        The file cannot be read or written, is not MCAP, is whole, or is still being written.
+    """
 
 def sweep(
     manipulator: Manipulator,
