@@ -28,8 +28,8 @@ pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use path::PathArgs;
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
-pub use setup::SetupArgs;
 pub use recording::{InspectArgs, LayoutArgs, PlotArgs, RecoverArgs};
+pub use setup::SetupArgs;
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
 use crate::change::Change;

@@ -281,8 +281,7 @@ impl Manipulator {
         )?;
         let [reachable, balanced] =
             std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
-        let index =
-            |index: Index| poses.frozen(&tables.table(TABLES + index as usize), &[]);
+        let index = |index: Index| poses.frozen(&tables.table(TABLES + index as usize), &[]);
         Ok(Analysis {
             efforts: poses.frozen(&tables.table(0), &[actuated])?,
             imaginary_efforts: poses.frozen(&tables.table(1), &[imaginary])?,
