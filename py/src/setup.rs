@@ -2,6 +2,7 @@
 
 use crate::arguments;
 use crate::error::wrong;
+use crate::given::Columns;
 use nalgebra::Vector3;
 use opm_analysis::{Gravity, Load, LoadAxes, LoadPoint, Wrench};
 use opm_study::{SetupOptions, SpringOptions};
@@ -58,7 +59,7 @@ impl Given<'_, '_> {
 
 /// A wrench of six finite numbers.
 fn six(given: &Bound<'_, PyAny>) -> PyResult<Wrench> {
-    let row = arguments::row(given, "wrench", &WRENCH)?;
+    let row = arguments::row(given, "wrench", Columns::all(&WRENCH))?;
     match row.iter().find(|value| !value.is_finite()) {
         Some(odd) => Err(wrong(format!("{odd} is among wrench, expected finite numbers"))),
         None => Ok(Wrench::from_components(std::array::from_fn(|i| row[i]))),
@@ -67,7 +68,7 @@ fn six(given: &Bound<'_, PyAny>) -> PyResult<Wrench> {
 
 /// Three finite numbers.
 fn vector(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vector3<f64>> {
-    let row = arguments::row(given, name, &["x", "y", "z"])?;
+    let row = arguments::row(given, name, Columns::all(&["x", "y", "z"]))?;
     match row.iter().find(|value| !value.is_finite()) {
         Some(odd) => Err(wrong(format!("{odd} is among {name}, expected finite numbers"))),
         None => Ok(Vector3::from_fn(|i, _| row[i])),
