@@ -17,6 +17,7 @@ const FREE = [new Vector3(0, 0, 1), new Vector3(1, 0, 0), new Vector3(0, 1, 0)];
 export class BodyMesh {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private ranges: [number, number][] = [];
+  private corners = 0;
 
   constructor() {
     const material = lit("#009e73", DoubleSide);
@@ -31,7 +32,7 @@ export class BodyMesh {
 
   /** Takes a surface; the buffers stay the same where they are large enough, and the part that is used is sent. */
   set({ corners, triangles, ranges }: WorkspaceBody, bytes: Uint8Array<ArrayBuffer>): void {
-    this.ranges = ranges;
+    [this.ranges, this.corners] = [ranges, corners];
     const { geometry } = this.mesh;
     const vectors = (place: number) => new Float32Array(bytes.buffer, bytes.byteOffset + 12 * corners * place, 3 * corners);
     this.send("position", vectors(0));
@@ -48,8 +49,21 @@ export class BodyMesh {
     this.mesh.material.side = still ? DoubleSide : FrontSide;
   }
 
+  /** Whether there is a surface. */
+  get known(): boolean {
+    return this.corners > 0;
+  }
+
+  /** The corners of the surface that is shown, where they are in space. */
+  ends(): Vector3[] {
+    const places = this.mesh.geometry.getAttribute("position") as BufferAttribute | undefined;
+    if (!places || !this.mesh.visible) return [];
+    return Array.from({ length: this.corners }, (_, i) => new Vector3().fromBufferAttribute(places, i).applyMatrix4(this.mesh.matrix));
+  }
+
   /** Draws nothing until the next surface. */
   clear(): void {
+    this.corners = 0;
     this.mesh.geometry.setDrawRange(0, 0);
   }
 

@@ -1,7 +1,7 @@
 // The parts of a mechanism that the legend lists, and their colours.
 
 /** The parts that have a colour, as the legend lists them. */
-export const PARTS = ["base", "lower", "upper", "platform", "actuated", "passive", "imaginary", "motions"] as const;
+export const PARTS = ["base", "lower", "upper", "platform", "actuated", "passive", "imaginary", "motions", "obstacle", "interfering"] as const;
 export type PartName = (typeof PARTS)[number];
 
 export const PART_NAMES: Record<PartName, string> = {
@@ -13,6 +13,8 @@ export const PART_NAMES: Record<PartName, string> = {
   passive: "Passive joints",
   imaginary: "Imaginary joints",
   motions: "Motions of the sections",
+  obstacle: "Obstacles",
+  interfering: "Bodies too near to each other",
 };
 
 /** Colours that people with colour blindness tell apart, by Okabe and Ito, and greys. */
@@ -25,4 +27,6 @@ export const COLOURS: Record<PartName, string> = {
   passive: "#56b4e9",
   imaginary: "#cc79a7",
   motions: "#009e73",
+  obstacle: "#997a4d",
+  interfering: "#e01010",
 };

@@ -1,12 +1,13 @@
-// The table of joints: values, and bars inside the limits.
+// The table of joints: values, and where they are inside the limits, as bars or, where they are driven, as sliders.
 
 import { byId, element, field, numberIn, short, show } from "./dom";
 import { COLOURS } from "./colours";
+import { rounded } from "./pose";
 import type { Counted, Description, Joint, Posture } from "./types";
 
 export interface JointEvents {
-  /** An actuated joint is to have this value. */
-  driven(name: string, value: number): void;
+  /** An actuated joint is to have this value; it is final when the slider is let go, or a number is entered. */
+  driven(name: string, value: number, final: boolean): void;
 }
 
 interface Row {
@@ -15,6 +16,8 @@ interface Row {
   value: HTMLElement;
   bar: HTMLElement;
   mark: HTMLElement;
+  /** In place of the bar, where the joint is driven. */
+  slider: HTMLInputElement | null;
 }
 
 export class JointTable {
@@ -47,28 +50,33 @@ export class JointTable {
     if (value instanceof HTMLInputElement) {
       value.addEventListener("change", () => {
         const wanted = numberIn(value);
-        if (wanted !== undefined) this.events.driven(name, wanted);
+        if (wanted !== undefined) this.events.driven(name, wanted, true);
       });
     }
+    const slider = driven ? element("input", { type: "range", step: "any", "aria-label": `${name}, slider` }) : null;
+    slider?.addEventListener("input", () => this.events.driven(name, rounded(slider), false));
+    slider?.addEventListener("change", () => this.events.driven(name, rounded(slider), true));
     const mark = element("b");
     const bar = element("div", { className: limits ? "" : "open" }, mark);
     const row = element("tr", {}, element("td", {}, dot, name), element("td", { className: "value" }, value),
-      element("td", { className: "unit" }, unit), element("td", { className: "bar" }, bar));
-    this.rows.push({ joint, row, value, bar, mark });
+      element("td", { className: "unit" }, unit), element("td", { className: "bar" }, slider ?? bar));
+    this.rows.push({ joint, row, value, bar, mark, slider });
     return row;
   }
 
-  /** Puts the value of a posture back into the field of a joint that cannot have what was entered. */
+  /** Puts the value of a posture back into the field and the slider of a joint that cannot have what was entered. */
   restore(name: string, posture: Posture | null): void {
     const number = this.joints.findIndex((joint) => joint.name === name);
     const [row, now] = [this.rows.find(({ joint }) => joint.name === name), posture?.values[number]];
-    if (row?.value instanceof HTMLInputElement && now !== undefined) row.value.value = field(Number(short(now)));
+    if (now === undefined) return;
+    if (row?.value instanceof HTMLInputElement) row.value.value = field(Number(short(now)));
+    if (row?.slider && !row.slider.matches(":active")) row.slider.value = String(now);
   }
 
   /** The values of a posture, and the ranges of the imaginary joints over the workspace. */
   update(posture: Posture | null, counted: Counted | null): void {
     const first = this.joints.findIndex((joint) => joint.kind === "imaginary");
-    for (const { joint, row, value, bar, mark } of this.rows) {
+    for (const { joint, row, value, bar, mark, slider } of this.rows) {
       const number = this.joints.indexOf(joint);
       const now = posture?.values[number];
       if (value instanceof HTMLInputElement) show(value, now === undefined ? undefined : Number(short(now)));
@@ -76,9 +84,14 @@ export class JointTable {
       const swept = joint.kind === "imaginary" ? (counted?.imaginary[number - first] ?? null) : null;
       const turn = joint.unit === "deg" ? 180 : joint.unit === "rad" ? Math.PI : null;
       const [low, high] = joint.limits ?? swept ?? (turn ? [joint.home - turn, joint.home + turn] : [joint.home - 1, joint.home + 1]);
-      bar.title = joint.limits ? `limits ${field(low)} to ${field(high)} ${joint.unit}`
+      (slider ?? bar).title = joint.limits ? `limits ${field(low)} to ${field(high)} ${joint.unit}`
         : swept ? `over the workspace ${short(low)} to ${short(high)} ${joint.unit}` : "no limits";
       row.classList.toggle("beyond", posture?.beyond.includes(number) ?? false);
+      if (slider && high > low) {
+        [slider.min, slider.max] = [String(low), String(high)];
+        // Whoever drags it is ahead of the mechanism.
+        if (now !== undefined && !slider.matches(":active")) slider.value = String(now);
+      }
       mark.hidden = now === undefined;
       if (now !== undefined) {
         const place = high > low ? (now - low) / (high - low) : 0.5;

@@ -21,13 +21,14 @@ export async function toAddress(state: State): Promise<string> {
   if (ny !== POINTS) query.set("slice.ny", String(ny));
   for (const end of ENDS) if (ends[end] !== undefined) query.set(`slice.${end}`, String(ends[end]));
   if (colour !== "none") query.set("slice.colour", colour);
-  const { body, kind, motion } = state;
+  const { body, kind, motion, clearance } = state;
   if (motion) query.set("motion", motion.name);
   if (motion && motion.text !== null) query.set("motion.file", await pack(motion.text));
   if (body.show) query.set("body", body.others);
   if (body.axes) query.set("body.axes", body.axes.join(":"));
   if (kind.name !== "grid") query.set("kind", kind.name);
   if (kind.turn !== null) query.set("kind.turn", String(kind.turn));
+  if (clearance !== null) query.set("clearance", String(clearance));
   return query.toString();
 }
 
@@ -43,7 +44,7 @@ export interface Linked {
 }
 
 const PLAIN = new Set(["example", "name", "file", "mode", "slice.x", "slice.y", "slice.nx", "slice.ny", ...ENDS.map((end) => `slice.${end}`),
-  "slice.colour", "motion", "motion.file", "body", "body.axes", "kind", "kind.turn"]);
+  "slice.colour", "motion", "motion.file", "body", "body.axes", "kind", "kind.turn", "clearance"]);
 
 /** The state of an address. What is not understood there is as in the initial state, and is told. */
 export async function fromAddress(hash: string, { examples }: Known): Promise<Linked> {
@@ -90,6 +91,7 @@ export async function fromAddress(hash: string, { examples }: Known): Promise<Li
   if (body !== null && body !== "any" && body !== "pose") wrong.push(`body=${body}: expected any or pose`);
   state.body = { show: body !== null, axes: query.get("body.axes")?.split(":") ?? null, others: body === "any" ? "any" : "pose" };
   state.kind = { name: query.get("kind") ?? "grid", turn: number("kind.turn") ?? null };
+  state.clearance = number("clearance", (value) => Number.isFinite(value) && value >= 0, "a length of 0 or more") ?? null;
   const motion = query.get("motion");
   if (motion !== null) {
     const text = query.has("motion.file") ? await unpacked("motion.file", "the motion") : null;

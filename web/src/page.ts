@@ -1,30 +1,21 @@
 // The page: what was asked for is the state, and two workers follow it. One solves poses, the other counts workspaces, so
 // that a long count never holds up the view.
 
-import { Assemblies } from "./assemblies";
-import { unbounded } from "./beyond";
-import { BodyMesh, BodyPanel } from "./body";
-import { Calm } from "./calm";
-import { DimensionPanel } from "./dimensions";
-import { byId, element, save, short } from "./dom";
+import { Address } from "./address";
+import { byId, element, short } from "./dom";
+import { Driver } from "./driver";
 import { Refused } from "./engine";
 import { Follower, Loop, type PageFile } from "./follower";
-import { HandleSet } from "./handles";
-import { JointTable } from "./joints";
-import { KindPanel } from "./kinds";
-import { fitting, fromAddress, toAddress } from "./link";
-import { Player } from "./play";
-import { PosePanel } from "./pose";
+import { fitting, fromAddress } from "./link";
+import { Panels } from "./panels";
 import { ProblemBox, type Source } from "./problems";
-import { SlicePanel } from "./slice";
+import { saveEntry } from "./saving";
+import { Stage } from "./stage";
 import { initial, type State } from "./state";
-import { showModes, showStatus } from "./status";
 import { known, sliceAxes, Sweeper } from "./sweeper";
-import { poseTable, sliceTable } from "./tables";
-import { connectToolbar, connectView } from "./toolbar";
-import type { Assembly, Counted, Description, Example, Kind, Posture, Problem, ShippedMotion } from "./types";
+import { connectToolbar } from "./toolbar";
+import type { Assembly, Description, Example, Kind, Posture, Problem, ShippedMotion } from "./types";
 import { Undo } from "./undo";
-import { View } from "./view";
 
 /** Milliseconds after which a dimension is taken to stay: where it was let go, and where a pointer may still hold it. */
 const REST = { final: 120, held: 400 };
@@ -39,43 +30,31 @@ export class Page {
   /** The last posture that was reached, which is shown, and its pose. */
   private posture: Posture | null = null;
   private reached: Pose = {};
-  private counted: Counted | null = null;
   private examples: Example[] = [];
   private shippedMotions: ShippedMotion[] = [];
   private readonly poser: Follower;
   private readonly sweeper: Sweeper;
-  private readonly view = new View(byId("view"));
-  private readonly handles = new HandleSet(this.view, byId("view"), {
-    pose: () => this.fullPose(), moved: (values, final) => this.move(values, final),
+  private readonly driver: Driver;
+  private readonly stage = new Stage({
+    pose: () => this.fullPose(this.state.pose), moved: (values, final) => this.move(values, final),
   });
-  private readonly body = new BodyMesh();
-  private readonly pose = new PosePanel({ moved: (name, value, final) => this.move({ [name]: value }, final) });
-  private readonly joints = new JointTable({ driven: (name, value) => void this.drive(name, value) });
-  private readonly dimensions = new DimensionPanel({
-    changed: (name, values, final) => this.change({ ...this.state.changes, [name]: values }, final),
-  });
-  private readonly slice = new SlicePanel({
-    sliced: (slice, final) => this.set({ slice }, final), placed: (values, final) => this.move(values, final),
-  });
-  private readonly bodyPanel = new BodyPanel((body) => this.set({ body }, true));
-  private readonly kinds = new KindPanel((kind) => this.set({ kind }, true));
-  private readonly player = new Player({
-    chosen: (motion) => this.set({ motion }, true),
-    placed: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
-    unknown: (name) => {
+  private readonly address = new Address((hash) => this.recall(hash));
+  private readonly panels = new Panels({
+    set: (patch, final) => this.set(patch, final),
+    move: (values, final) => this.move(values, final),
+    change: (name, values, final) => this.change({ ...this.state.changes, [name]: values }, final),
+    drive: (name, value, final) => void this.driver.drive({ name, value, final }),
+    assemble: (assembly, final) => this.assemble(assembly, final),
+    follow: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
+    unknownMotion: (name) => {
       this.state = { ...this.state, motion: null };
       this.problems.add("link", [{ message: `In the link, motion=${name}: opm ships no such motion for this mechanism.` }]);
     },
-    pose: () => this.fullPose(),
+    pose: () => this.fullPose(this.state.pose),
   });
-  private readonly assemblies = new Assemblies((assembly) => this.assemble(assembly));
-  private readonly table = new Calm(() => this.joints.update(this.posture, this.counted));
   private readonly undo = new Undo();
   private readonly posing = new Loop(() => this.stepPose(), (error) => this.fail("page", error), () => this.settle());
   private readonly sweeping = new Loop(() => this.stepSweep(), (error) => this.fail("page", error), () => this.settle());
-  /** The number of joints that are being driven. */
-  private driving = 0;
-  private address = "";
   /** The pose that was solved last, as a key. */
   private solved = "";
   private readonly problems = new ProblemBox(() => this.refused(), (refused) => {
@@ -92,38 +71,40 @@ export class Page {
 
   constructor(private readonly carried: PageFile | null, worker: string, library: ArrayBuffer) {
     this.poser = new Follower(worker, library);
+    this.driver = new Driver(this.poser.engine, {
+      from: () => {
+        const { description, posture, state: { pose } } = this;
+        return description && posture && { description, posture, pose };
+      },
+      found: (found, { name, value, final }) => {
+        this.tell("joint", []);
+        if (!this.panels.assemblies.set(found, final)) this.panels.refuseJoint(name, `No pose of the platform has ${name} = ${short(value)}.`);
+      },
+      failed: (error, { name }) => {
+        this.panels.refuseJoint(name, null);
+        this.fail("joint", error);
+      },
+      changed: () => this.settle(),
+    });
     this.sweeper = new Sweeper(new Follower(worker, library), {
       fitted: (fitted, first) => {
-        if (fitted) this.pose.setRanges(fitted.axes);
-        else this.slice.setWhole(this.counted = null);
-        // Sinusoids that somebody has typed stay.
-        if (fitted && first) this.player.setRanges(fitted.axes);
-        this.slice.setBeyond(unbounded(fitted));
+        this.panels.setFitted(fitted, first);
         this.show();
       },
-      sliced: (shown) => this.slice.setSlice(shown),
-      counted: (counted) => {
-        this.counted = counted;
-        this.slice.setWhole(counted);
-        this.table.ask();
-      },
+      sliced: (shown) => this.panels.slice.setSlice(shown),
+      counted: (counted) => this.panels.setCounted(counted),
       embodied: (body, bytes, past) => {
-        if (body) this.body.set(body, bytes);
-        else this.body.clear();
-        this.bodyPanel.setBody(body, past);
+        this.stage.setBody(body, bytes);
+        this.panels.body.setBody(body, past);
         this.placeBody();
       },
-      kindCounted: (count) => {
-        this.kinds.setCount(count);
-        this.slice.setKind(count);
-      },
-      followed: (about, bytes) => this.player.set(about, bytes),
+      kindCounted: (count) => this.panels.setKind(count),
+      followed: (about, bytes) => this.panels.player.set(about, bytes),
       told: (source, problems) => this.tell(source, problems),
     });
   }
 
   async start(): Promise<void> {
-    this.view.scene.add(this.body.mesh);
     this.connect();
     const { engine } = this.poser;
     this.examples = (await engine.ask<Example[]>({ do: "examples" })).value;
@@ -140,8 +121,8 @@ export class Page {
   private set(patch: Partial<State>, final: boolean): void {
     if (patch.changes && !same(patch.changes, this.state.changes)) this.moved(final);
     this.state = { ...this.state, ...patch };
-    this.body.still(final);
-    if (final) void this.remember();
+    this.stage.still(final);
+    if (final) void this.address.remember(this.state);
     this.follow();
   }
 
@@ -159,7 +140,7 @@ export class Page {
     clearTimeout(this.moving);
     this.moving = window.setTimeout(() => {
       this.moving = 0;
-      this.body.still(true);
+      this.stage.still(true);
       this.follow();
     }, final ? REST.final : REST.held);
   }
@@ -171,28 +152,14 @@ export class Page {
 
   private open(source: State["source"]): void {
     this.undo.reset({});
-    this.player.stop();
+    this.panels.player.stop();
     this.problems.clear();
     this.linked = false;
     this.set({ ...initial(), source }, true);
   }
 
-  /** Puts the state into the address, as a new step or in place of the last one. */
-  private async remember(instead = false): Promise<void> {
-    // In a frame of a notebook, the page has no address of its own.
-    if (location.protocol === "about:") return;
-    const address = await toAddress(this.state);
-    if (address === this.address) return;
-    this.address = address;
-    if (instead) history.replaceState(null, "", `#${address}`);
-    else history.pushState(null, "", `#${address}`);
-  }
-
-  /** Takes the state from the address, where the browser has gone back or forward. */
-  private async recall(): Promise<void> {
-    const hash = location.hash.replace(/^#/, "");
-    if (hash === this.address) return;
-    this.address = hash;
+  /** Takes the state of the address to which the browser has gone. */
+  private async recall(hash: string): Promise<void> {
     await this.take(hash);
     this.undo.settled = this.state.changes;
     this.follow();
@@ -207,10 +174,10 @@ export class Page {
     this.problems.set("link", problems);
   }
 
-  /** Every coordinate of the pose. */
-  private fullPose(): Pose {
+  /** Every coordinate of a pose. */
+  private fullPose(pose: Pose): Pose {
     const home = this.description?.coordinates.map(({ name, home }) => [name, home]) ?? [];
-    return { ...(Object.fromEntries(home) as Pose), ...this.state.pose };
+    return { ...(Object.fromEntries(home) as Pose), ...pose };
   }
 
   /** A working mode as the state has it: nothing for that of home. */
@@ -230,8 +197,8 @@ export class Page {
 
   /** Says that all that was asked for has been computed, where this is so. */
   private settle(): void {
-    const ready = !this.posing.running && !this.sweeping.running && !this.driving && !this.moving;
-    if (ready) this.table.flush();
+    const ready = !this.posing.running && !this.sweeping.running && !this.driver.running && !this.moving;
+    if (ready) this.panels.flush();
     document.body.dataset["ready"] = String(ready);
   }
 
@@ -272,16 +239,16 @@ export class Page {
     if (!this.description) return;
     this.check(this.description);
     const pose = known(this.state.pose, this.description);
-    const key = JSON.stringify([this.poser.text, this.poser.changes, pose, this.state.mode]);
+    const { mode, clearance } = this.state;
+    const key = JSON.stringify([this.poser.text, this.poser.changes, pose, mode, clearance]);
     if (key === this.solved) return;
     this.solved = key;
     try {
-      const { value, bytes } = await this.poser.engine.ask<Posture>({ do: "pose", pose, mode: this.state.mode });
+      const { value, bytes } = await this.poser.engine.ask<Posture>({ do: "pose", pose, mode, clearance });
       if (value.reached) {
         [this.posture, this.reached] = [value, pose];
-        this.view.place(bytes);
+        this.stage.setPosture(value, bytes);
       }
-      if (description && another) this.view.fit(false);
       this.showPosture(value);
       this.tell("pose", []);
     } catch (error) {
@@ -304,8 +271,9 @@ export class Page {
     const file = this.file();
     // Its coordinates have to be known; the other worker is told when they are.
     if (!description || this.described !== file.text) return;
-    const body = this.bodyPanel.wanted ? this.bodyPanel.chosen() : null;
-    const wanted = { state, moving: this.moving > 0, description, file, body, kind: this.kinds.wanted, motion: this.player.file };
+    const { body: { wanted: shown }, kinds, player } = this.panels;
+    const body = shown ? this.panels.body.chosen() : null;
+    const wanted = { state, moving: this.moving > 0, description, file, body, kind: kinds.wanted, motion: player.file };
     await this.sweeper.step(wanted, () => this.sweeping.again);
   }
 
@@ -324,36 +292,19 @@ export class Page {
       document.title = `${name} – opm explorer`;
       byId("title").textContent = name;
       [this.posture, this.reached] = [null, {}];
-      this.assemblies.set([]);
-      this.pose.build(description);
-      this.dimensions.build(description);
-      this.slice.build(description);
-      this.bodyPanel.build(description);
-      this.kinds.build(kinds, description.angle);
-      this.player.build(description, this.shippedMotions, this.state.motion);
-      byId("mode").replaceChildren(...description.modes.map((mode) => element("option", { value: mode }, mode || "the only one")));
+      this.panels.build(description, kinds, this.shippedMotions, this.state.motion);
     }
-    if (rebuilt) {
-      this.joints.build(description);
-      this.joints.update(this.posture, this.counted);
-    }
-    this.view.setMechanism(description);
+    if (rebuilt) this.panels.buildJoints(description);
+    this.stage.setMechanism(description, kinds !== null);
     this.show();
   }
 
   private show(): void {
     this.problems.show();
     if (!this.description) return;
-    const { pose, changes, slice, body, kind, mode, motion } = this.state;
-    this.pose.update(pose);
-    this.dimensions.update(this.description, changes);
-    this.slice.update(slice, sliceAxes(slice, this.sweeper.fitted, this.description), this.fullPose());
-    this.bodyPanel.update(body);
-    this.kinds.update(kind);
-    this.player.update(motion);
-    if (!this.kinds.wanted) this.slice.setKind(null);
+    const { pose, changes, slice } = this.state;
+    this.panels.update(this.state, this.description, sliceAxes(slice, this.sweeper.fitted, this.description), this.fullPose(pose));
     this.placeBody();
-    byId<HTMLSelectElement>("mode").value = mode ?? this.description.home_mode;
     byId<HTMLButtonElement>("undo").disabled = !this.undo.canUndo;
     byId<HTMLButtonElement>("redo").disabled = !this.undo.canRedo;
     byId<HTMLButtonElement>("reset").disabled = Object.keys(changes).length === 0;
@@ -363,10 +314,7 @@ export class Page {
   private showPosture(posture: Posture): void {
     const { description } = this;
     if (!description) return;
-    showStatus(posture, description);
-    showModes(posture);
-    this.table.ask();
-    if (posture.handles) this.handles.set(description.coordinates, posture.handles, this.view.size);
+    this.panels.setPosture(posture, description);
     this.placeBody();
     description.dependent.forEach(({ name }, number) => {
       const value = this.posture?.dependent[number];
@@ -374,17 +322,9 @@ export class Page {
     });
   }
 
-  /** Puts the body of the workspace beside the mechanism. */
+  /** Puts the body of the workspace beside the mechanism. Where the pose is out of reach, both stay. */
   private placeBody(): void {
-    const { posture, description, body, bodyPanel } = this;
-    const ready = bodyPanel.wanted && description && posture?.handles && this.sweeper.fitted;
-    body.mesh.visible = Boolean(ready);
-    // Where the pose is out of reach, the platform and the body stay.
-    if (ready && posture.reached) {
-      const note = body.place(bodyPanel.chosen(), description, this.fullPose(), posture.handles!, this.view.size);
-      bodyPanel.setNote(note);
-    }
-    this.view.draw();
+    this.stage.placeBody(this.panels.body, this.sweeper.fitted !== null, this.fullPose(this.reached));
   }
 
   private fail(source: Source, error: unknown): void {
@@ -414,7 +354,7 @@ export class Page {
     if (this.good) {
       this.state = this.good;
       this.tell("mechanism", problems);
-      void this.remember(true);
+      void this.address.remember(this.state, true);
       this.follow();
     } else if (Object.keys(this.state.changes).length) {
       // A mechanism that a link cannot change is shown as its file has it.
@@ -428,74 +368,42 @@ export class Page {
     } else this.tell("mechanism", problems);
   }
 
-  /** Moves an actuated joint, and the platform to the nearest pose that this allows. */
-  private async drive(name: string, value: number): Promise<void> {
-    if (!this.description || !this.posture) return;
-    const { values } = this.posture;
-    const actuated = this.description.joints.map((joint, number) => ({ joint, value: values[number]! }));
-    const joints = Object.fromEntries(actuated.filter(({ joint }) => joint.kind === "actuated").map(({ joint, value }) => [joint.name, value]));
-    joints[name] = value;
-    this.driving++;
-    this.settle();
-    try {
-      const request = { do: "forward", joints, pose: known(this.state.pose, this.description) };
-      const { assemblies } = (await this.poser.engine.ask<{ assemblies: Assembly[] }>(request)).value;
-      this.tell("joint", []);
-      if (!this.assemblies.set(assemblies)) {
-        this.joints.restore(name, this.posture);
-        byId("status").classList.add("wrong");
-        byId("status").textContent = `No pose of the platform has ${name} = ${short(value)}.`;
-      }
-    } catch (error) {
-      this.joints.restore(name, this.posture);
-      this.fail("joint", error);
-    }
-    this.driving--;
-    this.settle();
-  }
-
   /** Goes to one of the assemblies for the present actuated joints. */
-  private assemble(assembly: Assembly): void {
+  private assemble(assembly: Assembly, final: boolean): void {
     if (!this.description) return;
     const pose = this.description.coordinates.map(({ name }, i) => [name, Number(assembly.pose[i]!.toPrecision(12))]);
-    this.set({ pose: Object.fromEntries(pose) as Pose, mode: this.asState(assembly.mode) }, true);
+    this.set({ pose: Object.fromEntries(pose) as Pose, mode: this.asState(assembly.mode) }, final);
   }
 
   // Buttons, menus, files.
 
   private connect(): void {
-    connectView(this.view);
+    this.stage.connect();
+    this.address.connect();
     byId("share").hidden = location.protocol === "about:";
-    const handles = byId<HTMLInputElement>("handles");
-    handles.addEventListener("change", () => {
-      this.handles.group.visible = handles.checked;
-      this.view.draw();
-    });
     connectToolbar({
       home: () => this.set({ pose: {} }, true),
       undo: (back) => this.go(back),
       reset: () => this.change({}, true),
       share: () => void this.share(),
-      themed: () => {
-        this.slice.draw();
-        this.player.draw();
-      },
+      themed: () => this.panels.draw(),
       mode: (mode) => this.set({ mode: this.asState(mode) }, true),
       example: (name) => this.open({ kind: "example", name }),
-      save: (what) => void this.save(what),
+      save: (entry) => {
+        const { description, stage, posture, reached, panels: { slice }, poser: { engine } } = this;
+        if (description) void saveEntry(entry, { description, engine, slice, stage, posture, reached });
+      },
       opened: (name, text) => {
         // A motion has a duration, or is a table.
         const motion = /\.csv$/i.test(name) || /^\s*(duration|points|moves)\s*=|^\s*\[+\s*(coordinates|points|moves)/m.test(text);
-        if (motion && this.description) this.player.open({ name, text });
+        if (motion && this.description) this.panels.player.open({ name, text });
         else this.open({ kind: "text", name, text });
       },
     });
-    window.addEventListener("popstate", () => void this.recall());
-    window.addEventListener("hashchange", () => void this.recall());
   }
 
   private async share(): Promise<void> {
-    await this.remember();
+    await this.address.remember(this.state);
     const button = byId("share");
     try {
       await navigator.clipboard.writeText(location.href);
@@ -503,24 +411,6 @@ export class Page {
       setTimeout(() => (button.textContent = "Copy link"), 1500);
     } catch {
       prompt("The link to what is shown", location.href);
-    }
-  }
-
-  private async save(what: string): Promise<void> {
-    if (!this.description) return;
-    const { name } = this.description;
-    if (what === "mechanism") {
-      const { value } = await this.poser.engine.ask<string>({ do: "file" });
-      save(`${name}.toml`, value, "application/toml");
-    } else if (what === "slice-csv" && this.slice.shown) {
-      save(`${name}-slice.csv`, sliceTable(this.description, this.slice.shown), "text/csv");
-    } else if (what === "slice-svg") save(`${name}-slice.svg`, this.slice.svg(), "image/svg+xml");
-    else if (what === "picture") {
-      const picture = await this.view.picture();
-      if (picture) save(`${name}.png`, picture, "image/png");
-    } else if (what === "pose" && this.posture) {
-      // The pose that is shown: one out of reach has no joints.
-      save(`${name}-pose.csv`, poseTable(this.description, this.reached, this.posture), "text/csv");
     }
   }
 }

@@ -19,13 +19,15 @@ interface Placed {
   mesh: InstancedMesh;
   index: number;
   body: number;
+  part: PartName;
   local: Matrix4;
-  /** Whether it belongs to what is looked at. */
-  measured: boolean;
 }
 
 export class Solids {
   readonly group = new Group();
+  private given: Body[] = [];
+  /** The names of the bodies that are too near to each other. */
+  private near = new Set<string>();
   private solids: Placed[] = [];
   private kept: { key: string; meshes: InstancedMesh[] } = { key: "", meshes: [] };
   /** Where the bodies are. */
@@ -36,7 +38,28 @@ export class Solids {
 
   /** Takes the bodies of a mechanism, at home. Those of the same mechanism with other dimensions are changed in place. */
   set(bodies: Body[]): void {
-    const all = bodies.flatMap((body, number) => body.solids.map((solid) => ({ solid, body: number, part: partOf(solid, body) })));
+    this.given = bodies;
+    this.bodies = bodies.map(({ origin }) => new Matrix4().setPosition(...origin));
+    this.sort();
+  }
+
+  /** Takes the names of the bodies that are too near to each other. */
+  setNear(names: string[]): void {
+    const key = names.join("\n");
+    if (key === [...this.near].join("\n")) return;
+    this.near = new Set(names);
+    this.sort();
+  }
+
+  /** The parts that there are. */
+  parts(): Set<PartName> {
+    return new Set(this.solids.map(({ part }) => part));
+  }
+
+  /** Puts each solid among those of its shape and its part. */
+  private sort(): void {
+    const part = (solid: Solid, body: Body) => (solid.member !== null && this.near.has(solid.member) ? "interfering" : partOf(solid, body));
+    const all = this.given.flatMap((body, number) => body.solids.map((solid) => ({ solid, body: number, part: part(solid, body) })));
     const kinds = new Map<string, { shape: Solid["shape"]; part: PartName; count: number }>();
     const places = all.map(({ solid: { shape }, part }) => {
       const name = `${shape} ${part}`;
@@ -59,9 +82,8 @@ export class Solids {
     }
     const names = [...kinds.keys()];
     this.solids = all.map(({ solid, body, part }, i) => ({
-      mesh: this.kept.meshes[names.indexOf(places[i]!.name)]!, index: places[i]!.index, body, local: local(solid), measured: part !== "imaginary",
+      mesh: this.kept.meshes[names.indexOf(places[i]!.name)]!, index: places[i]!.index, body, part, local: local(solid),
     }));
-    this.bodies = bodies.map(({ origin }) => new Matrix4().setPosition(...origin));
     this.update();
   }
 
@@ -78,7 +100,7 @@ export class Solids {
 
   /** The ends of the solids, for the view to hold all of them. */
   ends(): Vector3[] {
-    const measured = this.solids.filter((solid) => solid.measured);
+    const measured = this.solids.filter(({ part }) => part !== "imaginary");
     return measured.flatMap(({ body, local }) => [-0.5, 0.5].map((end) =>
       new Vector3(0, end, 0).applyMatrix4(local).applyMatrix4(this.bodies[body]!)));
   }

@@ -13,6 +13,8 @@ export interface State {
   body: BodyState;
   kind: KindState;
   motion: MotionState | null;
+  /** Bodies that are nearer to each other than this are red; nothing for those that overlap. */
+  clearance: number | null;
 }
 
 /** The motion of the platform: a shipped one by its name, or a file with its text. */
@@ -58,5 +60,6 @@ export function initial(): State {
     body: { show: false, axes: null, others: "pose" },
     kind: { name: "grid", turn: null },
     motion: null,
+    clearance: null,
   };
 }

@@ -1,12 +1,14 @@
 // The line below the mechanism, and the notes of the working modes: what is reached.
 
+import { sentence } from "./contacts";
 import { byId, short } from "./dom";
 import type { Description, Posture } from "./types";
 
 /** Says whether a posture is reached: if not, which leg misses it, and by how much. */
 export function showStatus(posture: Posture, { joints, modes }: Description): void {
   const status = byId("status");
-  status.classList.toggle("wrong", !posture.within);
+  const { contacts } = posture;
+  status.classList.toggle("wrong", !posture.within || (contacts?.overlap ?? false));
   const beyond = posture.beyond.map((number) => {
     const { name, limits, unit } = joints[number]!;
     const value = posture.values[number]!;
@@ -17,8 +19,9 @@ export function showStatus(posture: Posture, { joints, modes }: Description): vo
   const several = posture.modes.length > 1 ? ` ${within} of ${modes.length} working modes reach this pose within limits.` : "";
   const text = !posture.reached
     ? `Out of reach: ${posture.out_of_reach.map(({ leg, text }) => `${leg}, ${text}`).join("; ")}. The last pose in reach is shown.`
-    : beyond.length ? `Beyond limits: ${beyond.join(", ")}` : `In reach, within all limits.${several}`;
-  if (status.textContent !== text) status.textContent = text;
+    : beyond.length ? `Beyond limits: ${beyond.join(", ")}.` : `In reach, within all limits.${several}`;
+  const overlap = contacts?.overlap ? ` ${sentence(contacts.nearest)}` : "";
+  if (status.textContent !== text + overlap) status.textContent = text + overlap;
 }
 
 /** Notes at each working mode whether it reaches the pose. */

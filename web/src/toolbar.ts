@@ -1,7 +1,8 @@
 // Buttons, menus, keys, and files that are opened or dropped.
 
-import { COLOURS, PARTS, PART_NAMES, type PartName } from "./colours";
-import { byId, element } from "./dom";
+import type { PartName } from "./colours";
+import { byId } from "./dom";
+import { connectLegend } from "./legend";
 
 export interface ToolbarEvents {
   home(): void;
@@ -76,17 +77,10 @@ function connectFiles(open: (file: File) => Promise<void>): void {
   });
 }
 
-/** The legend, and the keys of the view. */
+/** The buttons and the keys of the view. */
 export function connectView(view: ViewEvents): void {
-  byId("legend").append(...PARTS.map((part) => {
-    const colour = element("i");
-    colour.style.background = COLOURS[part];
-    const button = element("button", { type: "button" }, colour, PART_NAMES[part]);
-    for (const event of ["pointerenter", "focus"]) button.addEventListener(event, () => view.highlight(part));
-    for (const event of ["pointerleave", "blur"]) button.addEventListener(event, () => view.highlight(null));
-    return element("li", {}, button);
-  }));
-  byId("fit").addEventListener("click", () => view.fit());
+  connectLegend(view.highlight);
+  byId("fit").addEventListener("click", view.fit);
   byId("view").addEventListener("keydown", (event) => {
     const turn = { ArrowLeft: [0.12, 0], ArrowRight: [-0.12, 0], ArrowUp: [0, 0.12], ArrowDown: [0, -0.12] }[event.key];
     const zoom = { "+": 0.9, "=": 0.9, "-": 1 / 0.9 }[event.key];

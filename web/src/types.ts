@@ -46,7 +46,9 @@ export interface Subspace {
 
 export interface Solid {
   shape: "cylinder" | "ball" | "block";
-  material: "base" | "link" | "actuated" | "passive" | "platform" | "imaginary";
+  material: "base" | "link" | "actuated" | "passive" | "platform" | "imaginary" | "obstacle";
+  /** What it belongs to among the bodies that may interfere. */
+  member: string | null;
   from: Vector;
   to: Vector;
   radius: number;
@@ -97,6 +99,15 @@ export interface Posture {
   out_of_reach: OutOfReach[];
   modes: { mode: string; within: boolean }[];
   handles: Handles | null;
+  contacts: Contacts | null;
+}
+
+/** How far the bodies are from each other, in words, and which are too near. */
+export interface Contacts {
+  near: string[];
+  overlap: boolean;
+  nearest: string;
+  set_aside: string | null;
 }
 
 export interface FittedAxis {

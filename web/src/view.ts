@@ -1,13 +1,19 @@
 // The space that the mechanism is in: camera, light, and what the pointer does.
 
-import { AmbientLight, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { AmbientLight, Box3, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { PartName } from "./colours";
 import { Materials } from "./materials";
+import { showParts } from "./legend";
 import { Motions } from "./motions";
 import { Solids } from "./solids";
 import type { Description } from "./types";
 
+/** The direction from which a mechanism is seen first. */
+const FIRST = new Vector3(0.55, -0.75, 0.5).normalize();
+
+/** The share of the width and the height of the view that what it fits has. */
+const ROOM = 0.94;
 
 export class View {
   readonly scene = new Scene();
@@ -19,7 +25,6 @@ export class View {
   private readonly motions = new Motions(this.materials);
   /** The radius of the mechanism, metres. */
   size = 1;
-  private readonly centre = new Vector3();
   private drawn = false;
 
   constructor(private readonly host: HTMLElement) {
@@ -47,6 +52,7 @@ export class View {
   setMechanism(description: Description): void {
     this.solids.set(description.bodies);
     this.motions.set(description);
+    showParts(this.solids.parts());
     this.draw();
   }
 
@@ -57,20 +63,46 @@ export class View {
     this.draw();
   }
 
-  /** Looks at the whole mechanism, from the direction of the camera or from the first one. */
-  fit(again = true): void {
+  /** Looks at the whole mechanism from the first direction. */
+  first(): void {
     const points = this.solids.ends();
     if (!points.length) return;
-    const sum = points.reduce((sum, point) => sum.add(point), new Vector3());
-    this.centre.copy(sum.divideScalar(points.length));
-    this.size = Math.max(...points.map((point) => point.distanceTo(this.centre)), 1e-9);
-    const from = again
-      ? this.camera.position.clone().sub(this.controls.target).normalize()
-      : new Vector3(0.55, -0.75, 0.5).normalize();
-    const slim = Math.min(1, this.camera.aspect);
-    const distance = (0.86 * this.size) / Math.sin((this.camera.fov * Math.PI) / 360) / slim;
-    this.controls.target.copy(this.centre);
-    this.camera.position.copy(this.centre).addScaledVector(from, distance);
+    this.size = around(points).radius;
+    this.look([], FIRST);
+  }
+
+  /** Looks at the whole mechanism and these points from the direction of the camera. */
+  fit(others: Vector3[]): void {
+    this.look(others, this.camera.position.clone().sub(this.controls.target).normalize());
+  }
+
+  /** Moves back until the mechanism and these points are seen, if they are not. */
+  takeIn(others: Vector3[]): void {
+    const arm = this.camera.position.clone().sub(this.controls.target);
+    const points = [...this.solids.ends(), ...others];
+    if (this.distance(points, around(points).centre, arm.clone().normalize()) > arm.length()) this.fit(others);
+  }
+
+  /** How far from a centre the camera, in a direction from it, sees all points. */
+  private distance(points: Vector3[], centre: Vector3, from: Vector3): number {
+    const across = new Vector3().crossVectors(this.camera.up, from).normalize();
+    const upwards = new Vector3().crossVectors(from, across);
+    const high = ROOM * Math.tan((this.camera.fov * Math.PI) / 360);
+    const wide = high * this.camera.aspect;
+    const least = (point: Vector3) => {
+      const arm = point.clone().sub(centre);
+      return arm.dot(from) + Math.max(Math.abs(arm.dot(across)) / wide, Math.abs(arm.dot(upwards)) / high);
+    };
+    return points.reduce((distance, point) => Math.max(distance, least(point)), 1e-9);
+  }
+
+  private look(others: Vector3[], from: Vector3): void {
+    const points = [...this.solids.ends(), ...others];
+    if (!points.length) return;
+    const { centre } = around(points);
+    const distance = this.distance(points, centre, from);
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(from, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 100;
     this.camera.updateProjectionMatrix();
@@ -87,6 +119,13 @@ export class View {
     if (Math.abs(turned.clone().normalize().z) < 0.995) arm.copy(turned);
     this.camera.position.copy(this.controls.target).addScaledVector(arm, nearer);
     this.controls.update();
+    this.draw();
+  }
+
+  /** Takes the names of the bodies that are too near to each other. */
+  setNear(names: string[]): void {
+    this.solids.setNear(names);
+    showParts(this.solids.parts());
     this.draw();
   }
 
@@ -124,6 +163,12 @@ export class View {
     this.renderer.setSize(width, height);
     this.draw();
   }
+}
+
+/** A ball that holds all points. */
+function around(points: Vector3[]): { centre: Vector3; radius: number } {
+  const centre = new Box3().setFromPoints(points).getCenter(new Vector3());
+  return { centre, radius: points.reduce((radius, point) => Math.max(radius, point.distanceTo(centre)), 1e-9) };
 }
 
 /** Whether there is no graphics card: smooth edges would take four times as long. */

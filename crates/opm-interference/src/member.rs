@@ -13,7 +13,7 @@
 
 use nalgebra::{Point3, Unit, Vector3};
 use opm_core::mechanism::{Mechanism, Obstacle, ObstacleShape};
-use opm_core::skeleton::{Body, Material, PartKind, SeatMotion, Skeleton, Solid};
+use opm_core::skeleton::{Body, Material, Part, PartKind, SeatMotion, Skeleton, Solid};
 use parry3d_f64::math::{Pose, Rot3, Vector};
 use std::ops::Range;
 
@@ -91,6 +91,20 @@ pub(crate) fn scaled(vector: &Vector3<f64>, unit: f64) -> Vector {
 
 fn direction(axis: &Unit<Vector3<f64>>) -> Vector {
     Vector::new(axis.x, axis.y, axis.z)
+}
+
+/// The name of the member that each part of a body is drawn for, in the order of the parts; none for signs of joints, and for
+/// the ring that a base is drawn with.
+pub fn names_of_parts(body: &Body) -> Vec<Option<String>> {
+    // The guides of the base come in the order of the joints that they belong to.
+    let sliders = body.seats.iter().filter(|seat| seat.motion == SeatMotion::Slide);
+    let mut guides = sliders.map(|seat| format!("{}/{}", body.name, seat.joint));
+    let name = |part: &Part| match part.kind {
+        PartKind::Guide { .. } if body.parent.is_none() => guides.next(),
+        PartKind::Rod | PartKind::Guide { .. } => Some(body.name.clone()),
+        PartKind::Joint | PartKind::Ring => None,
+    };
+    body.parts.iter().map(name).collect()
 }
 
 /// The members of a mechanism, and their shapes.

@@ -6,7 +6,8 @@ use crate::request::{Changes, Coordinates};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::file::{self, FileUnits, MechanismFile};
 use opm_core::skeleton::{ImaginaryJoints, Skeleton};
-use std::sync::Arc;
+use opm_interference::Interference;
+use std::sync::{Arc, OnceLock};
 
 /// A mechanism file, its changes, and the manipulator that it describes.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub struct Explorer {
     file: MechanismFile,
     manipulator: Arc<Manipulator>,
     skeleton: Skeleton,
+    /// The shapes of the bodies, from the first pose on: sweeps need none.
+    interference: OnceLock<Interference>,
 }
 
 impl Explorer {
@@ -45,7 +48,8 @@ impl Explorer {
             imaginary: manipulator.imaginary(),
         };
         let skeleton = Skeleton::new(manipulator.mechanism(), Some(joints));
-        Ok(Self { name, original, file, manipulator: Arc::new(manipulator), skeleton })
+        let manipulator = Arc::new(manipulator);
+        Ok(Self { name, original, file, manipulator, skeleton, interference: OnceLock::new() })
     }
 
     /// The file with its changes.
@@ -66,6 +70,11 @@ impl Explorer {
     /// The bodies to draw.
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
+    }
+
+    /// The shapes of the bodies and obstacles, and the pairs that may interfere.
+    pub fn interference(&self) -> &Interference {
+        self.interference.get_or_init(|| Interference::new(self.manipulator.mechanism()))
     }
 
     /// The working mode of a request.

@@ -30,6 +30,7 @@ mod explorer;
 mod exports;
 mod forward;
 mod handles;
+mod interference;
 mod kinds;
 mod motion;
 mod pose;

@@ -2,6 +2,7 @@
 
 use crate::explorer::Explorer;
 use crate::handles::{Handles, handles};
+use crate::interference::{Contacts, contacts};
 use crate::problem::Problems;
 use crate::request::Coordinates;
 use crate::scene;
@@ -32,6 +33,8 @@ struct Posture<'a> {
     modes: Vec<Reaching>,
     /// The handles of the platform, if the pose is reached.
     handles: Option<Handles>,
+    /// The distances of the bodies, if the pose is reached.
+    contacts: Option<Contacts>,
 }
 
 /// A leg that does not reach the pose.
@@ -53,11 +56,12 @@ struct Reaching {
     within: bool,
 }
 
-/// Solves a pose in one working mode.
+/// Solves a pose in one working mode. The clearance is in the file's units.
 pub fn solve(
     explorer: &Explorer,
     pose: &Coordinates,
     mode: Option<&str>,
+    clearance: Option<f64>,
 ) -> Result<Reply, Problems> {
     let (manipulator, mode) = (explorer.manipulator(), explorer.mode(mode)?);
     let pose = explorer.pose(pose)?;
@@ -74,6 +78,7 @@ pub fn solve(
         out_of_reach: vec![],
         modes: reaching(manipulator, &pose)?,
         handles: if reached { handles(explorer, &pose, mode) } else { None },
+        contacts: None,
     };
     if !reached {
         let missed = solution.unreachable().iter();
@@ -85,6 +90,7 @@ pub fn solve(
     let dependent = manipulator.dependent_coordinates().iter().zip(solution.dependent());
     posture.dependent =
         dependent.map(|(c, &value)| shown(value, c.quantity, explorer.units())).collect();
+    posture.contacts = Some(contacts(explorer, &solution, clearance)?);
     let platform = solution.displacement(manipulator);
     let bodies = scene::placed(explorer, solution.joints(), solution.imaginary(), platform);
     Ok(Reply::with_bytes(&posture, bodies))

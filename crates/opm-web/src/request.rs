@@ -37,13 +37,16 @@ pub enum Request {
     },
     /// The text of the mechanism file, with the changes.
     File {},
-    /// The joints at a pose, the bodies, and the working modes that reach it.
+    /// The joints at a pose, the bodies and their distances, and the working modes that reach it.
     Pose {
         /// The pose.
         #[serde(default)]
         pose: Coordinates,
         /// The working mode.
         mode: Option<String>,
+        /// Bodies that are nearer to each other than this are named, in the file's unit of lengths; without it, those that
+        /// overlap.
+        clearance: Option<f64>,
     },
     /// The poses of the platform for given values of the actuated joints.
     Forward {

@@ -4,8 +4,12 @@ use crate::explorer::Explorer;
 use opm_core::Section;
 use opm_core::decomposition::Freedom;
 use opm_core::nalgebra::{Isometry3, Point3};
-use opm_core::skeleton::{Configuration, Part, Solid};
+use opm_core::skeleton::{Configuration, Solid};
+use opm_interference::member::names_of_parts;
 use serde::Serialize;
+
+/// The material of obstacles.
+const OBSTACLE: &str = "obstacle";
 
 /// A body: its solids are in its own frame.
 #[derive(Serialize)]
@@ -22,6 +26,8 @@ pub struct Body<'a> {
 struct Shape {
     shape: &'static str,
     material: &'static str,
+    /// What it belongs to among the bodies that may interfere; none for signs of joints, and for the ring of the base.
+    member: Option<String>,
     /// The ends of the axis; both are the centre of a ball.
     from: [f64; 3],
     to: [f64; 3],
@@ -29,17 +35,30 @@ struct Shape {
     radius: f64,
 }
 
-/// The bodies, the base first.
+/// The bodies, the base first, and then the obstacles.
 pub fn bodies(explorer: &Explorer) -> Vec<Body<'_>> {
-    let bodies = explorer.skeleton().bodies().iter();
-    bodies
-        .map(|body| Body {
+    let skeleton = explorer.skeleton();
+    let bodies = skeleton.bodies().iter().map(|body| {
+        let parts = body.parts.iter().zip(names_of_parts(body));
+        Body {
             name: &body.name,
             origin: body.origin.coords.into(),
             section: section_of_body(explorer, &body.name).map(|section| section.to_string()),
-            solids: body.parts.iter().map(shape).collect(),
-        })
-        .collect()
+            solids: parts.map(|(part, of)| shape(&part.solid, part.material.name(), of)).collect(),
+        }
+    });
+    let mechanism = explorer.manipulator().mechanism();
+    let obstacles = mechanism.shapes.obstacles.iter().map(|obstacle| {
+        let solids = Solid::of_obstacle(&obstacle.shape, skeleton.size(), &mechanism.platform);
+        let of = || Some(obstacle.name.clone());
+        Body {
+            name: &obstacle.name,
+            origin: [0.0; 3],
+            section: None,
+            solids: solids.iter().map(|solid| shape(solid, OBSTACLE, of())).collect(),
+        }
+    });
+    bodies.chain(obstacles).collect()
 }
 
 /// The section that a joint's freedom belongs to.
@@ -68,9 +87,9 @@ fn section_of_body(explorer: &Explorer, name: &str) -> Option<Section> {
     section(explorer, leg, place, joint.coordinates.len().saturating_sub(1))
 }
 
-fn shape(part: &Part) -> Shape {
+fn shape(solid: &Solid, material: &'static str, member: Option<String>) -> Shape {
     let at = |point: Point3<f64>| -> [f64; 3] { point.coords.into() };
-    let (shape, from, to, radius) = match part.solid {
+    let (shape, from, to, radius) = match *solid {
         Solid::Cylinder { from, to, radius } => ("cylinder", from, to, radius),
         Solid::Ball { centre, radius } => ("ball", centre, centre, radius),
         Solid::Block { centre, axis, length, width } => {
@@ -78,10 +97,10 @@ fn shape(part: &Part) -> Shape {
             ("block", centre - half, centre + half, 0.5 * width)
         }
     };
-    Shape { shape, material: part.material.name(), from: at(from), to: at(to), radius }
+    Shape { shape, material, member, from: at(from), to: at(to), radius }
 }
 
-/// The transforms of all bodies to the base, in their order: 4 x 4 matrices of 32-bit numbers, column by column.
+/// The transforms of all bodies and obstacles to the base, in their order: 4 x 4 matrices of 32-bit numbers, column by column.
 pub fn placed(
     explorer: &Explorer,
     joints: &[f64],
@@ -90,6 +109,8 @@ pub fn placed(
 ) -> Vec<u8> {
     let configuration = Configuration { joints, imaginary, platform };
     let placed = explorer.skeleton().place_in_base(&configuration).unwrap_or_default();
-    let numbers = placed.iter().flat_map(|g| <[[f64; 4]; 4]>::from(g.to_homogeneous()));
+    let obstacles = explorer.manipulator().mechanism().shapes.obstacles.len();
+    let placed = placed.into_iter().chain(std::iter::repeat_n(Isometry3::identity(), obstacles));
+    let numbers = placed.flat_map(|g| <[[f64; 4]; 4]>::from(g.to_homogeneous()));
     numbers.flatten().flat_map(|number| (number as f32).to_le_bytes()).collect()
 }

@@ -74,7 +74,9 @@ impl Session {
                 Ok(description::describe(self.explorer.insert(changed)))
             }
             Request::File {} => Ok(Reply::new(&self.explorer()?.file().text())),
-            Request::Pose { pose, mode } => pose::solve(self.explorer()?, &pose, mode.as_deref()),
+            Request::Pose { pose, mode, clearance } => {
+                pose::solve(self.explorer()?, &pose, mode.as_deref(), clearance)
+            }
             Request::Forward { joints, pose } => {
                 forward::assemble(self.explorer()?, &joints, &pose)
             }

@@ -279,3 +279,47 @@ fn handles_move_the_platform_as_its_coordinates_do() {
     let away = ask(&mut session, &json!({ "do": "pose", "pose": { "y": 900 } })).value();
     assert!(away["handles"].is_null());
 }
+
+/// A post through the place to which the platform goes: their axes meet, so the overlap is the sum of the radii.
+#[test]
+fn what_overlaps_or_is_too_near_is_named() {
+    let post = "\n[bodies]\nradius = 4\n[[obstacle]]\nname = \"post\"\ntype = \"capsule\"\n\
+                from = [90, 60, -500]\nto = [90, 60, 500]\nradius = 5\n";
+    let text = find("plano-spherical-5dof").expect("a shipped example").text.to_owned() + post;
+    let mut session = Session::default();
+    let description = ask(&mut session, &json!({ "do": "open", "text": text })).value();
+    let bodies = description["bodies"].as_array().unwrap();
+    let of_post = bodies.iter().find(|body| body["name"] == "post").unwrap();
+    let solids = of_post["solids"].as_array().unwrap();
+    assert!(solids.iter().all(|s| s["material"] == "obstacle" && s["member"] == "post"));
+    let mut at = |x: f64, y: f64, clearance: f64| {
+        let pose = json!({ "x": x, "y": y });
+        let reply =
+            ask(&mut session, &json!({ "do": "pose", "pose": pose, "clearance": clearance }));
+        // Obstacles have a place, too.
+        assert_eq!(reply.bytes.len(), 64 * bodies.len());
+        reply.value()["contacts"].take()
+    };
+    let hit = at(90.0, 60.0, 0.0);
+    let near: Vec<&str> =
+        hit["near"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert!(near.contains(&"post") && near.contains(&"platform"), "{hit}");
+    assert_eq!(hit["overlap"], true);
+    let nearest = hit["nearest"].as_str().unwrap();
+    assert!(
+        nearest.starts_with("interference: ") && nearest.ends_with("overlapping by 9 mm"),
+        "{hit}"
+    );
+    // Every name is that of solids which can be shown red.
+    let members = bodies.iter().flat_map(|body| body["solids"].as_array().unwrap());
+    let members: Vec<&str> = members.filter_map(|solid| solid["member"].as_str()).collect();
+    assert!(near.iter().all(|name| members.contains(name)), "{near:?}");
+
+    let apart = at(0.0, 0.0, 0.0);
+    assert_eq!((&apart["near"], &apart["overlap"]), (&json!([]), &json!(false)));
+    assert!(apart["nearest"].as_str().unwrap().ends_with(" mm apart"), "{apart}");
+    let all = at(0.0, 0.0, 1000.0);
+    assert!(all["near"].as_array().unwrap().contains(&json!("post")) && all["overlap"] == false);
+    let wrong = problem(&mut session, &json!({ "do": "pose", "clearance": -1 }));
+    assert_eq!(wrong, "the clearance is -1 mm, expected 0 or more");
+}
