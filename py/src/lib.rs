@@ -30,6 +30,7 @@ mod manipulator;
 mod measure;
 mod parts;
 mod pickle;
+mod pictures;
 mod place;
 mod rows;
 mod screws;

@@ -50,7 +50,7 @@ def test_every_mechanism_can_be_drawn(name):
     manipulator = opm.examples.load(name)
     panel = plot.mechanism(manipulator)
     panel.figure.canvas.draw()
-    ends = np.vstack([s.ends for s in manipulator.solids()])
+    ends = np.vstack([s.ends for s in manipulator.solids() if s.body != "base"])
     low, high = np.array([panel.get_xlim(), panel.get_ylim(), panel.get_zlim()]).T
     assert (ends >= low - 1e-12).all() and (ends <= high + 1e-12).all()
 
@@ -202,6 +202,114 @@ def test_shares_have_a_colour_bar(manipulator):
     panel = plt.figure().add_subplot()
     plot.workspace(swept, ax=panel)
     assert panel.figure.axes == [panel]
+
+
+def cut(figure):
+    """How far what is drawn stands out of its figure, inches: left, below, right, above."""
+    figure.canvas.draw()
+    drawn, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
+    # A hundredth of an inch is a pixel.
+    return [out for out in (-drawn.x0, -drawn.y0, drawn.x1 - width, drawn.y1 - height) if out > 0.01]
+
+
+def test_no_label_is_cut(manipulator):
+    wide = opm.sweep(manipulator, x=(-0.4, 0.4, 9), y=(-0.02, 0.02, 5))
+    high = opm.sweep(manipulator, x=(-0.002, 0.002, 5), y=(-0.2, 0.2, 9), xi=(-0.2, 0.2, 7))
+    turned = opm.sweep(manipulator, zeta=(-1.2345, 1.2345, 7), psi=(-1e-4, 1e-4, 5))
+    for panels in (plot.workspace(wide), plot.workspace(high), plot.workspace(high, slices="xi"), plot.workspace(turned)):
+        assert cut(panels[0].figure) == []
+    # Also where somebody has made the figure, however small, but has not laid it out.
+    for size in ((6.4, 4.8), (3, 3), (4, 3)):
+        for swept in (wide, turned):
+            panel = plt.figure(figsize=size).add_subplot()
+            plot.workspace(swept, ax=panel)
+            assert cut(panel.figure) == []
+    figure = plt.figure()
+    figure.subplots_adjust(left=0.3)
+    plot.workspace(wide, ax=figure.add_subplot())
+    assert figure.get_layout_engine() is None and figure.subplotpars.left == 0.3
+    followed = opm.trajectory(manipulator, "plano-spherical-sinusoids", rate=10)
+    assert cut(plot.joints(followed)[0].figure) == []
+
+
+def corners(polygons):
+    """(n, 3): the corners of the polygons that are drawn, which releases of matplotlib keep in different places."""
+    faces = getattr(polygons, "_faces", None)
+    return polygons._vec[:3].T if faces is None else np.asarray(faces).reshape(-1, 3)
+
+
+def test_guides_are_drawn_as_far_as_the_box():
+    """In this mechanism they are 800 mm long, and everything else is within some 80 mm."""
+    panel = plot.mechanism(opm.examples.load("translational-helical-3dof"))
+    drawn = corners(panel.collections[0])
+    low, high = np.array([panel.get_xlim(), panel.get_ylim(), panel.get_zlim()]).T
+    # But for the thickness of a rod, which stands out of the box where it enters slantwise.
+    assert (drawn > low - 0.005).all() and (drawn < high + 0.005).all() and (high - low).max() < 0.3
+
+
+@pytest.mark.parametrize("name", [n for n in opm.examples.names() if n not in LINKAGES])
+def test_a_mechanism_fills_its_picture(name):
+    manipulator = opm.examples.load(name)
+    panel = plot.mechanism(manipulator)
+    assert cut(panel.figure) == []
+    # What is drawn without the axes is a good part of that, and not a few threads.
+    panel.set_axis_off()
+    panel.figure.canvas.draw()
+    ink = np.asarray(panel.figure.canvas.buffer_rgba())[:, :, :3].min(axis=2) < 245
+    rows, columns = np.flatnonzero(ink.any(axis=1)), np.flatnonzero(ink.any(axis=0))
+    spread = (np.ptp(rows) + 1) / ink.shape[0], (np.ptp(columns) + 1) / ink.shape[1]
+    assert max(spread) > 0.3 and ink.mean() > 0.008, (spread, ink.mean())
+
+
+def test_a_mechanism_is_drawn_by_its_method(manipulator):
+    pose = [0.03, -0.02, 0.2, 0.3, 0.1]
+    by_method, by_function = manipulator.plot(pose), plot.mechanism(manipulator, pose)
+    np.testing.assert_array_equal(corners(by_method.collections[0]), corners(by_function.collections[0]))
+    panel = plt.figure().add_subplot(projection="3d")
+    assert manipulator.plot(mode="-+ ++ ++ +", ax=panel) is panel
+    with pytest.raises(opm.OpmError, match="out of reach of leg"):
+        manipulator.plot([1.0, 0, 0, 0, 0])
+
+
+def test_a_motion_is_animated(manipulator, tmp_path):
+    followed = opm.trajectory(manipulator, "plano-spherical-sinusoids", rate=50)
+    moving = manipulator.animate(followed, frames=5)
+    np.testing.assert_allclose(moving.times, np.linspace(followed.times[0], followed.times[-1], 5), atol=0.5 / 50)
+    page = moving._repr_html_()
+    assert page.count("data:image/png;base64") == 5 and "<script" in page and "http" not in page and "fa-" not in page
+    assert "out of reach" not in page
+    named = manipulator.animate("plano-spherical-sinusoids", frames=3)
+    assert named.times[-1] == followed.times[-1]
+    named.save(tmp_path / "motion.gif")
+    named.save(tmp_path / "motion.html")
+    assert (tmp_path / "motion.gif").read_bytes()[:3] == b"GIF" and "<script" in (tmp_path / "motion.html").read_text()
+    # Each picture is that of its pose; all of them have the same axes.
+    panel = plt.figure().add_subplot(projection="3d")
+    poses = np.array([[0.0, 0, 0, 0.2, 0], [0.05, 0, 0, 0.2, 0], [9.0, 0, 0, 0, 0]])
+    moving = manipulator.animate(poses, ax=panel)
+    np.testing.assert_allclose(moving.times, [0, 0.1, 0.2])
+    limits = panel.get_xlim()
+    for number, shown in ((0, 0), (1, 1), (2, 1)):
+        (drawn,) = moving._show(number)
+        expected = plot.mechanism(manipulator, poses[shown]).collections[0]
+        # All pictures have one box, as far as which the guides on the base are drawn.
+        of_mechanism = [solid.body != "base" for solid in manipulator.solids(poses[shown]) for _ in plot._faces(solid)]
+        count = 4 * sum(of_mechanism)
+        np.testing.assert_allclose(corners(drawn)[-count:], corners(expected)[-count:])
+        assert ("out of reach" in panel.get_title()) == (number == 2) and panel.get_xlim() == limits
+
+
+def test_what_cannot_be_animated_is_told(manipulator):
+    for poses, message in [(np.full((3, 5), 9.0), "0 of them in reach"), (np.zeros((1, 5)), "1 poses")]:
+        with pytest.raises(opm.OpmError, match=message):
+            manipulator.animate(poses)
+    with pytest.raises(opm.OpmError, match="frames is 1, expected at least 2"):
+        manipulator.animate("plano-spherical-sinusoids", frames=1)
+    with pytest.raises(OSError, match="nosuch"):
+        manipulator.animate("nosuch")
+    followed = opm.trajectory(manipulator, "plano-spherical-sinusoids", rate=10)
+    with pytest.raises(opm.OpmError, match="followed in"):
+        manipulator.animate(followed, mode="-+ ++ ++ +")
 
 
 def test_what_is_no_result_is_told(manipulator):

@@ -4,7 +4,10 @@ from os import PathLike
 from typing import Any, Literal, SupportsIndex, TypeAlias, final
 
 import numpy as np
+from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from numpy.typing import ArrayLike, NDArray
+
+from .plot import Animation
 
 __all__ = [
     "Accuracy",
@@ -672,6 +675,66 @@ class Manipulator:
         >>> one, other = clearance.pairs[clearance.pair[0]]
         >>> bool(clearance.distance[0] > 0)
         True
+        """
+    def plot(
+        self, pose: _Rows | None = None, *, mode: str = "home", ax: Axes3D | None = None
+    ) -> Axes3D:
+        """Draw the mechanism in a pose with matplotlib: :func:`opm_kinematics.plot.mechanism`.
+
+        Parameters
+        ----------
+        pose : (d,) array_like, optional
+            Metres and radians. Home if not given.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+        ax : Axes3D, optional
+            A three-dimensional panel to draw on; a new one if not given.
+
+        Returns
+        -------
+        Axes3D
+            The panel.
+
+        Raises
+        ------
+        OpmError
+            The pose is out of reach.
+        ImportError
+            matplotlib is not installed.
+        """
+    def animate(
+        self,
+        motion: Trajectory | str | PathLike[str] | ArrayLike,
+        *,
+        mode: str | None = None,
+        frames: int = 60,
+        ax: Axes3D | None = None,
+    ) -> Animation:
+        """The mechanism as it follows a motion, as a moving picture: :func:`opm_kinematics.plot.animate`.
+
+        Parameters
+        ----------
+        motion : Trajectory, path, str or (n, d) array_like
+            A motion that was followed, a motion file, a table of poses, the name of a shipped motion, or poses one after the
+            other.
+        mode : str, optional
+            ``"home"``, or a sign for every two-valued choice; if not given, the mode of the motion, or home.
+        frames : int
+            The most pictures that it consists of, spread evenly over the motion.
+        ax : Axes3D, optional
+            A three-dimensional panel to draw on; a new one if not given.
+
+        Returns
+        -------
+        Animation
+            It plays in a notebook; :meth:`Animation.save <opm_kinematics.plot.Animation.save>` writes it to a file.
+
+        Raises
+        ------
+        OpmError
+            The motion cannot be read, or no pose of it is in reach.
+        ImportError
+            matplotlib is not installed.
         """
     def solids(self, pose: _Rows | None = None, *, mode: str = "home") -> list[Solid]:
         """The solids that the mechanism is drawn with, from its joint screws alone.

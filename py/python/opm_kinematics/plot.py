@@ -6,14 +6,20 @@ Numbers are SI units and radians.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._native import Manipulator, OpmError, Solid, Solutions, Sweep, Trajectory
+from ._native import Manipulator, OpmError, Solid, Solutions, Sweep, Trajectory, trajectory
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d import Axes3D as _Axes3D  # type: ignore[import-untyped]
@@ -21,7 +27,7 @@ if TYPE_CHECKING:
 
     _Array = NDArray[np.float64]
 
-__all__ = ["imaginary", "joints", "mechanism", "workspace"]
+__all__ = ["Animation", "animate", "imaginary", "joints", "mechanism", "workspace"]
 
 # Colours that people with colour-blindness tell apart (Okabe and Ito's), and greys: those of recordings.
 COLORS = {
@@ -36,8 +42,23 @@ CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#00
 
 OUTLINE = "#d55e00"
 
+# What is on the buttons of a player of matplotlib, by the names that it gives them.
+SIGNS = {
+    "minus": "−",
+    "fast-backward": "⏮",
+    "step-backward": "⏴|",
+    "play fa-flip-horizontal": "◀",
+    "pause": "⏸",
+    "play": "▶",
+    "step-forward": "|⏵",
+    "fast-forward": "⏭",
+    "plus": "+",
+}
+
 # Direction of the light, a little from the left of the viewer.
 LIGHT = np.array([-0.4, -0.6, 0.8]) / np.sqrt(1.16)
+# Room for what stands around the box of a mechanism, inches.
+LABELS = 0.62
 # Sides of a cylinder, and meridians of a ball.
 SIDES = 16
 # Largest number of panels of a workspace if none is given.
@@ -66,7 +87,8 @@ def mechanism(
     Returns
     -------
     Axes3D
-        Metres. Motors are orange, other joints light blue, imaginary joints translucent, the platform blue.
+        Metres. Motors are orange, other joints light blue, imaginary joints translucent, the platform blue. The panel holds all
+        that moves; guides on the base that are longer are drawn as far as its box.
 
     Raises
     ------
@@ -78,10 +100,182 @@ def mechanism(
 
     _expect("manipulator", manipulator, Manipulator)
     solids = manipulator.solids(pose, mode=mode)
-    panel = ax if ax is not None else _panel3d()
+    box = _box(solids)
+    faces, colors = _painted(solids, box)
+    panel = _framed(box, ax)
+    panel.add_collection3d(Poly3DCollection(faces, facecolors=colors, edgecolors="none", linewidths=0))
+    return panel
+
+
+class Animation:
+    """A mechanism that moves. In a notebook it plays, with buttons, as matplotlib's player in HTML."""
+
+    def __init__(self, panel: _Axes3D, show: Callable[[int], Any], times: _Array) -> None:
+        self._panel, self._show, self._times = panel, show, times
+
+    @property
+    def times(self) -> _Array:
+        """(n,): the time of each picture, seconds."""
+        return self._times
+
+    @property
+    def animation(self) -> FuncAnimation:
+        """The animation of matplotlib."""
+        from matplotlib.animation import FuncAnimation
+
+        # Milliseconds between two pictures.
+        interval = 1000 * float(self._times[-1] - self._times[0]) / max(len(self._times) - 1, 1)
+        return FuncAnimation(self._panel.figure, self._show, frames=len(self._times), interval=interval)
+
+    def html(self) -> str:
+        """The player, as HTML that needs no other file."""
+        from matplotlib import pyplot
+
+        page: str = self.animation.to_jshtml()
+        # The signs on its buttons would come from a server.
+        page = re.sub(r"<link[^>]*>", "", page)
+        page = re.sub(r'<i class="fa fa-([\w-]+)([^"]*)">', lambda found: f"<i>{SIGNS.get(found[1] + found[2], found[1])}", page)
+        # A notebook would show the figure once more.
+        pyplot.close(self._panel.figure)
+        return page
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write it to a file.
+
+        Parameters
+        ----------
+        path : path
+            ``.html`` is the player; ``.gif`` needs Pillow, and films such as ``.mp4`` need FFmpeg.
+        """
+        place = Path(path)
+        if place.suffix.lower() in (".html", ".htm"):
+            place.write_text(self.html(), encoding="utf-8")
+        else:
+            self.animation.save(place, writer="pillow" if place.suffix.lower() == ".gif" else None)
+
+    def _repr_html_(self) -> str:
+        return self.html()
+
+    def __repr__(self) -> str:
+        return f"<Animation of {len(self._times)} pictures, {self._times[-1] - self._times[0]:g} s>"
+
+
+def animate(
+    manipulator: Manipulator,
+    motion: Trajectory | str | PathLike[str] | ArrayLike,
+    *,
+    mode: str | None = None,
+    frames: int = 60,
+    ax: _Axes3D | None = None,
+) -> Animation:
+    """Draw a mechanism as it follows a motion.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+    motion : Trajectory, path, str or (n, d) array_like
+        A motion that was followed, a motion file, a table of poses, the name of a shipped motion, or poses one after the
+        other, a tenth of a second apart.
+    mode : str, optional
+        ``"home"``, or a sign for every two-valued choice; if not given, the mode of the motion, or home.
+    frames : int
+        The most pictures that it consists of, spread evenly over the motion.
+    ax : Axes3D, optional
+        A three-dimensional panel to draw on; a new one if not given.
+
+    Returns
+    -------
+    Animation
+        It plays in a notebook. Where a pose is out of reach, the mechanism stays, and the title says so.
+
+    Raises
+    ------
+    OpmError
+        The motion cannot be read, or no pose of it is in reach.
+    """
+    _pyplot()
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    _expect("manipulator", manipulator, Manipulator)
+    if frames < 2:
+        raise OpmError(f"frames is {frames}, expected at least 2 pictures")
+    if isinstance(motion, (str, PathLike)):
+        motion = trajectory(manipulator, motion, mode=mode)
+    if isinstance(motion, Trajectory):
+        if mode is not None and manipulator.inverse(motion.poses[:1], mode=mode).mode != motion.mode:
+            raise OpmError(f"mode is {mode!r}, but the motion was followed in {motion.mode!r}")
+        times, poses, reached, name = motion.times, motion.poses, motion.reachable, motion.mode
+    else:
+        solved = manipulator.inverse(motion, mode=mode or "home")
+        poses, reached, name = np.asarray(motion, dtype=np.float64), solved.reachable, solved.mode
+        times = np.arange(len(poses)) / 10
+    if len(poses) < 2 or not reached.any():
+        raise OpmError(f"{len(poses)} poses, {int(reached.sum())} of them in reach, expected at least two, and one in reach")
+    chosen = np.unique(np.linspace(0, len(poses) - 1, min(frames, len(poses))).round().astype(int))
+    # Out of reach, the last pose in reach stays; before the first one, that one.
+    known = np.flatnonzero(reached)
+    shown = known[np.maximum(np.searchsorted(known, chosen, side="right") - 1, 0)]
+    solids = [manipulator.solids(poses[number], mode=name) for number in shown]
+    box = _box([solid for picture in solids for solid in picture])
+    pictures = [_painted(picture, box) for picture in solids]
+    panel = _framed(box, ax)
+    drawn = Poly3DCollection(pictures[0][0], facecolors=pictures[0][1], edgecolors="none", linewidths=0)
+    panel.add_collection3d(drawn)
+
+    def show(picture: int) -> list[Poly3DCollection]:
+        faces, colors = pictures[picture]
+        drawn.set_verts(faces)
+        drawn.set_facecolor(colors)
+        note = "" if reached[chosen[picture]] else ": out of reach"
+        panel.set_title(f"t = {times[chosen[picture]]:.2f} s{note}", fontsize="medium")
+        return [drawn]
+
+    return Animation(panel, show, times[chosen])
+
+
+@dataclass(frozen=True)
+class _Rod:
+    """A part of a cylinder."""
+
+    material: str
+    ends: _Array
+    width: float
+    shape: str = "cylinder"
+
+
+def _box(solids: Sequence[Solid]) -> _Array:
+    """(2, 3): the lowest and the highest corner of a box that holds all that moves, with some room. Guides on the base may be
+    many times as long as everything else."""
+    moving = [solid for solid in solids if solid.body != "base"] or solids
+    low = np.min([solid.ends.min(axis=0) - solid.width / 2 for solid in moving], axis=0)
+    high = np.max([solid.ends.max(axis=0) + solid.width / 2 for solid in moving], axis=0)
+    # A flat drawing needs a box with some depth, too.
+    room = 1.1 * np.maximum(high - low, 0.2 * (high - low).max())
+    middle = (low + high) / 2
+    return np.array([middle - room / 2, middle + room / 2])
+
+
+def _inside(solid: Solid, box: _Array) -> Solid | _Rod | None:
+    """What is in a box of a solid: the part of a rod on the base; everything else as it is."""
+    if solid.body != "base" or solid.shape != "cylinder":
+        return solid
+    start, end = solid.ends
+    way = end - start
+    # Shares of the rod between the planes of the sides, by Liang and Barsky.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.sort((box - start) / way, axis=0)
+    along = np.abs(way) > 1e-12
+    if not ((start >= box[0]) & (start <= box[1]))[~along].all():
+        return None
+    first, last = max(0.0, *shares[0][along]), min(1.0, *shares[1][along])
+    return _Rod(solid.material, start + np.outer([first, last], way), solid.width) if last > first else None
+
+
+def _painted(solids: Sequence[Solid], box: _Array) -> tuple[list[_Array], list[tuple[float, ...]]]:
+    """The faces of the solids in a box, and the colour of each in the light."""
     faces: list[_Array] = []
     colors: list[tuple[float, ...]] = []
-    for solid in solids:
+    for solid in filter(None, (_inside(solid, box) for solid in solids)):
         for face in _faces(solid):
             normal = np.cross(face[1] - face[0], face[2] - face[1])
             length = np.linalg.norm(normal)
@@ -90,16 +284,30 @@ def mechanism(
             *rgb, alpha = COLORS[solid.material]
             faces.append(face)
             colors.append((*(float(shade * c) for c in rgb), alpha))
-    points = np.vstack(faces)
-    low, high = points.min(axis=0), points.max(axis=0)
-    # A flat drawing needs a box with some depth, too.
-    room = np.maximum(high - low, 0.2 * (high - low).max())
-    middle = (low + high) / 2
-    for name, centre, width in zip("xyz", middle, room, strict=True):
-        panel.set(**{f"{name}lim": (centre - width / 2, centre + width / 2), f"{name}label": f"{name} (m)"})
-    panel.set_box_aspect(tuple(room))
+    return faces, colors
+
+
+def _framed(box: _Array, ax: _Axes3D | None) -> _Axes3D:
+    """A panel that holds a box, with one scale for all axes. A new one is filled by the box and its labels."""
+    from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
+
+    panel = ax if ax is not None else _panel3d()
+    for name, ends in zip("xyz", box.T, strict=True):
+        panel.set(**{f"{name}lim": tuple(ends), f"{name}label": f"{name} (m)"})
+    room = tuple(box[1] - box[0])
+    panel.set_box_aspect(room)
     panel.locator_params(nbins=4)
-    panel.add_collection3d(Poly3DCollection(faces, facecolors=colors, edgecolors="none", linewidths=0))
+    if ax is None:
+        panel.figure.subplots_adjust(left=0, right=1, bottom=0, top=0.93)
+        panel.apply_aspect()
+        corners = np.array(list(product(*box.T))).T
+        seen = panel.transData.transform(np.transpose(proj_transform(*corners, panel.get_proj())[:2]))
+        middle = (panel.bbox.p0 + panel.bbox.p1) / 2
+        reach = np.abs(seen - middle).max(axis=0)
+        # Around the box are the numbers and the names of the axes; above it is room for a title.
+        free = np.minimum(middle, panel.figure.bbox.size * (1, 0.95) - middle) - LABELS * panel.figure.dpi
+        zoom = (free / reach).min()
+        panel.set_box_aspect(room, zoom=zoom)
     return panel
 
 
@@ -332,6 +540,8 @@ def _panels(pyplot: Any, count: int, given: Axes | Sequence[Axes] | None) -> lis
         panels = list(given) if isinstance(given, (Sequence, np.ndarray)) else [given]
         if len(panels) != count:
             raise OpmError(f"{len(panels)} axes to draw on, expected {count}")
+        for panel in panels:
+            _make_room(panel)
         return panels
     columns = min(count, 3)
     rows = -(-count // columns)
@@ -342,6 +552,19 @@ def _panels(pyplot: Any, count: int, given: Axes | Sequence[Axes] | None) -> lis
     return list(grid.flat[:count])
 
 
+def _make_room(panel: Axes) -> None:
+    """Let the labels of a panel fit on its figure, unless somebody has laid that out."""
+    from matplotlib import rcParams
+    from matplotlib.figure import Figure
+
+    figure = panel.figure
+    if not isinstance(figure, Figure) or figure.get_layout_engine() is not None:
+        return
+    sides = ("left", "right", "bottom", "top", "wspace", "hspace")
+    if all(getattr(figure.subplotpars, side) == rcParams[f"figure.subplot.{side}"] for side in sides):
+        figure.set_layout_engine("constrained")
+
+
 def _take(free: list[str], what: str) -> str:
     """The next coordinate with several values."""
     if not free:
@@ -349,7 +572,7 @@ def _take(free: list[str], what: str) -> str:
     return free.pop(0)
 
 
-def _faces(solid: Solid) -> list[_Array]:
+def _faces(solid: Solid | _Rod) -> list[_Array]:
     """Polygons of a solid, corners counter-clockwise as seen from outside: four of them, some twice, since
     matplotlib reads uninitialised memory if one polygon has fewer corners than another."""
     start, end = solid.ends
