@@ -3,6 +3,7 @@
 pub mod load;
 mod poses;
 mod report;
+mod table;
 
 use crate::args::{AnalyzeArgs, Output};
 use crate::failure::Failure;
@@ -17,6 +18,9 @@ use report::{Elastic, Report};
 
 pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let loaded = mechanisms::open(&args.mechanism, output)?;
+    if let Some(vary) = &args.vary {
+        return table::run(args, &loaded, vary, output);
+    }
     let manipulator = loaded.compile()?;
     let mode = mechanisms::mode(&manipulator, &args.mode)?;
     let setup = args.setup.options(args.length)?.check(&manipulator)?;
@@ -38,7 +42,8 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let mut springs = springs;
     let mut elastic = None;
     if reached {
-        checks.verify(&manipulator, &at, loaded.file.units)?;
+        let verified = checks.verify(&manipulator, at.dependent(), loaded.file.units);
+        verified.map_err(|error| Failure::flag("--pose", error))?;
         analyser.update(&at)?;
         elastic = springs.as_mut().map(|compliant| {
             let stiffness = compliant.stiffness(&at)?;

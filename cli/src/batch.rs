@@ -3,13 +3,14 @@
 use crate::args::{Format, IkArgs, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
-use crate::pose::find;
-use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
+use crate::pose::Checks;
+use crate::pose_table;
+use crate::stream::{self, Stop, Stream, Streams};
 use crate::text::{count, short};
-use crate::unitless::Plausible;
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
-use opm_core::task::TaskCoordinate;
+use opm_core::mechanism::file::FileUnits;
 use serde::Serialize;
+use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -73,28 +74,14 @@ fn solve(
     wanted: RowContent,
 ) -> Result<Summary, Stop> {
     let start = Instant::now();
-    let coordinates = manipulator.task_coordinates();
-    let value = |c: &TaskCoordinate| Wanted {
-        name: c.name,
-        quantity: c.quantity,
-        plausible: Plausible::new(c.quantity, c.home, (loaded, manipulator)),
-    };
-    // The other columns of a table that `opm trajectory` wrote.
-    let others = other_columns(manipulator);
-    let mut columns = stream.columns(coordinates.iter().map(value).collect(), |name| {
-        if others.iter().any(|other| other == name) {
-            return Ok(None);
-        }
-        manipulator.refuse_following(name).map_err(|error| error.to_string())?;
-        find(name, coordinates).map(Some).map_err(|error| error.to_string())
-    })?;
-    let mut table = Rows::new(manipulator, wanted, columns.timed(), &mut stream.writer)?;
-    let mut pose = manipulator.home_pose();
-    stream.each(&mut columns, &mut pose, |stream, line, time, pose| {
+    let mut columns = pose_table::columns(&mut stream, (loaded, manipulator))?;
+    let mut table = Rows::new((loaded, manipulator), wanted, columns.timed(), &mut stream.writer)?;
+    let mut values = pose_table::blank(manipulator);
+    stream.each(&mut columns, &mut values, |stream, line, time, values| {
         table.time = time;
         let label = stream.label;
-        let wrong = |error| stream::at(label, line, error);
-        table.pose(pose, &mut stream.writer, wrong)
+        let wrong = |error: &dyn Display| stream::at(label, line, error);
+        table.row(pose_table::split(manipulator, values), &mut stream.writer, &wrong)
     })?;
     let seconds = start.elapsed().as_secs_f64().max(1e-9);
     let poses = stream.rows.load(Ordering::Relaxed);
@@ -110,6 +97,7 @@ fn solve(
 /// The rows of the result.
 struct Rows<'a> {
     manipulator: &'a Manipulator,
+    units: FileUnits,
     wanted: RowContent,
     /// The numbers of the joint coordinates that are columns.
     joints: Vec<usize>,
@@ -128,7 +116,7 @@ struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     fn new(
-        manipulator: &'a Manipulator,
+        (loaded, manipulator): (&Loaded, &'a Manipulator),
         wanted: RowContent,
         timed: bool,
         writer: &mut Writer<'_>,
@@ -148,6 +136,7 @@ impl<'a> Rows<'a> {
         writer.write_record(header)?;
         Ok(Self {
             manipulator,
+            units: loaded.file.units,
             wanted,
             joints,
             drives: manipulator.actuated_joints(),
@@ -161,25 +150,27 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Writes the row of a pose; with all modes, one row for each mode that reaches it.
-    fn pose(
+    /// Writes the row of a pose; with all modes, one row for each mode that reaches it. The values that are given of
+    /// dependent coordinates are checked where the pose is in reach.
+    fn row(
         &mut self,
-        pose: &[f64],
+        (pose, checks): (&[f64], Checks),
         writer: &mut Writer<'_>,
-        wrong: impl Fn(PoseError) -> Failure,
+        wrong: &dyn Fn(&dyn Display) -> Failure,
     ) -> Result<(), Stop> {
         let manipulator = self.manipulator;
+        let of_pose = |error: PoseError| wrong(&error);
         match self.wanted.modes {
             Modes::One(mode) => {
                 let [reachable, within] = if self.wanted.all_joints {
                     let found =
-                        manipulator.inverse(pose, mode, &mut self.solution).map_err(wrong)?;
+                        manipulator.inverse(pose, mode, &mut self.solution).map_err(of_pose)?;
                     let answers = [found.is_some(), found.is_some_and(Solution::within_limits)];
                     self.take_solution(answers[0]);
                     answers
                 } else {
                     let found = manipulator.inverse_actuated(pose, mode, &mut self.drives);
-                    let found = found.map_err(wrong)?;
+                    let found = found.map_err(of_pose)?;
                     let answers =
                         [found.is_some(), found.is_some_and(ActuatedJoints::within_limits)];
                     let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
@@ -189,11 +180,15 @@ impl<'a> Rows<'a> {
                 self.reachable += u64::from(reachable);
                 self.within_limits += u64::from(within);
                 let dependent = manipulator.dependent_values(pose, mode).ok().flatten();
+                if reachable && let Some(values) = &dependent {
+                    let verified = checks.verify(manipulator, values, self.units);
+                    verified.map_err(|error| wrong(&error))?;
+                }
                 self.depend(dependent.as_deref());
                 self.write(writer, pose, [reachable, within], &manipulator.format_mode(mode))
             }
             Modes::All => {
-                let found = manipulator.inverse_all(pose, &mut self.all).map_err(wrong)?;
+                let found = manipulator.inverse_all(pose, &mut self.all).map_err(of_pose)?;
                 let reachable = found.is_some();
                 self.reachable += u64::from(reachable);
                 if !reachable {
@@ -201,12 +196,16 @@ impl<'a> Rows<'a> {
                     self.depend(None);
                     return self.write(writer, pose, [false, false], "");
                 }
-                let mut any_within = false;
+                let (mut any_within, mut held) = (false, 0);
                 let found: Vec<_> = self.all.modes(manipulator).collect();
-                for mode in found {
+                for &mode in &found {
                     let solution =
                         manipulator.solution_in_mode(&self.all, mode, &mut self.solution);
                     let Some(solution) = solution else { continue };
+                    if !checks.hold(manipulator, solution.dependent()) {
+                        continue;
+                    }
+                    held += 1;
                     let within = solution.within_limits();
                     self.dependent.clear();
                     self.dependent.extend(solution.dependent().iter().map(|&value| Some(value)));
@@ -215,7 +214,10 @@ impl<'a> Rows<'a> {
                     self.write(writer, pose, [true, within], &manipulator.format_mode(mode))?;
                 }
                 self.within_limits += u64::from(any_within);
-                Ok(())
+                match held {
+                    0 => Err(wrong(&Checks::refusal(found.len())).into()),
+                    _ => Ok(()),
+                }
             }
         }
     }

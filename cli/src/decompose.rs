@@ -99,7 +99,7 @@ fn table(loaded: &Loaded, vary: &GridAxis, output: &Output) -> Result<(), Failur
         let mobility = found.mobility.mobility as u64;
         let mut cells = vec![
             Cell::new("applies", found.applies.name(), found.applies.name()),
-            Cell::new("mobility", mobility, mobility.to_string()),
+            Cell::count("mobility", mobility),
         ];
         let (lower, upper, imaginary) = match &found.applies {
             Applies::Decomposed(ways) => {
@@ -109,16 +109,12 @@ fn table(loaded: &Loaded, vary: &GridAxis, output: &Output) -> Result<(), Failur
             Applies::Nearly | Applies::Outside(_) => ("-", "-", None),
         };
         let shown = imaginary.map_or("-".to_owned(), |joints| joints.to_string());
-        let closed = changed.compile().is_ok();
-        let header = "imaginary joints".to_owned();
+        let header = "inverse kinematics".to_owned();
         cells.extend([
             Cell::new("lower", lower, lower),
             Cell::new("upper", upper, upper),
-            Cell { header, ..Cell::new("imaginary_joints", imaginary, shown) },
-            Cell {
-                header: "inverse kinematics".to_owned(),
-                ..Cell::new("closed_form", closed, if closed { "yes" } else { "no" })
-            },
+            Cell::new("imaginary_joints", imaginary, shown),
+            Cell { header, ..Cell::answer("closed_form", changed.compile().is_ok()) },
         ]);
         Ok(cells)
     })

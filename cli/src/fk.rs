@@ -3,6 +3,7 @@
 mod aspects;
 mod not_found;
 mod poses;
+mod table;
 
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
@@ -23,6 +24,9 @@ use std::path::Path;
 
 pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
+    if let (Some(vary), Some(joints)) = (&args.vary, &args.joints) {
+        return table::run((args, joints), &loaded, vary, output);
+    }
     let manipulator = loaded.compile()?;
     let given = match (&args.joints, &args.poses) {
         (Some(joints), _) => joints,
@@ -31,55 +35,8 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             return poses::run(args, input, output, (&loaded, &manipulator));
         }
     };
-    unitless::note_joints(output, "--joints", given, &loaded, &manipulator);
-    let actuated = joints(given, &manipulator)?;
-    let only = args.mode.as_deref().map(|mode| load::mode(&manipulator, mode)).transpose()?;
-    let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
-    let (found, method) = match (&args.near, manipulator.forward_closed_form()) {
-        (None, Ok(())) => {
-            let mut found = manipulator.forward(&actuated).map_err(|e| wrong(&e))?;
-            if let Some(mode) = only {
-                found.list.retain(|assembly| assembly.mode == mode);
-            }
-            let home = manipulator.platform_pose(&manipulator.home_pose());
-            let home = home.map_err(|error| Failure::at(&loaded.label, error))?;
-            manipulator.sort_assemblies(&mut found.list, &home);
-            (found, Method::ClosedForm)
-        }
-        (near, closed_form) => {
-            let start = match near {
-                Some(pose) => {
-                    unitless::note_pose(output, "--near", pose, &loaded, &manipulator);
-                    pose.resolve_for("--near", &manipulator)?
-                }
-                None => manipulator.home_pose(),
-            };
-            if let (None, Err(why)) = (near, closed_form) {
-                output.note(format_args!(
-                    "no closed form of the forward kinematics: {why}; by Newton's method from home, \
-                     which finds one assembly (--near says from where)"
-                ));
-            }
-            let mode = only.unwrap_or_else(|| manipulator.home_mode());
-            let assembly =
-                manipulator.forward_near(&actuated, &start, mode).map_err(|e| match e {
-                    NearError::Joints(error) => wrong(&error),
-                    NearError::Start(error) => Failure::flag("--near", error),
-                    NearError::NotFound(not_found) => Failure::work(format!(
-                        "{}: {}",
-                        loaded.label,
-                        not_found::explain(
-                            &manipulator,
-                            (&actuated, mode),
-                            &not_found,
-                            loaded.file.units
-                        )
-                    )),
-                    error => Failure::because(format!("{}: {error}", loaded.label), error),
-                })?;
-            (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
-        }
-    };
+    let Found { actuated, found, only, method } =
+        solve(args, given, output, (&loaded, &manipulator))?;
     for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
         let (c, limits) =
             (&manipulator.coordinates()[coordinate], &manipulator.limits()[coordinate]);
@@ -110,6 +67,73 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
         aspects,
     };
     output.print(&answer.json(), answer.text())
+}
+
+/// The assemblies for one set of joints.
+struct Found {
+    actuated: Vec<f64>,
+    found: Assemblies,
+    only: Option<Mode>,
+    method: Method,
+}
+
+/// Finds the assemblies, the nearest one to home first.
+fn solve(
+    args: &FkArgs,
+    given: &Pose,
+    output: &Output,
+    (loaded, manipulator): (&Loaded, &Manipulator),
+) -> Result<Found, Failure> {
+    unitless::note_joints(output, "--joints", given, loaded, manipulator);
+    let actuated = joints(given, manipulator)?;
+    let only = args.mode.as_deref().map(|mode| load::mode(manipulator, mode)).transpose()?;
+    let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
+    let (found, method) = match (&args.near, manipulator.forward_closed_form()) {
+        (None, Ok(())) => {
+            let mut found = manipulator.forward(&actuated).map_err(|e| wrong(&e))?;
+            if let Some(mode) = only {
+                found.list.retain(|assembly| assembly.mode == mode);
+            }
+            let home = manipulator.platform_pose(&manipulator.home_pose());
+            let home = home.map_err(|error| Failure::at(&loaded.label, error))?;
+            manipulator.sort_assemblies(&mut found.list, &home);
+            (found, Method::ClosedForm)
+        }
+        (near, closed_form) => {
+            let start = match near {
+                Some(pose) => {
+                    unitless::note_pose(output, "--near", pose, loaded, manipulator);
+                    pose.resolve_for("--near", manipulator)?
+                }
+                None => manipulator.home_pose(),
+            };
+            if let (None, Err(why)) = (near, closed_form) {
+                output.note(format_args!(
+                    "no closed form of the forward kinematics: {why}; by Newton's method from home, \
+                     which finds one assembly (--near says from where)"
+                ));
+            }
+            let mode = only.unwrap_or_else(|| manipulator.home_mode());
+            let assembly =
+                manipulator.forward_near(&actuated, &start, mode).map_err(|e| match e {
+                    NearError::Joints(error) => wrong(&error),
+                    NearError::Start(error) => Failure::flag("--near", error),
+                    NearError::NotFound(not_found) => Failure::work(format!(
+                        "{}: {}",
+                        loaded.label,
+                        not_found::explain(
+                            manipulator,
+                            (&actuated, mode),
+                            &not_found,
+                            loaded.file.units
+                        )
+                    )),
+                    error => Failure::because(format!("{}: {error}", loaded.label), error),
+                })?;
+            (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
+        }
+    };
+    Ok(Found { actuated, found, only, method })
 }
 
 /// The value of every actuated joint.

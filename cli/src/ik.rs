@@ -1,5 +1,7 @@
 //! `opm ik`: inverse kinematics.
 
+mod table;
+
 use crate::args::{IkArgs, Output};
 use crate::batch::{self, Modes};
 use crate::failure::Failure;
@@ -26,6 +28,9 @@ const MOST_CHOICES: u32 = 16;
 
 pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
+    if let (Some(vary), Some(pose)) = (&args.vary, &args.pose) {
+        return table::run((args, pose), &loaded, vary, output);
+    }
     let manipulator = loaded.compile()?;
     let modes = modes(args, &manipulator)?;
     let mut checks = None;
@@ -153,14 +158,13 @@ impl<'a> Answer<'a> {
         if let [(_, only)] = &*self.solutions
             && !self.all
         {
-            return checks.verify(manipulator, only, self.loaded.file.units);
+            let verified = checks.verify(manipulator, only.dependent(), self.loaded.file.units);
+            return verified.map_err(|error| Failure::flag("--pose", error));
         }
         let before = self.solutions.len();
-        self.solutions.retain(|(_, solution)| checks.hold(manipulator, solution));
+        self.solutions.retain(|(_, solution)| checks.hold(manipulator, solution.dependent()));
         if self.solutions.is_empty() && before > 0 {
-            let modes = text::plural(before as u64, "working mode");
-            let problem = format!("the dependent coordinates have other values in all {modes}");
-            return Err(Failure::flag("--pose", problem));
+            return Err(Failure::flag("--pose", Checks::refusal(before)));
         }
         Ok(())
     }
@@ -269,9 +273,11 @@ impl<'a> Answer<'a> {
                     self.joint_table(solution)
                 );
                 let nearest = self.nearest(solution);
-                let nearest = interference::nearest_text(&self.interference, nearest, units);
-                let aside = interference::set_aside_text(&self.interference, units);
-                let _ = write!(text, "{nearest}\n{aside}");
+                let nearest = text::nearest_text(&self.interference, nearest, units);
+                let _ = writeln!(text, "{nearest}");
+                if let Some(aside) = text::set_aside_text(&self.interference, units) {
+                    let _ = writeln!(text, "{aside}");
+                }
             }
             solutions => {
                 let _ =

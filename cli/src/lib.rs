@@ -34,6 +34,7 @@ mod output;
 mod path;
 mod plot;
 mod pose;
+mod pose_table;
 mod progress;
 mod recover;
 mod runs;

@@ -7,12 +7,17 @@ mod sweep;
 use crate::args::{LinkageArgs, Output};
 use crate::failure::Failure;
 use crate::linkage::input::InputValue;
-use crate::load;
+use crate::load::{self, Loaded};
+use crate::pose::GridAxis;
+use crate::runs::{self, Cell};
 use opm_core::linkage::{Input, Linkage};
 use report::Run;
 
 pub fn run(args: &LinkageArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
+    if let Some(vary) = &args.vary {
+        return table(args, &loaded, vary, output);
+    }
     let linkage =
         Linkage::new(&loaded.file.mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
     let (input, value) = resolve(args.input.as_ref(), &linkage)?;
@@ -29,6 +34,33 @@ pub fn run(args: &LinkageArgs, output: &Output) -> Result<(), Failure> {
             output.print(&run.json(value, &positions), run.text(value, &positions))
         }
     }
+}
+
+/// The positions for each value of a number of the mechanism file: how many, and the joints of that in home's branch.
+fn table(
+    args: &LinkageArgs,
+    loaded: &Loaded,
+    vary: &GridAxis,
+    output: &Output,
+) -> Result<(), Failure> {
+    let units = loaded.file.units;
+    runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
+        let found = Linkage::new(&changed.file.mechanism);
+        let linkage = found.map_err(|error| Failure::at(&changed.label, error))?;
+        let (input, value) = resolve(args.input.as_ref(), &linkage)?;
+        let positions = input.solve(value.unwrap_or(input.coordinate().home));
+        let branch = input.home_branch();
+        let home = positions.iter().find(|position| position.branch == branch);
+        let mut cells = vec![
+            Cell::count("positions", positions.len() as u64),
+            Cell::answer("full_turn", input.range().is_full_turn()),
+        ];
+        cells.extend(linkage.coordinates().iter().enumerate().map(|(i, c)| {
+            let value = home.map_or(f64::NAN, |position| position.joints[i]);
+            Cell::measured(&c.name, value, c.quantity, units)
+        }));
+        Ok(cells)
+    })
 }
 
 /// The requested input and its value; by default the first actuated joint.

@@ -17,22 +17,23 @@ mod traces;
 mod violations;
 mod workspace;
 
-use crate::args::{Output, PlotArgs};
+use crate::args::{Format, Output, PlotArgs};
 use crate::failure::Failure;
+use crate::output::{is_stdout, print_with};
 use crate::progress::interruptible;
 use crate::target::Target;
 use opm_plot::{Drawing, Size, png};
 use serde_json::json;
 use source::Source;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// The first bytes of every MCAP file.
 const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 
 /// The formats of pictures.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Ending {
     Svg,
     Png,
@@ -40,13 +41,21 @@ enum Ending {
 }
 
 pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
+    let printed = is_stdout(&args.output);
+    if printed && output.format == Format::Json {
+        let problem = "the picture takes standard output; give it a file with --output";
+        return Err(Failure::flag("--format json", problem));
+    }
     let ending = match args.output.extension().and_then(|ending| ending.to_str()) {
+        _ if printed => Ending::Svg,
         Some("svg") => Ending::Svg,
         Some("png") => Ending::Png,
         Some("pdf") => Ending::Pdf,
         _ => {
             let place = args.output.display();
-            let problem = format!("{place}: expected a name that ends in .svg, .png or .pdf");
+            let problem = format!(
+                "{place}: expected a name that ends in .svg, .png or .pdf, or - for SVG on standard output"
+            );
             return Err(Failure::flag("--output", problem));
         }
     };
@@ -55,7 +64,7 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
         let problem = format!("{} is also the input", args.output.display());
         return Err(Failure::flag("--output", problem));
     }
-    let target = Target::create(&args.output)?;
+    let target = if printed { None } else { Some(Target::create(&args.output)?) };
     let Picture { drawing, complete } = picture(args, output)?;
     let place = args.output.display();
     let bytes = match ending {
@@ -64,7 +73,10 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
         Ending::Pdf => drawing.to_pdf(),
     };
     let bytes = bytes.map_err(|error| Failure::at(&place, error))?;
-    target.commit(&bytes)?;
+    match target {
+        Some(target) => target.commit(&bytes)?,
+        None => print_with(|out| out.write_all(&bytes))?,
+    }
     if !complete {
         let label = args.file.display();
         output.warn(format_args!("{label}: unfinished; what is in it was drawn"));
@@ -74,10 +86,15 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
         Ending::Svg | Ending::Pdf => [width, height],
         Ending::Png => [width, height].map(|side| (side * f64::from(png::SCALE)).round()),
     };
-    output.note(format_args!("{place}: {} x {} pixels", pixels[0].round(), pixels[1].round()));
+    // Pages are measured; a pixel of a drawing is a 96th of an inch.
+    let (factor, unit) = if ending == Ending::Pdf { (25.4 / 96.0, "mm") } else { (1.0, "pixels") };
+    let [across, down] = pixels.map(|side| (side * factor).round());
+    if !printed {
+        output.note(format_args!("{place}: {across} x {down} {unit}"));
+    }
     match output.format {
-        crate::args::Format::Text => Ok(()),
-        crate::args::Format::Json => {
+        Format::Text => Ok(()),
+        Format::Json => {
             let json = json!({
                 "file": place.to_string(),
                 "width": pixels[0],

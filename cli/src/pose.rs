@@ -1,9 +1,10 @@
 //! Poses and grids in the syntax of the command line: `x=10mm,xi=15deg`, `x=-0.1:0.1:11`.
 
 use crate::failure::Failure;
+use crate::text::plural;
 use opm_analysis::Index;
 use opm_core::Quantity;
-use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
 use opm_core::numeric::number::readable;
 use opm_core::task::TaskCoordinate;
@@ -307,15 +308,20 @@ pub struct Checks(Vec<(usize, f64)>);
 const AS_GIVEN: f64 = 1e-4;
 
 impl Checks {
-    /// Whether a solution has the values that were given.
-    pub fn hold(&self, manipulator: &Manipulator, at: &Solution) -> bool {
-        self.broken(manipulator, at).is_none()
+    /// The checks of a table's row: a value for every dependent coordinate, not a number where none is given.
+    pub fn of_row(values: &[f64]) -> Self {
+        Self(values.iter().copied().enumerate().filter(|(_, value)| !value.is_nan()).collect())
     }
 
-    /// The number and the value of the first coordinate that a solution has another value of.
-    fn broken(&self, manipulator: &Manipulator, at: &Solution) -> Option<(usize, f64)> {
+    /// Whether dependent coordinates have the values that were given.
+    pub fn hold(&self, manipulator: &Manipulator, dependent: &[f64]) -> bool {
+        self.broken(manipulator, dependent).is_none()
+    }
+
+    /// The number and the given value of the first coordinate that has another value.
+    fn broken(&self, manipulator: &Manipulator, dependent: &[f64]) -> Option<(usize, f64)> {
         let off = |i: usize, value: f64| {
-            let off = at.dependent()[i] - value;
+            let off = dependent[i] - value;
             match manipulator.dependent_coordinates()[i].quantity {
                 Quantity::Length => off.abs() / manipulator.characteristic_length(),
                 Quantity::Angle => (off - TAU * (off / TAU).round()).abs(),
@@ -324,21 +330,26 @@ impl Checks {
         self.0.iter().copied().find(|&(i, value)| off(i, value) > AS_GIVEN)
     }
 
-    /// Refuses a pose whose solution has other values.
+    /// Refuses the dependent coordinates of a solution that are not those that were given.
     pub fn verify(
         &self,
         manipulator: &Manipulator,
-        at: &Solution,
+        dependent: &[f64],
         units: FileUnits,
-    ) -> Result<(), Failure> {
-        let Some((i, value)) = self.broken(manipulator, at) else { return Ok(()) };
+    ) -> Result<(), Misread> {
+        let Some((i, value)) = self.broken(manipulator, dependent) else { return Ok(()) };
         let c = &manipulator.dependent_coordinates()[i];
-        let [given, found] = [value, at.dependent()[i]].map(|value| units.show(value, c.quantity));
-        let problem = format!(
+        let [given, found] = [value, dependent[i]].map(|value| units.show(value, c.quantity));
+        Err(Misread(format!(
             "{} is given as {given}, but follows from the other coordinates as {found} in this mode",
             c.name
-        );
-        Err(Failure::flag("--pose", problem))
+        )))
+    }
+
+    /// What to say where no solution of all working modes has the values that were given.
+    pub fn refusal(modes: usize) -> Misread {
+        let modes = plural(modes as u64, "working mode");
+        Misread(format!("the dependent coordinates have other values in all {modes}"))
     }
 }
 

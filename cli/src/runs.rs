@@ -4,14 +4,18 @@ use crate::args::Output;
 use crate::change::Varied;
 use crate::failure::Failure;
 use crate::load::Loaded;
-use crate::text::{self, Table};
+use crate::text::{self, Table, count, short};
+use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use serde_json::{Map, Value, json};
+
+/// What stands in place of a number that there is not.
+const NONE: &str = "-";
 
 /// One result of a run.
 pub struct Cell {
     /// Its name in JSON, and the header of its column.
-    pub name: &'static str,
+    pub name: String,
     /// The header, where that says more.
     pub header: String,
     pub json: Value,
@@ -19,8 +23,34 @@ pub struct Cell {
 }
 
 impl Cell {
-    pub fn new(name: &'static str, json: impl Into<Value>, text: impl Into<String>) -> Self {
-        Self { name, header: name.to_owned(), json: json.into(), text: text.into() }
+    pub fn new(name: &str, json: impl Into<Value>, text: impl Into<String>) -> Self {
+        let header = name.replace('_', " ");
+        Self { name: name.to_owned(), header, json: json.into(), text: text.into() }
+    }
+
+    /// A number without a unit; not finite where there is none.
+    pub fn number(name: &str, value: f64) -> Self {
+        let shown = if value.is_finite() { short(value) } else { NONE.to_owned() };
+        Self::new(name, value, shown)
+    }
+
+    /// A whole number.
+    pub fn count(name: &str, number: u64) -> Self {
+        Self::new(name, number, count(number))
+    }
+
+    /// A length or an angle in SI, shown in the file's unit; not finite where there is none.
+    pub fn measured(name: &str, value: f64, quantity: Quantity, units: FileUnits) -> Self {
+        let shown = match value.is_finite() {
+            true => text::number(value, quantity, units),
+            false => NONE.to_owned(),
+        };
+        Self { header: text::header(name, quantity, units), ..Self::new(name, value, shown) }
+    }
+
+    /// The answer to a question.
+    pub fn answer(name: &str, yes: bool) -> Self {
+        Self::new(name, yes, if yes { "yes" } else { "no" })
     }
 }
 
@@ -70,7 +100,7 @@ impl Runs {
                 row.insert(self.key.clone(), run.json.clone());
                 match &run.found {
                     Ok(cells) => {
-                        row.extend(cells.iter().map(|c| (c.name.to_owned(), c.json.clone())));
+                        row.extend(cells.iter().map(|c| (c.name.clone(), c.json.clone())));
                     }
                     Err(problem) => {
                         row.insert("problem".to_owned(), problem.clone().into());
@@ -90,7 +120,7 @@ impl Runs {
             match &run.found {
                 Ok(_) => table.row([run.text.clone()].into_iter().chain(cells)),
                 Err(problem) => {
-                    table.row([run.text.clone(), "-".to_owned()]);
+                    table.row([run.text.clone(), NONE.to_owned()]);
                     problems += &format!("{}: {problem}\n", run.text.trim());
                 }
             }

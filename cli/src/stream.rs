@@ -230,6 +230,8 @@ pub struct Wanted<'a> {
     pub quantity: Quantity,
     /// What says whether a value looks misread.
     pub plausible: Plausible,
+    /// Whether a row may have an empty cell there, which is read as not a number.
+    pub optional: bool,
 }
 
 /// The columns of the input.
@@ -261,7 +263,7 @@ impl Columns<'_> {
         for &(column, units) in &self.columns {
             let (Column::Value(number), None) = (column, units) else { continue };
             let Wanted { name, plausible, .. } = &self.values[number];
-            if self.noted[number] || plausible.holds(values[number]) {
+            if self.noted[number] || values[number].is_nan() || plausible.holds(values[number]) {
                 continue;
             }
             self.noted[number] = true;
@@ -295,6 +297,13 @@ impl Columns<'_> {
                 let (name, field) = (name(column), String::from_utf8_lossy(field));
                 at(format!("column {name}: {field:?} {problem}"))
             };
+            if let Column::Value(value) = column
+                && field.is_empty()
+                && self.values[value].optional
+            {
+                values[value] = f64::NAN;
+                continue;
+            }
             let number = std::str::from_utf8(field).ok().and_then(|text| text.parse().ok());
             let number: f64 = number.ok_or_else(|| wrong("is not a number"))?;
             if !number.is_finite() {
@@ -322,7 +331,8 @@ pub fn other_columns(manipulator: &Manipulator) -> Vec<String> {
     let names: Vec<&str> = joints.chain(imaginary).collect();
     let rates = names.iter().copied().chain(tasks.map(|c| c.name));
     let rates = rates.flat_map(|name| [format!("d.{name}"), format!("dd.{name}")]);
-    let known = ["reachable", "within_limits", "mode", "valid"].map(str::to_owned);
+    let known = ["reachable", "within_limits", "mode", "valid", "inverse_condition"];
+    let known = known.map(str::to_owned);
     names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).collect()
 }
 

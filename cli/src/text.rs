@@ -1,6 +1,6 @@
 //! Text for people: aligned tables, and numbers in the units of a mechanism file.
 
-pub use opm_study::text::{chain, count, reason};
+pub use opm_study::text::{chain, count, length_text, nearest_text, reason, set_aside_text};
 
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;

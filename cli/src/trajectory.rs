@@ -1,16 +1,18 @@
 //! `opm trajectory`: a motion as the joints follow it.
 
 mod summary;
+mod table;
 
 use crate::args::{Format, Output, TableUnits, TrajectoryArgs};
 use crate::failure::Failure;
 use crate::interference;
 use crate::layout;
 use crate::load;
-use crate::motion;
+use crate::motion::{self, LoadedMotion};
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::count;
+use opm_core::manipulator::Manipulator;
 use opm_core::motion::TimingError;
 use opm_mcap::RecordError;
 use opm_study::recording::{
@@ -89,41 +91,63 @@ fn given_setup(setup: &SetupOptions) -> &'static str {
     }
 }
 
-pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
-    let target = Target::of(args, output)?;
-    let loaded = load::open(&args.mechanism, output)?;
-    let manipulator = loaded.compile()?;
-    let mut motion = motion::open(&args.motion, args.ends.map(Into::into), &manipulator)?;
+/// The motion of the flags, and the duration that it was given with if it got another timing.
+fn motion(
+    args: &TrajectoryArgs,
+    manipulator: &Manipulator,
+) -> Result<(LoadedMotion, Option<f64>), Failure> {
+    let mut motion = motion::open(&args.motion, args.ends.map(Into::into), manipulator)?;
     if let Some(mode) = &args.mode {
-        motion.motion.mode = Some(load::mode(&manipulator, mode)?);
+        motion.motion.mode = Some(load::mode(manipulator, mode)?);
     }
-    let mut given_duration = None;
-    if args.time_optimal {
-        given_duration = Some(motion.motion.duration);
-        let mode = motion.motion.mode.unwrap_or_else(|| manipulator.home_mode());
-        motion.motion = motion.motion.time_optimal(&manipulator, mode).map_err(|error| {
-            let of = match error {
-                TimingError::NoLimits { .. } => &args.mechanism.file,
-                _ => &args.motion,
-            };
-            Failure::work(format!("{}: {error} (--time-optimal)", of.display()))
-        })?;
+    if !args.time_optimal {
+        return Ok((motion, None));
     }
-    let mut request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);
+    let given_duration = motion.motion.duration;
+    let mode = motion.motion.mode.unwrap_or_else(|| manipulator.home_mode());
+    motion.motion = motion.motion.time_optimal(manipulator, mode).map_err(|error| {
+        let of = match error {
+            TimingError::NoLimits { .. } => &args.mechanism.file,
+            _ => &args.motion,
+        };
+        Failure::work(format!("{}: {error} (--time-optimal)", of.display()))
+    })?;
+    Ok((motion, Some(given_duration)))
+}
+
+/// What is asked of a motion.
+fn request<'a>(
+    args: &TrajectoryArgs,
+    manipulator: &'a Manipulator,
+    motion: &'a LoadedMotion,
+    clearance: Option<f64>,
+) -> MotionRequest<'a> {
+    let mut request = MotionRequest::new(manipulator, &motion.motion, &motion.label);
     if let Some(rate) = args.rate {
         request = request.rate(rate);
     }
+    request.clearance(clearance.unwrap_or(0.0))
+}
+
+pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
+    let target = Target::of(args, output)?;
+    let loaded = load::open(&args.mechanism, output)?;
+    if let Some(vary) = &args.vary {
+        return table::run(args, &loaded, vary, output);
+    }
+    let manipulator = loaded.compile()?;
+    let (motion, given_duration) = motion(args, &manipulator)?;
     let setup = args.setup.options(None)?;
     if setup != SetupOptions::default() && !args.indices {
         let problem = "nothing uses it; --indices does";
         return Err(Failure::flag(given_setup(&setup), problem));
     }
     let setup = setup.check(&manipulator)?;
+    let clearance = interference::clearance(args.clearance)?;
+    let mut request = request(args, &manipulator, &motion, clearance);
     if args.indices {
         request = request.indices(&setup);
     }
-    let clearance = interference::clearance(args.clearance)?;
-    request = request.clearance(clearance.unwrap_or(0.0));
     let trajectory = request.trajectory()?;
     if let Some(path) = target.path() {
         loaded.refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;

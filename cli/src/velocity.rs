@@ -1,5 +1,7 @@
 //! `opm velocity`: joint rates, the Jacobian, and how near a pose is to singular.
 
+mod table;
+
 use crate::args::{Output, VelocityArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
@@ -25,6 +27,9 @@ const TWIST: [&str; 6] = ["wx", "wy", "wz", "vx", "vy", "vz"];
 
 pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
+    if let Some(vary) = &args.vary {
+        return table::run(args, &loaded, vary, output);
+    }
     let manipulator = loaded.compile()?;
     let mode = load::mode(&manipulator, &args.mode)?;
     unitless::note_pose(output, "--pose", &args.pose, &loaded, &manipulator);
@@ -37,7 +42,8 @@ pub fn run(args: &VelocityArgs, output: &Output) -> Result<(), Failure> {
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
     let query = Query { loaded: &loaded, manipulator: &manipulator, pose, rates, mode };
     if reached {
-        checks.verify(&manipulator, &at, loaded.file.units)?;
+        let verified = checks.verify(&manipulator, at.dependent(), loaded.file.units);
+        verified.map_err(|error| Failure::flag("--pose", error))?;
     } else {
         return output.print(&query.out_of_reach(&at), query.out_of_reach_text(&at));
     }

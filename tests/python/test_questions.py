@@ -52,6 +52,62 @@ def test_a_number_that_is_set_is_that_of_a_changed_file(ask, tmp_path):
     assert ask("decompose", MECHANISM, "--vary", "h=0.1:0.12:2")["runs"][0]["mobility"] == 5
 
 
+def test_every_command_has_a_table_of_a_varied_number(ask, tmp_path):
+    """Each row is what the command answers for the number set to that value."""
+
+    def rows(command, mechanism, vary, *arguments):
+        runs = ask(command, mechanism, "--vary", vary, *arguments)["runs"]
+        name = vary.split("=")[0]
+        for run in runs:
+            yield run, ask(command, mechanism, "--set", f"{name}={run['value']!r}", *arguments)
+
+    h = "h=120mm:160mm:3"
+    reached = []
+    for run, alone in rows("ik", MECHANISM, h, "--pose", "x=-130mm,y=20mm,xi=15deg"):
+        reached.append(run["reachable"])
+        assert run["reachable"] == alone["reachable"]
+        if alone["reachable"]:
+            (solution,) = alone["solutions"]
+            assert run["within_limits"] == solution["within_limits"]
+            assert run["nearest"] == solution["nearest"]["distance"]
+            for name, value in {**solution["imaginary"], **solution["joints"]}.items():
+                assert run.get(name, value) == value
+            assert {"S1", "theta11"} <= set(run)
+        else:
+            assert run["S1"] is None and run["nearest"] is None
+    assert set(reached) == {True, False}
+
+    joints = "S1=170mm,S2=165mm,S3=160mm,phi14=-150deg,phi24=130deg"
+    for run, alone in rows("fk", MECHANISM, h, "--joints", joints):
+        assert run["assemblies"] == len(alone["assemblies"])
+        if alone["assemblies"]:
+            first = alone["assemblies"][0]
+            assert [run[name] for name in first["pose"]] == list(first["pose"].values())
+            assert run["mode"] == first["mode"]
+        else:
+            assert run["x"] is None and run["mode"] is None
+    for run, alone in rows("velocity", MECHANISM, h, "--pose", "xi=15deg", "--rates", "x=1"):
+        assert [run[name] for name in ("condition", "serial", "parallel")] == [
+            alone["singularity"][name] for name in ("condition", "serial", "parallel")
+        ]
+        assert run["d.S1"] == alone["joint_rates"]["S1"]
+    for run, alone in rows("analyze", MECHANISM, h, "--pose", "xi=15deg", "--wrench", "0,0,0,0,0,1"):
+        assert run["balance"] == alone["balance"]
+        assert [run[f"effort.{name}"] for name in alone["efforts"]] == list(alone["efforts"].values())
+    for run, alone in rows("trajectory", MECHANISM, h, "--motion", "plano-spherical-sinusoids", "--rate", "20"):
+        assert [run[name] for name in ("samples", "reached", "valid", "duration")] == [
+            alone[name] for name in ("samples", "reached", "valid", "duration")
+        ]
+        assert run["violations"] == alone["violation_count"]
+        nearest = alone["interference"]["nearest"]
+        assert run["nearest"] == (nearest and nearest["distance"])
+    linkage = ask("linkage", "bennett-double-spherical-6r", "--input", "a1=30deg")
+    home = next(s for s in linkage["solutions"] if s["branch"] == linkage["home_branch"])
+    (row,) = ask("linkage", "bennett-double-spherical-6r", "--input", "a1=30deg", "--vary", "a1.home=0:0:1")["runs"]
+    assert row["positions"] == len(linkage["solutions"])
+    assert [row[name] for name in home["joints"]] == pytest.approx(list(home["joints"].values()), abs=1e-12)
+
+
 def test_values_that_do_not_assemble_are_rows_that_say_so(ask):
     runs = ask("workspace", MECHANISM, "--vary", "h=120mm:920mm:2", *GRID)["runs"]
     assert "problem" not in runs[0]

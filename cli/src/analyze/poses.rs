@@ -4,10 +4,9 @@ use super::{Analyser, word};
 use crate::args::{AnalyzeArgs, Format, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
-use crate::pose::find;
-use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
+use crate::pose_table;
+use crate::stream::{self, Stop, Stream, Streams};
 use crate::text::{count, short};
-use crate::unitless::Plausible;
 use opm_analysis::Index;
 use opm_core::manipulator::Mode;
 use opm_study::effort_names;
@@ -60,19 +59,7 @@ fn solve(
     // Those that the mechanism has.
     let known: Vec<Index> = analyser.indices.indices().to_vec();
     let coordinates = manipulator.task_coordinates();
-    let values = coordinates.iter().map(|c| Wanted {
-        name: c.name,
-        quantity: c.quantity,
-        plausible: Plausible::new(c.quantity, c.home, (loaded, manipulator)),
-    });
-    let others = other_columns(manipulator);
-    let mut columns = stream.columns(values.collect(), |name| {
-        if others.iter().any(|other| other == name) {
-            return Ok(None);
-        }
-        manipulator.refuse_following(name).map_err(|error| error.to_string())?;
-        find(name, coordinates).map(Some).map_err(|error| error.to_string())
-    })?;
+    let mut columns = pose_table::columns(&mut stream, (loaded, manipulator))?;
     let loaded_with = analyser.loads.is_some();
     let carried: Vec<String> = effort_names(manipulator).collect();
     let efforts: &[String] = if loaded_with { &carried } else { &[] };
@@ -84,11 +71,12 @@ fn solve(
         .chain(efforts.iter().map(String::as_str))
         .chain(known.iter().map(|index| index.name()));
     stream.writer.write_record(header)?;
-    let (mut at, mut pose) = (manipulator.solution(), manipulator.home_pose());
+    let (mut at, mut values) = (manipulator.solution(), pose_table::blank(manipulator));
     let (mut reachable, mut within_limits, mut balanced) = (0, 0, 0);
     let mode_text = manipulator.format_mode(mode);
-    stream.each(&mut columns, &mut pose, |stream, line, time, pose| {
+    stream.each(&mut columns, &mut values, |stream, line, time, values| {
         let label = stream.label;
+        let (pose, checks) = pose_table::split(manipulator, values);
         let found = manipulator.inverse(pose, mode, &mut at);
         let reached = found.map_err(|error| stream::at(label, line, error))?.is_some();
         let within = reached && at.within_limits();
@@ -98,6 +86,8 @@ fn solve(
         let mut numbers = blank(known.len());
         let mut balance = String::new();
         if reached {
+            let verified = checks.verify(manipulator, at.dependent(), loaded.file.units);
+            verified.map_err(|error| stream::at(label, line, error))?;
             analyser.update(&at)?;
             dependent = at.dependent().iter().map(|&value| Some(value)).collect();
             let finite = |&value: &f64| value.is_finite().then_some(value);

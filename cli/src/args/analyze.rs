@@ -1,7 +1,7 @@
 //! Arguments of `opm analyze`.
 
 use super::{MechanismArgs, SetupArgs};
-use crate::pose::{Number, Pose};
+use crate::pose::{GridAxis, Number, Pose};
 use clap::ValueHint;
 use std::path::PathBuf;
 
@@ -58,6 +58,9 @@ pub struct AnalyzeArgs {
     /// Characteristic length, by which forces and moments are compared, instead of the spread of the joint axes
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
+    /// Analyze for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "link_stiffness"])]
+    pub vary: Option<GridAxis>,
     /// Output file for the CSV; standard output if it is - or not given
     #[arg(
         short,

@@ -2,7 +2,7 @@
 
 use super::{MechanismArgs, SetupArgs};
 use crate::linkage::input::InputValue;
-use crate::pose::Number;
+use crate::pose::{GridAxis, Number};
 use clap::{ValueEnum, ValueHint};
 use opm_core::motion::Ends;
 use std::path::PathBuf;
@@ -49,6 +49,9 @@ pub struct LinkageArgs {
         value_parser = clap::value_parser!(u32).range(2..=10_000_000)
     )]
     pub count: u32,
+    /// Solve for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["sweep"])]
+    pub vary: Option<GridAxis>,
     /// Output file, in the format of its ending; CSV on standard output if it is - or not given
     #[arg(
         short,
@@ -142,6 +145,9 @@ pub struct TrajectoryArgs {
     /// too
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub clearance: Option<Number>,
+    /// Follow it for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["output", "strict"])]
+    pub vary: Option<GridAxis>,
     /// Exit with status 1 if the mechanism cannot follow all of it
     #[arg(long)]
     pub strict: bool,

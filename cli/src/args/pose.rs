@@ -22,7 +22,8 @@ use std::path::PathBuf;
 /// at home are not tested, and named.
 ///
 /// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians, or in units that
-/// the header names: `x [mm],xi [deg]`. A column `t`, as in the table of a motion, is carried through.
+/// the header names: `x [mm],xi [deg]`. A column `t`, as in the table of a motion, is carried through. Columns of
+/// coordinates that depend on the others are compared with the values that follow, where a cell is not empty.
 /// CSV out: all task coordinates, those that depend on them, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
 /// the actuated joints, or with --all-joints every joint. A pose out of reach keeps its row; its joint cells are empty.
 #[derive(Debug, clap::Args)]
@@ -32,6 +33,7 @@ Examples:
   opm ik plano-spherical-5dof --pose xi=15deg --mode \"-+ ++ ++ +\"
   opm ik plano-spherical-5dof --pose xi=15deg --all-modes --format json
   opm ik plano-spherical-5dof --transform 10mm,0,0,0.8,0.6,0,0
+  opm ik plano-spherical-5dof --pose xi=15deg --vary h=100mm:160mm:7
   opm ik plano-spherical-5dof --poses poses.csv -o joints.csv
   opm ik plano-spherical-5dof --poses poses.csv --all-joints --all-modes -o joints.csv
   generate-poses | opm ik plano-spherical-5dof --poses - | head")]
@@ -58,6 +60,9 @@ pub struct IkArgs {
     /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
+    /// Solve for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "transform", "all_modes"])]
+    pub vary: Option<GridAxis>,
     /// Output file for the CSV; standard output if it is - or not given
     #[arg(
         short,
@@ -104,6 +109,9 @@ pub struct VelocityArgs {
     /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
+    /// Compute for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
+    pub vary: Option<GridAxis>,
     /// Characteristic length of the condition number, instead of the spread of the joint axes
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
@@ -167,6 +175,9 @@ pub struct FkArgs {
     /// Grid of --aspects: minimum, maximum and number of values of a task coordinate; without it, one is fitted
     #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE", requires = "aspects")]
     pub grid: Vec<GridAxis>,
+    /// Solve for each of these values of a number that --set takes, and print a table
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "aspects"])]
+    pub vary: Option<GridAxis>,
     /// Start Newton's method at this pose; other coordinates start at home
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub near: Option<Pose>,

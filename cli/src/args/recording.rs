@@ -35,7 +35,7 @@ pub struct PlotArgs {
     /// Mechanism file, the name of a shipped example, or a recording (MCAP) of any command
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// Output file; its ending selects the format
+    /// Output file; its ending selects the format; - prints SVG
     #[arg(short, long, value_name = "OUT.svg|OUT.png|OUT.pdf", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
     /// Panels to draw, instead of those that suit the recording

@@ -89,6 +89,7 @@ impl Request<'_> {
             name: &c.name,
             quantity: c.quantity,
             plausible: Plausible::new(c.quantity, c.home, (self.loaded, m)),
+            optional: false,
         });
         let tasks = m.task_coordinates().iter().chain(m.dependent_coordinates());
         let tasks: Vec<&str> = tasks.map(|c| c.name).collect();

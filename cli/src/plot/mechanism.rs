@@ -4,9 +4,8 @@ use super::label::value_label;
 use super::sized::drawn;
 use crate::args::{MechanismArgs, Output, PlotArgs};
 use crate::failure::Failure;
-use crate::interference;
 use crate::load::{self, Loaded};
-use crate::text::reason;
+use crate::text::{nearest_text, reason};
 use crate::unitless;
 use nalgebra::{Isometry3, Point3};
 use opm_core::decomposition::Decomposition;
@@ -14,9 +13,10 @@ use opm_core::linkage::Linkage;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::Mechanism;
 use opm_core::skeleton::{
-    Body, Configuration, ImaginaryJoints, Material, PartKind, SeatMotion, Skeleton, Solid,
+    Body, Configuration, ImaginaryJoints, Material, SeatMotion, Skeleton, Solid,
 };
 use opm_core::{Quantity, group::subspace::SubspaceClass};
+use opm_interference::member::names_of_parts;
 use opm_interference::{Distances, Interference};
 use opm_plot::{Color, Drawing, Heading, Named, Steps, Unit, ViewFigure};
 use std::collections::BTreeSet;
@@ -70,7 +70,7 @@ fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigur
             let nearest = distances.nearest();
             if nearest.is_some_and(|nearest| nearest.distance < 0.0) {
                 let units = loaded.file.units;
-                lines.push(interference::nearest_text(&interference, nearest, units));
+                lines.push(nearest_text(&interference, nearest, units));
             }
             let pairs =
                 distances.nearer_than(0.0).flat_map(|near| interference.members_of(near.pair));
@@ -173,17 +173,8 @@ fn assemble(
     let mut names = Vec::new();
     let mut used = BTreeSet::new();
     for (body, place) in skeleton.bodies().iter().zip(&placed) {
-        // The guides of the base come in the order of the joints that they belong to.
-        let sliders = body.seats.iter().filter(|seat| seat.motion == SeatMotion::Slide);
-        let mut guides = sliders.map(|seat| format!("{}/{}", body.name, seat.joint));
-        for part in &body.parts {
-            let interferes = match part.kind {
-                PartKind::Guide { .. } if body.parent.is_none() => {
-                    guides.next().is_some_and(|name| red.contains(&name))
-                }
-                PartKind::Rod | PartKind::Guide { .. } => red.contains(&body.name),
-                PartKind::Joint | PartKind::Ring => false,
-            };
+        for (part, name) in body.parts.iter().zip(names_of_parts(body)) {
+            let interferes = name.is_some_and(|name| red.contains(&name));
             let paint = if interferes {
                 Paint::Interfering
             } else {

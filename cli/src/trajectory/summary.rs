@@ -1,7 +1,7 @@
 //! The printed summary of a motion.
 
-use crate::interference::{length_text, set_aside_json};
-use crate::text::{self, Table, count, short};
+use crate::interference::set_aside_json;
+use crate::text::{self, Table, count, length_text, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Violation, ViolationReport};

@@ -1,9 +1,9 @@
 //! The printed results of a workspace: text for people, and JSON.
 
 use super::aspects;
-use crate::interference::{set_aside_json, set_aside_text};
+use crate::interference::set_aside_json;
 use crate::output::named;
-use crate::text::{self, Table, count, plural, short};
+use crate::text::{self, Table, count, plural, set_aside_text, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_study::{Analysis, Shape, Workspace, WorkspaceKind, setup_fields};
@@ -136,6 +136,7 @@ impl Outcome<'_> {
         if let Some(clearance) = workspace.clearance() {
             let least = units.show(clearance.least, Quantity::Length);
             let aside = set_aside_text(&clearance.interference, units);
+            let aside = aside.map_or_else(String::new, |aside| aside + "\n");
             let _ = writeln!(text, "bodies at least {least} apart\n{aside}");
         }
 

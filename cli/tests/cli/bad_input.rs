@@ -336,8 +336,6 @@ fn a_coordinate_that_follows_from_others_is_told() {
         let args = [&[args[0], "five-bar"], &args[1..]].concat();
         opm(&args).fails_with_one_line(2, &[flag, follows]);
     }
-    let csv = folder.write("poses.csv", "x,theta\n0,0\n");
-    opm(&["ik", "five-bar", "--poses", &csv]).fails_with_one_line(1, &["poses.csv:1", follows]);
     let table = folder.write("motion.csv", "t,x,theta\n0,0,0\n1,0,0\n2,0,0\n");
     let head = "format = 1\nname = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\nduration = 1\nrate = 100\n";
     let file = folder.write("motion.toml", format!("{head}[coordinates]\ntheta = 3\n"));

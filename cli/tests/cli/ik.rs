@@ -1,6 +1,6 @@
 //! `opm ik` at one pose.
 
-use crate::run::{keys, number, opm};
+use crate::run::{Folder, keys, number, opm};
 use crate::{HELICAL, PLANO};
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -228,6 +228,40 @@ fn right_forearm(x: f64, y: f64) -> f64 {
     // At home the hand is above the middle between the shoulders.
     let hand = hy + (fore * fore - hx * hx).sqrt();
     (y - ey).atan2(x - ex) - (hand - hy).atan2(-hx)
+}
+
+/// A table with the angle that follows is read back, and checked line by line.
+#[test]
+fn dependent_coordinates_are_columns_of_tables() {
+    let folder = Folder::new();
+    let theta = right_forearm(20.0, 300.0).to_degrees();
+    let rows = format!("20,300,{theta:.6},1\n20,300,,2\n0,900,33,3\n");
+    let table = folder.write("a.csv", format!("x [mm],y [mm],theta [deg],S1 [deg]\n{rows}"));
+    let solved = opm(&["ik", "five-bar", "--poses", &table]).text().to_owned();
+    let lines: Vec<&str> = solved.lines().collect();
+    assert!(lines[0].starts_with("x,y,theta,reachable"), "{solved}");
+    assert_eq!(lines[1], lines[2], "a cell may be empty");
+    assert!(
+        lines[3].starts_with("0.0,0.9,,0,0,"),
+        "out of reach there is nothing to check: {solved}"
+    );
+    // What was written is read again, empty cells too.
+    let again = folder.write("b.csv", &solved);
+    assert_eq!(opm(&["ik", "five-bar", "--poses", &again]).text(), solved);
+    let all = opm(&["ik", "five-bar", "--all-modes", "--poses", &table]);
+    let all = all.text();
+    // The elbow of the other arm is up or down; without a value this one's is, too.
+    assert_eq!(all.lines().count(), 1 + 2 + 4 + 1, "{all}");
+    let wrong = folder.write("c.csv", "x [mm],y [mm],theta [deg]\n20,300,\n20,300,3\n");
+    let follows = format!(
+        "theta is given as 3 deg, but follows from the other coordinates as {theta:.5} deg"
+    );
+    for command in ["ik", "analyze"] {
+        let run = opm(&[command, "five-bar", "--poses", &wrong]);
+        run.fails_with_one_line(1, &["c.csv:3", &follows]);
+    }
+    let run = opm(&["ik", "five-bar", "--all-modes", "--poses", &wrong]);
+    run.fails_with_one_line(1, &["c.csv:3", "other values in all 4 working modes"]);
 }
 
 #[test]

@@ -369,6 +369,25 @@ fn every_shipped_mechanism_can_be_drawn() {
     }
 }
 
+/// What is printed is what is written.
+#[test]
+fn a_picture_is_printed() {
+    let folder = Folder::new();
+    let file = folder.arg("a.svg");
+    opm(&["plot", PLANO, "-o", &file]).text();
+    let written = folder.read("a.svg");
+    for name in ["-", "/dev/stdout"] {
+        let printed = opm(&["plot", PLANO, "-o", name]);
+        assert_eq!(printed.text(), written, "{name}");
+        assert_eq!(printed.stderr, "", "{name}");
+    }
+    let run = opm(&["plot", PLANO, "-o", "-", "--format", "json"]);
+    run.fails_with_one_line(2, &["--format json", "standard output"]);
+    // Pages have a size, and no pixels.
+    let pdf = opm(&["plot", PLANO, "-o", &folder.arg("a.pdf")]);
+    assert!(pdf.text().is_empty() && pdf.stderr.trim_end().ends_with(" mm"), "{}", pdf.stderr);
+}
+
 #[test]
 fn a_png_has_twice_the_pixels_and_the_same_bytes_each_time() {
     let folder = Folder::new();

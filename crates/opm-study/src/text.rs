@@ -1,7 +1,9 @@
-//! Numbers, legs out of reach and errors as text.
+//! Numbers, legs out of reach, distances of bodies and errors as text.
 
+use opm_core::Quantity;
 use opm_core::manipulator::Unreachable;
 use opm_core::mechanism::file::FileUnits;
+use opm_interference::{Interference, Nearest};
 use std::error::Error;
 use std::fmt::{Display, Write};
 
@@ -47,6 +49,49 @@ pub fn located(place: impl Display, error: &(dyn Error + '_)) -> String {
         return text;
     }
     format!("{place}: {text}")
+}
+
+/// The nearest pair of bodies in words.
+pub fn nearest_text(
+    interference: &Interference,
+    nearest: Option<Nearest>,
+    units: FileUnits,
+) -> String {
+    let Some(Nearest { pair, distance }) = nearest else {
+        return "no two bodies that could interfere".to_owned();
+    };
+    let [one, other] = interference.names_of(pair);
+    let what = if distance < 0.0 { "interference" } else { "nearest" };
+    format!("{what}: {one} and {other}, {}", length_text(distance, units))
+}
+
+/// A signed distance in words: `3 mm apart`, `overlapping by 2 mm`.
+pub fn length_text(distance: f64, units: FileUnits) -> String {
+    let length = units.show(distance.abs(), Quantity::Length);
+    match distance < 0.0 {
+        true => format!("overlapping by {length}"),
+        false => format!("{length} apart"),
+    }
+}
+
+/// The number of pairs that overlap at home that are named in a text.
+const MOST_NAMED: usize = 6;
+
+/// The pairs that are not tested because they overlap at home, the first ones by name; `None` without such pairs.
+pub fn set_aside_text(interference: &Interference, units: FileUnits) -> Option<String> {
+    let pairs = interference.set_aside_pairs();
+    let each = pairs.iter().take(MOST_NAMED).map(|pair| {
+        let [one, other] = &pair.names;
+        format!("{one} and {other} by {}", units.show(pair.overlap, Quantity::Length))
+    });
+    let each: Vec<String> = each.collect();
+    let more = match pairs.len() - each.len() {
+        0 => String::new(),
+        1 => "; and 1 more pair".to_owned(),
+        more => format!("; and {more} more pairs"),
+    };
+    let named = || format!("not tested, because they overlap at home: {}{more}", each.join("; "));
+    (!pairs.is_empty()).then(named)
 }
 
 #[cfg(test)]

@@ -2,11 +2,17 @@
 
 /// The known word that was probably meant.
 pub(in crate::mechanism) fn nearest<W: AsRef<str>>(found: &str, words: &[W]) -> Option<String> {
+    let length = found.chars().count();
+    let best = |distance: &dyn Fn(&str) -> usize, allowed: usize| {
+        let distances = words.iter().map(|word| (distance(word.as_ref()), word.as_ref()));
+        let (distance, word) = distances.min_by_key(|&(distance, _)| distance)?;
+        (distance <= allowed).then(|| word.to_owned())
+    };
     // Exchanging two letters takes two edits: still a slip in a word of four letters.
-    let allowed = found.chars().count().div_ceil(3).max(1);
-    let distances = words.iter().map(|word| (edits(found, word.as_ref()), word.as_ref()));
-    let (distance, word) = distances.min_by_key(|&(distance, _)| distance)?;
-    (distance <= allowed).then(|| word.to_owned())
+    let slip = best(&|word| edits(found, word), length.div_ceil(3).max(1));
+    // Or the beginning of a word, with few slips: words of three letters begin too many others.
+    let beginning = |word: &str| edits(found, &word.chars().take(length).collect::<String>());
+    slip.or_else(|| if length > 3 { best(&beginning, length / 6) } else { None })
 }
 
 /// The text `expected A, B, C`, or `did you mean A? expected one of A, B, C` if one is similar.
@@ -54,5 +60,11 @@ mod tests {
             expected_one_of("lenght", &["length", "angle"]).starts_with("did you mean `length`")
         );
         assert!(expected_one_of("colour", &["length", "angle"]).starts_with("expected one of"));
+        let names = ["agile-eye", "plano-spherical-5dof", "plano-spherical-5dof-joints"];
+        for found in ["plano-spherical", "plano-sperical"] {
+            let said = expected_one_of(found, &names);
+            assert!(said.starts_with("did you mean `plano-spherical-5dof`?"), "{said}");
+        }
+        assert!(expected_one_of("spherical", &names).starts_with("expected one of"));
     }
 }
