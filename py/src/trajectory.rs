@@ -86,7 +86,7 @@ pub struct Trajectory {
     /// Where two bodies are nearer than `clearance`, also between the samples, in the order of time; None if that was not given.
     #[pyo3(get)]
     contacts: Option<Vec<Contact>>,
-    /// The two bodies that are nearest at a sample of the whole motion, their distance in metres and the time in seconds.
+    /// The two bodies that are nearest in the whole motion, their distance in metres and the time in seconds.
     #[pyo3(get)]
     nearest: Option<(String, String, f64, f64)>,
     /// Names of the columns of `joints`.

@@ -56,7 +56,7 @@ def test_contacts_of_a_motion_are_found_between_samples(tmp_path):
     assert opm.trajectory(m, motion).contacts is None and opm.trajectory(m, motion).nearest is None
     apart = m.clearance(found.poses)
     one, other, distance, time = found.nearest
-    assert distance == apart.distance.min() and time == found.times[apart.distance.argmin()]
+    assert distance <= apart.distance.min() + 1e-12 and found.times[0] <= time <= found.times[-1]
     assert (one, other) in apart.pairs
     # Some pair is in contact at just those samples at which the nearest two are too near.
     near = np.any([(c.start <= found.times) & (found.times <= c.end) for c in found.contacts], axis=0)

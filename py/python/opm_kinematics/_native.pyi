@@ -20,6 +20,7 @@ __all__ = [
     "Clearance",
     "Comparison",
     "Conditioning",
+    "Contact",
     "Decomposition",
     "Explorer",
     "Inscribed",
@@ -2700,7 +2701,7 @@ class Trajectory:
         """Where two bodies are nearer than `clearance`, also between the samples, in the order of time; None if that was not given."""
     @property
     def nearest(self) -> tuple[str, str, float, float] | None:
-        """The two bodies that are nearest at a sample of the whole motion, their distance in metres and the time in seconds."""
+        """The two bodies that are nearest in the whole motion, their distance in metres and the time in seconds."""
     @property
     def joint_names(self) -> list[str]:
         """Names of the columns of `joints`."""
