@@ -52,6 +52,7 @@ mod _native {
     use crate::analysis::Analysis;
     #[pymodule_export]
     use crate::calibration::{Calibration, calibrate};
+    #[pymodule_export]
     use crate::check::{Certificate, Comparison, recover};
     #[pymodule_export]
     use crate::clearance::Clearance;
