@@ -82,7 +82,8 @@ pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
     let mut found = None;
     if reached {
-        checks.verify(&manipulator, &at, loaded.file.units)?;
+        let verified = checks.verify(&manipulator, at.dependent(), loaded.file.units);
+        verified.map_err(|error| Failure::flag("--pose", error))?;
         let response = setting.model.at(&at).map_err(|error| Failure::flag("--pose", error))?;
         let budget = Budget::new(&response, &setting.sizes);
         let sources = setting.model.sources();

@@ -54,6 +54,7 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Summary, Stop>
         name: c.name,
         quantity: c.quantity,
         plausible: Plausible::new(c.quantity, c.home, (setting.loaded, manipulator)),
+        optional: false,
     });
     let errors = row::header(manipulator);
     let others = other_columns(manipulator);
