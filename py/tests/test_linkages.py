@@ -56,15 +56,15 @@ def test_its_positions_are_those_of_the_program():
     assert branches and branches == [mode for mode, yes in zip(found.modes, found.reachable[0], strict=True) if yes]
     for solution in told["solutions"]:
         branch = found.modes.index(solution["branch"])
-        assert {name: found[name][0, branch] for name in LINKAGE.joints} == solution["joints"]
-        assert found[LINKAGE.imaginary][0, branch] == solution["imaginary"][LINKAGE.imaginary]
+        assert {name: found[name][0, branch] for name in LINKAGE.joint_names} == solution["joints"]
+        assert found[LINKAGE.imaginary_name][0, branch] == solution["imaginary"][LINKAGE.imaginary_name]
         assert found.within_limits[0, branch] == solution["within_limits"]
     assert LINKAGE.range("a2").tolist() == told["range"]
     assert LINKAGE.home_branch("a2") == told["home_branch"]
 
 
 def test_the_loop_closes_in_the_range_and_nowhere_else():
-    for name in LINKAGE.joints:
+    for name in LINKAGE.joint_names:
         values = np.linspace(-np.pi, np.pi, 1001)
         parts = LINKAGE.range(name)
         turned = values + 2 * np.pi * np.array([-1, 0, 1])[:, None, None]
@@ -87,7 +87,7 @@ def test_sarrus_platform_is_lifted():
 
 
 def test_home_is_a_position():
-    found = LINKAGE.positions([LINKAGE.home[LINKAGE.joints.index("a1")]])
+    found = LINKAGE.positions([LINKAGE.home[LINKAGE.joint_names.index("a1")]])
     branch = found.modes.index(LINKAGE.home_branch())
     assert found.joints[0, branch] == pytest.approx(LINKAGE.home, abs=1e-12)
 

@@ -203,7 +203,7 @@ def test_modes(manipulator):
 
 
 def test_wrong_input_is_told(manipulator, tmp_path):
-    with pytest.raises(opm.OpmError, match=r"poses has shape \(2, 3\), expected \(n, 5\): x, y, zeta, xi, psi"):
+    with pytest.raises(opm.OpmError, match=r"poses has shape \(2, 3\), expected \(5,\) or \(n, 5\): x, y, zeta, xi, psi"):
         manipulator.inverse(np.zeros((2, 3)))
     with pytest.raises(opm.OpmError, match="xi is NaN"):
         manipulator.inverse([[0, 0, 0, np.nan, 0]])

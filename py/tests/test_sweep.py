@@ -59,7 +59,7 @@ def test_nothing_reachable(manipulator):
     [
         ({"w": 1.0}, "w: no such task coordinate, expected one of x, y, zeta, xi, psi"),
         ({"x": (1.0, -1.0, 3)}, "x: 1 to -1"),
-        ({"x": (1.0, 2.0)}, r"x is \(1\.0, 2\.0\), expected a number or \(min, max, count\)"),
+        ({"x": (1.0, 2.0)}, r"x is \(1\.0, 2\.0\), expected a number, \(min, max, count\)"),
         ({"x": float("nan")}, "expected numbers"),
         ({"mode": "+-"}, "sign"),
     ],
