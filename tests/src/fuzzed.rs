@@ -138,8 +138,8 @@ fn joints(bytes: &mut Bytes<'_>) -> String {
                 number += 1;
                 let (kind, axis, point) =
                     joint(bytes, sections[section], normals[section], centres[section]);
-                let actuated = if bytes.next() % 3 == 0 { ", actuated = true" } else { "" };
-                let limits = if bytes.next() % 4 == 0 { ", limits = [-1.5, 1.0]" } else { "" };
+                let actuated = if bytes.next().is_multiple_of(3) { ", actuated = true" } else { "" };
+                let limits = if bytes.next().is_multiple_of(4) { ", limits = [-1.5, 1.0]" } else { "" };
                 let pitch = if kind == "helical" { ", pitch = 0.1" } else { "" };
                 let point = match kind {
                     "prismatic" => String::new(),
@@ -182,7 +182,7 @@ fn joint(
         return (kind, any(bytes), bytes.vector());
     }
     match section {
-        0 if bytes.next() % 2 == 0 => ("revolute", normal, bytes.vector()),
+        0 if bytes.next().is_multiple_of(2) => ("revolute", normal, bytes.vector()),
         0 | 3 => ("prismatic", across, centre),
         1 => ("revolute", any(bytes), centre),
         2 => (bytes.choose(&["revolute", "prismatic", "helical"]), normal, centre),
