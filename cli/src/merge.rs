@@ -108,7 +108,7 @@ fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, 
         command += &format!(" --mode {}", quoted(&mode));
     }
     let (limit, conditioning) = (workspace.limit(), workspace.conditioning_length());
-    if let Some(most) = limit.and_then(|limit| limit.max_condition()) {
+    if let Some(most) = limit.and_then(opm_workspace::PoseLimit::max_condition) {
         command += &format!(" --max-condition {most}");
     }
     if let Some(clearance) = workspace.clearance() {

@@ -176,7 +176,7 @@ impl Sweep {
     /// The largest condition number at which a pose counts, if it is limited.
     #[getter]
     fn max_condition(&self) -> Option<f64> {
-        self.workspace.limit().and_then(|limit| limit.max_condition())
+        self.workspace.limit().and_then(opm_workspace::PoseLimit::max_condition)
     }
 
     /// The worst values of indices at which a pose counts, by name.

@@ -19,7 +19,7 @@ fn by_modes(
     manipulator: &Manipulator,
     pose: &[f64],
     mode: Option<Mode>,
-    limit: PoseLimit,
+    limit: &PoseLimit,
 ) -> Found {
     let mut jacobians = manipulator.jacobians();
     let mut at: Solution = manipulator.solution();
@@ -78,7 +78,7 @@ fn compare(
                 if open >> i & 1 == 1 {
                     continue;
                 }
-                let (first, of_pose) = by_modes(manipulator, pose, mode, limit.clone());
+                let (first, of_pose) = by_modes(manipulator, pose, mode, &limit);
                 let found = Some(conditions[i]).filter(|condition| !condition.is_nan());
                 assert_eq!(found, first, "{pose:?} {mode:?} {limit:?}");
                 for (range, [low, high]) in expected_ranges.iter_mut().zip(of_pose) {

@@ -122,7 +122,7 @@ fn csv(
     for pose in poses {
         let found = manipulator.inverse(pose, mode, &mut at);
         let found = found.map_err(|error| Failure::at("a pose", error))?;
-        let joints = found.map(|found| found.joints()).unwrap_or_default();
+        let joints = found.map(opm_core::Solution::joints).unwrap_or_default();
         let joints = manipulator.actuated().iter().filter_map(|&number| joints.get(number));
         let cells: Vec<String> =
             pose.iter().chain(joints).map(|value| format!("{value:?}")).collect();

@@ -5,7 +5,7 @@ use crate::response::Model;
 use crate::source::{ErrorModel, Origin};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use opm_core::mechanism::Mechanism;
-use opm_core::mechanism::family::ParameterValue;
+use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::joint::JointKind;
 use std::collections::BTreeMap;
 
@@ -75,10 +75,10 @@ impl Made {
 /// The mechanism with the errors of its family's parameters.
 fn family(model: &Model<'_>, errors: &[f64]) -> Option<Mechanism> {
     let mut changed: BTreeMap<&str, ParameterValue> = BTreeMap::new();
-    let nominal = model.family().map(|family| family.parameters()).unwrap_or_default();
+    let nominal = model.family().map(Family::parameters).unwrap_or_default();
     for (source, &error) in model.sources().iter().zip(errors).filter(|(_, e)| **e != 0.0) {
         let Origin::Parameter { key, part, .. } = &source.origin else { continue };
-        let known = nominal.iter().find(|(name, _)| name == key).map(|(_, value)| value.clone());
+        let known = nominal.iter().find(|(name, _)| name == key).map(|(_, value)| *value);
         let value = changed.entry(key).or_insert(known?);
         match value {
             ParameterValue::Number(number) => *number += error,

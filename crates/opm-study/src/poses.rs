@@ -15,7 +15,7 @@ use opm_workspace::{Grid, Hits, Poses, Progress, Run, Sweep, replay};
 #[non_exhaustive]
 pub enum PoseSource<'a> {
     /// A sweep of the grid.
-    Sweep(Sweep<'a>),
+    Sweep(Box<Sweep<'a>>),
     /// The numbers of the poses, which a sweep of the grid found.
     Kept(&'a Grid, Vec<Run>),
     /// The files of all shards.

@@ -158,7 +158,7 @@ impl Workspace {
 
     /// The poses, from a sweep.
     pub fn poses(&self) -> PoseSource<'_> {
-        PoseSource::Sweep(self.sweep())
+        PoseSource::Sweep(Box::new(self.sweep()))
     }
 
     /// Counts the poses of the grid, and gives their source for what is to be done with them: their numbers where those
@@ -174,7 +174,7 @@ impl Workspace {
         let (count, kept) = sweep.count_and_keep(MOST_RUNS, progress)?;
         let poses = match kept {
             Some(runs) => PoseSource::Kept(&self.grid, runs),
-            None => PoseSource::Sweep(sweep),
+            None => PoseSource::Sweep(Box::new(sweep)),
         };
         Ok((count, poses))
     }

@@ -57,8 +57,7 @@ fn listed(name: String, given: &Bound<'_, PyAny>) -> PyResult<Axis> {
     let even = |number: usize| first + (last - first) * (number as f64 / steps);
     let off = |(number, value): (usize, &f64)| {
         let off = (value - even(number)).abs();
-        // Negated, so that NaN is uneven.
-        !(off <= EVEN * (last - first).abs())
+        off.is_nan() || off > EVEN * (last - first).abs()
     };
     if let Some((number, value)) = values.iter().enumerate().find(|&entry| off(entry)) {
         let expected = even(number);

@@ -329,15 +329,12 @@ impl Parser {
             unit.initial = self.new_cells(&kind);
             unit.result = Some(kind);
         }
-        loop {
-            let section = match self.peek() {
-                Word::Name(word) => match &**word {
-                    "var_input" => Section::Input,
-                    "var_output" if what == Global::Block => Section::Output,
-                    "var_in_out" => Section::InOut,
-                    "var" => Section::Local,
-                    _ => break,
-                },
+        while let Word::Name(word) = self.peek() {
+            let section = match &**word {
+                "var_input" => Section::Input,
+                "var_output" if what == Global::Block => Section::Output,
+                "var_in_out" => Section::InOut,
+                "var" => Section::Local,
                 _ => break,
             };
             self.at += 1;
