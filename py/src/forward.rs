@@ -108,10 +108,12 @@ impl Manipulator {
         let starts = near.map(|near| self.poses_of(near, "near")).transpose()?;
         let starts = starts.as_ref().map(Rows::new).transpose()?;
         if let Some(starts) = &starts
-            && starts.count != joints.count && starts.count != 1 {
-                let (given, rows) = (starts.count, joints.count);
-                return Err(wrong(format!("{given} rows of near, expected {rows}, or one")));
-            }
+            && starts.count != joints.count
+            && starts.count != 1
+        {
+            let (given, rows) = (starts.count, joints.count);
+            return Err(wrong(format!("{given} rows of near, expected {rows}, or one")));
+        }
         let closed_form = self.inner.forward_closed_form();
         let newton = match (method, &closed_form) {
             (Some("every") | None, Ok(())) => false,

@@ -138,8 +138,10 @@ fn joints(bytes: &mut Bytes<'_>) -> String {
                 number += 1;
                 let (kind, axis, point) =
                     joint(bytes, sections[section], normals[section], centres[section]);
-                let actuated = if bytes.next().is_multiple_of(3) { ", actuated = true" } else { "" };
-                let limits = if bytes.next().is_multiple_of(4) { ", limits = [-1.5, 1.0]" } else { "" };
+                let actuated =
+                    if bytes.next().is_multiple_of(3) { ", actuated = true" } else { "" };
+                let limits =
+                    if bytes.next().is_multiple_of(4) { ", limits = [-1.5, 1.0]" } else { "" };
                 let pitch = if kind == "helical" { ", pitch = 0.1" } else { "" };
                 let point = match kind {
                     "prismatic" => String::new(),

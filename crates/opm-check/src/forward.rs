@@ -4,6 +4,7 @@ use crate::certificate::{Comparison, Options, Place};
 use crate::closure::{apart, gap};
 use crate::poses::{pose, tolerance};
 use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::mechanism::joint::JointKind;
 
 /// The largest distance of an assembly from the pose that its joint values came from: radians, and lengths over the
 /// size.
@@ -29,6 +30,9 @@ pub fn forward(
             "the assembly that Newton's method finds nearby, with the pose that its joint values came from"
         }
     };
+    // Whole revolutions of a screw that its motor does not show are further assemblies, of which the closed form lists one.
+    let screws =
+        manipulator.mechanism().joints().any(|j| matches!(j.kind, JointKind::Helical { .. }));
     let most = tolerance(manipulator, SAME);
     let mut found = Comparison::new("forward", what, Some(most));
     let mut rng = options.rng(4);
@@ -62,20 +66,19 @@ pub fn forward(
         }
         let target = at.displacement(manipulator);
         let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| at.joints()[i]).collect();
-        let assemblies = match closed_form {
-            Ok(()) => match manipulator.forward(&actuated) {
-                Ok(found) => found.list,
-                Err(error) => {
-                    found.fail(|| format!("{error}: {}", place()));
-                    continue;
-                }
-            },
-            Err(_) => {
-                let step = |q: &f64| q + 1e-4 * (2.0 * rng.f64() - 1.0);
-                let start: Vec<f64> = pose.iter().map(step).collect();
-                manipulator.forward_near(&actuated, &start, mode).into_iter().collect()
+        let mut assemblies = match closed_form.as_ref().map(|()| manipulator.forward(&actuated)) {
+            Ok(Ok(found)) => found.list,
+            Ok(Err(error)) => {
+                found.fail(|| format!("{error}: {}", place()));
+                continue;
             }
+            Err(_) => Vec::new(),
         };
+        if closed_form.is_err() || screws {
+            let step = |q: &f64| q + 1e-4 * (2.0 * rng.f64() - 1.0);
+            let start: Vec<f64> = pose.iter().map(step).collect();
+            assemblies.extend(manipulator.forward_near(&actuated, &start, mode));
+        }
         let mut nearest = f64::INFINITY;
         for assembly in &assemblies {
             let Ok(there) = manipulator.displacement_in(&assembly.pose, assembly.mode) else {

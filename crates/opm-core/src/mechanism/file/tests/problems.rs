@@ -70,7 +70,7 @@ fn the_first_lines() {
             "unknown key `colour`, expected one of",
         ),
         (r#""mm""#, r#"^"mmm""#, "`length` is \"mmm\", did you mean `mm`? expected one of"),
-        (r#""mm""#, r#"^"furlong""#, "expected one of `m`, `cm`, `mm`, `in`"),
+        (r#""mm""#, r#"^"furlong""#, "expected one of `m`, `cm`, `mm`, `um`, `in`"),
         (r#""deg""#, r#"^"grad""#, "did you mean `rad`"),
         (r#"{ length = "mm", angle = "deg" }"#, r#"^{ length = "mm" }"#, "`angle` is missing"),
         (
@@ -156,7 +156,11 @@ fn joints() {
         ("[task]\naxis", "[task]\nupper = { origin = [0, ^nan, 1] }\naxis", "expected a finite"),
         ("axis = [0, 3, 4]", "axis = ^[0, 0.0, -0.0]", "`axis` is zero"),
         ("actuated = true", "actuated = ^1", "`actuated` is an integer, expected true or false"),
-        (r#""prismatic""#, r#"^"prism""#, "`type` is \"prism\", expected one of `revolute`"),
+        (
+            r#""prismatic""#,
+            r#"^"prism""#,
+            "`type` is \"prism\", did you mean `prismatic`? expected one of `revolute`",
+        ),
         (r#""prismatic""#, r#"^"revolut""#, "did you mean `revolute`?"),
         (
             "limits = [-300, 300]",
