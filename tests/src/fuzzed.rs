@@ -125,7 +125,7 @@ impl Bytes<'_> {
 /// in all legs; some joints are anything.
 fn joints(bytes: &mut Bytes<'_>) -> String {
     let mut text =
-        "format = 1\nname = \"fuzzed\"\n[platform]\npoint = [0.1, 0.2, 0.3]\n".to_owned();
+        "format = 1\nname = \"fuzzed\"\nunits = { length = \"m\", angle = \"rad\" }\n[platform]\npoint = [0.1, 0.2, 0.3]\n".to_owned();
     let sections = [bytes.next() % 5, bytes.next() % 5];
     let centres = [bytes.vector(), bytes.vector()];
     let normals =

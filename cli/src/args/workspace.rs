@@ -78,7 +78,7 @@ Examples:
   opm workspace plano-spherical-5dof --grid xi=0:90deg:91 --grid x=10mm --mode any
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace plano-spherical-5dof --grid x=-0.2:0.2:201 --grid y=-0.2:0.2:201 --clearance 2mm
-  opm workspace plano-spherical-5dof --grid x=-0.2:0.2:201 --grid y=-0.2:0.2:201 --limit lti=0.7 -o good.mcap --color lti
+  opm workspace plano-spherical-5dof --grid x=-0.2:0.2:99 --grid y=-0.2:0.2:99 --limit lti=0.7
   opm workspace plano-spherical-5dof --grid x=-0.2:0.2:41 --grid y=-0.2:0.2:41 --wrench 10,0,0,0,0,0 \\
       --limit effort=20 -o efforts.mcap --color effort.S1
   opm workspace plano-spherical-5dof --kind constant-orientation --conditioning

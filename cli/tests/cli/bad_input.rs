@@ -406,7 +406,7 @@ fn headings_of_columns_name_units() {
     assert!(lines[0].contains("poses.csv:2: x has no unit and was read as 10 m"), "{noted}");
     assert!(lines[1].ends_with("head the column xi [deg]"), "{noted}");
     for (heading, words) in [
-        ("x [deg]", "x is a length, expected m, cm, mm, in, not \"deg\""),
+        ("x [deg]", "x is a length, expected m, cm, mm, um, in, not \"deg\""),
         ("xi [grad]", "xi is an angle, expected rad, deg, not \"grad\""),
         ("t [ms]", "expected t or t [s]"),
     ] {

@@ -456,7 +456,6 @@ fn wrong_usage_names_the_flag() {
     let svg = folder.arg("p.svg");
     for (file, args, parts) in [
         (&cloud, &["-o", "p.jpg"][..], &["--output", "p.jpg", ".svg, .png or .pdf"][..]),
-        (&cloud, &["-o", "-"], &["--output", ".svg, .png or .pdf"]),
         (&cloud, &["-o", &svg, "--values", "theta14"], &["--values", "\"theta14\"", "theta13"]),
         (&cloud, &["-o", &svg, "--values", "x"], &["--values", "two of x, y"]),
         (&cloud, &["-o", &svg, "--values", "x,x"], &["--values", "x is given twice"]),

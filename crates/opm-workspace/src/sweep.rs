@@ -155,7 +155,7 @@ impl Hits<'_> {
 ///
 /// // The counts of shards, made anywhere, add up to that of the whole.
 /// let half = |number| Ok::<_, Box<dyn std::error::Error>>(
-///     sweep.shard(Shard::new(number, 2)?).count(&Progress::default())?,
+///     sweep.clone().shard(Shard::new(number, 2)?).count(&Progress::default())?,
 /// );
 /// assert_eq!(half(1)?.merge(&half(2)?), count);
 /// # Ok(())
