@@ -79,8 +79,7 @@ Examples:
   opm workspace plano-spherical-5dof --grid xi=-20deg:20deg:41 --max-condition 20
   opm workspace plano-spherical-5dof --grid x=-0.2:0.2:201 --grid y=-0.2:0.2:201 --clearance 2mm
   opm workspace plano-spherical-5dof --grid x=-0.2:0.2:99 --grid y=-0.2:0.2:99 --limit lti=0.7
-  opm workspace plano-spherical-5dof --grid x=-0.2:0.2:41 --grid y=-0.2:0.2:41 --wrench 10,0,0,0,0,0 \\
-      --limit effort=20 -o efforts.mcap --color effort.S1
+  opm workspace plano-spherical-5dof --grid x=-0.2:0.2:41 --wrench 10,0,0,0,0,0 --limit effort=20
   opm workspace plano-spherical-5dof --kind constant-orientation --conditioning
   opm workspace plano-spherical-5dof --kind reachable -o places.mcap
   opm workspace planar-3rrr --kind dexterous --grid x=-0.1:0.1:41 --grid theta=-10deg:10deg:5

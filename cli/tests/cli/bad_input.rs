@@ -407,7 +407,7 @@ fn headings_of_columns_name_units() {
     assert!(lines[1].ends_with("head the column xi [deg]"), "{noted}");
     for (heading, words) in [
         ("x [deg]", "x is a length, expected m, cm, mm, um, in, not \"deg\""),
-        ("xi [grad]", "xi is an angle, expected rad, deg, not \"grad\""),
+        ("xi [grad]", "xi is an angle, expected rad, mrad, urad, deg, not \"grad\""),
         ("t [ms]", "expected t or t [s]"),
     ] {
         let file = folder.write("wrong.csv", format!("{heading}\n1\n"));

@@ -78,6 +78,12 @@ pub fn closures(
     Some(found)
 }
 
+/// Whether a pose of one manipulator is one of the other, with nothing that follows from it.
+fn same_coordinates(one: &Manipulator, other: &Manipulator) -> bool {
+    let free = |m: &Manipulator| m.dependent_coordinates().is_empty();
+    free(one) && free(other) && one.task_coordinates().len() == other.task_coordinates().len()
+}
+
 /// The branches of every leg, counted by a numeric solver.
 pub fn branches(
     manipulator: &Manipulator,
@@ -100,7 +106,7 @@ pub fn branches(
         for (number, alone) in &legs {
             let name = &mechanism.legs[*number].name;
             let alone = match alone {
-                Ok(alone) if alone.manipulator().task_coordinates().len() == pose.len() => alone,
+                Ok(alone) if same_coordinates(alone.manipulator(), manipulator) => alone,
                 // A leg that constrains the platform has coordinates of its own.
                 _ => {
                     found.leave_out("a leg that constrains the platform");

@@ -86,7 +86,7 @@ fn the_first_lines() {
         (
             r#"name = "pair""#,
             "name = \"pair\"\nfamily = ^\"plano\"",
-            "`family` is \"plano\", expected one of",
+            "`family` is \"plano\", did you mean `plano-spherical`? expected one of",
         ),
         (
             r#"name = "pair""#,
