@@ -66,7 +66,7 @@ const ROOT_EXAMPLES: &str = "\
 Examples:
   opm examples                                         what comes with opm
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
-  opm check plano-spherical-5dof                       its closed forms, held to independent computations
+  opm check plano-spherical-5dof                       its closed forms against other computations
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
   opm velocity plano-spherical-5dof --rates zeta=1     joint rates, and how near it is to singular
   opm analyze plano-spherical-5dof --wrench 0,0,0,1,0,0   what the actuators carry at a pose
