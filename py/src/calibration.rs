@@ -4,7 +4,7 @@ use crate::arguments;
 use crate::error::{failed, wrong};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::pickle::frozen;
+use crate::pickle::{frozen, pickled};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_calibrate::{
     BasePoint, CalibrateError, Column, Measurements, Options, Sigma, calibrate as run,
@@ -63,6 +63,30 @@ pub struct Calibration {
     /// (length, angle) by the name of each joint: the play that it needs at least.
     play: BTreeMap<String, (f64, f64)>,
 }
+
+pickled!(Calibration {
+    manipulator,
+    parameters,
+    before,
+    after,
+    standard_errors,
+    identifiable,
+    correlations,
+    rank,
+    singular_values,
+    held,
+    columns,
+    residuals,
+    studentised,
+    outliers,
+    rejected,
+    unused,
+    surplus,
+    deviation,
+    deviation_before,
+    play_combinations,
+    play,
+});
 
 #[pymethods]
 impl Calibration {

@@ -18,7 +18,7 @@ def measured(machine, count, noise, seed=3):
     solved = machine.inverse(poses)
     poses, joints = poses[solved.reachable], solved.joints[solved.reachable]
     table = {c.name: poses[:, i] for i, c in enumerate(machine.task_coordinates)}
-    table |= {machine.joints[i].name if hasattr(machine.joints[i], "name") else machine.joints[i]: joints[:, i] for i in machine.actuated}
+    table |= {machine.joint_names[i]: joints[:, i] for i in machine.actuated}
     return {name: values + noise * generator.standard_normal(len(values)) for name, values in table.items()}
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def to_pandas(found: Solutions | Trajectory) -> Any:
-    import pandas as pd
+    import pandas as pd  # type: ignore[import-untyped,unused-ignore]
 
     dims, columns = _columns(found)
     index = None
@@ -36,7 +36,7 @@ def to_xarray(found: Solutions | Trajectory) -> Any:
 
 
 def sweep_to_pandas(found: Sweep) -> Any:
-    import pandas as pd
+    import pandas as pd  # type: ignore[import-untyped,unused-ignore]
 
     return pd.DataFrame(found.points(), columns=list(found.axes))
 
@@ -53,7 +53,7 @@ def _columns(found: Solutions | Trajectory) -> tuple[list[str], dict[str, Any]]:
     columns: dict[str, Any] = {}
     if hasattr(found, "times"):
         dims = ["t"]
-        columns.update(zip(found.pose_names, found.poses.T, strict=True))
+        columns.update(zip(found.pose_names, found.poses.T, strict=True))  # type: ignore[union-attr]
     else:
         modes = ["mode"] if found.mode == "all" else []
         dims = ["pose"] * (found.reachable.ndim - len(modes)) + modes

@@ -275,7 +275,10 @@ def _painted(solids: Sequence[Solid], box: _Array) -> tuple[list[_Array], list[t
     """The faces of the solids in a box, and the colour of each in the light."""
     faces: list[_Array] = []
     colors: list[tuple[float, ...]] = []
-    for solid in filter(None, (_inside(solid, box) for solid in solids)):
+    for whole in solids:
+        solid = _inside(whole, box)
+        if solid is None:
+            continue
         for face in _faces(solid):
             normal = np.cross(face[1] - face[0], face[2] - face[1])
             length = np.linalg.norm(normal)
@@ -554,14 +557,13 @@ def _panels(pyplot: Any, count: int, given: Axes | Sequence[Axes] | None) -> lis
 
 def _make_room(panel: Axes) -> None:
     """Let the labels of a panel fit on its figure, unless somebody has laid that out."""
-    from matplotlib import rcParams
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubplotParams
 
     figure = panel.figure
     if not isinstance(figure, Figure) or figure.get_layout_engine() is not None:
         return
     sides = ("left", "right", "bottom", "top", "wspace", "hspace")
-    if all(getattr(figure.subplotpars, side) == rcParams[f"figure.subplot.{side}"] for side in sides):
+    if all(getattr(figure.subplotpars, side) == getattr(SubplotParams(), side) for side in sides):
         figure.set_layout_engine("constrained")
 
 
