@@ -130,4 +130,5 @@ def test_a_disk_that_is_full_at_any_byte(opm, whole, tmp_path, kind):
         finished, found = check_what_is_left(opm, tmp_path, kind, expected)
         assert not finished
         found_some += found is not None
-    assert found_some > 2
+    # A shard of this size is one chunk, which is whole or cannot be read.
+    assert found_some > 2 or kind == "shard"

@@ -312,4 +312,5 @@ def test_what_cannot_be_followed_is_marked(opm, record, tmp_path):
     clouds = recorded.topics["/scene/bodies/platform"]
     greens = [(time, check_recording.points(cloud)["green"].mean()) for time, cloud in clouds]
     red = {[green for time, green in greens if time <= now][-1] for now in times[lost]}
-    assert len(red) == 1 and greens[0][1] > 1.5 * max(red)
+    # Of two reds: what interferes is another one than what is stuck.
+    assert greens[0][1] > 1.5 * max(red)

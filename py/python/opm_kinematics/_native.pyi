@@ -1,13 +1,14 @@
 from collections.abc import Callable, ItemsView, Iterator, KeysView, Mapping, Sequence, ValuesView
 from concurrent.futures import Executor
 from os import PathLike
-from typing import Any, Literal, SupportsIndex, TypeAlias, final
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeAlias, final
 
 import numpy as np
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from numpy.typing import ArrayLike, NDArray
 
-from .plot import Animation
+if TYPE_CHECKING:
+    from .plot import Animation
 
 __all__ = [
     "Accuracy",
