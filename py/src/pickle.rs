@@ -7,6 +7,11 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 
 /// Makes an array of an immutable object read-only.
 pub fn frozen<'py, T>(array: Bound<'py, T>) -> PyResult<Py<T>> {
+    // Nothing can be written through the array that it is a view of, either.
+    let base = array.as_any().getattr("base")?;
+    if base.is_instance_of::<PyUntypedArray>() {
+        base.call_method1("setflags", (false,))?;
+    }
     array.as_any().call_method1("setflags", (false,))?;
     Ok(array.unbind())
 }

@@ -77,8 +77,6 @@ impl<'a> Rows<'a> {
         table: &Bound<'_, PyAny>,
         row: &[usize],
     ) -> PyResult<Py<PyArrayDyn<T>>> {
-        // Nothing can be written to through the array that it is a view of, either.
-        table.call_method1("setflags", (false,))?;
         frozen(self.shaped(table, row)?)
     }
 }
