@@ -68,9 +68,10 @@ pub fn farthest(generators: &[Vector3<f64>]) -> Vector3<f64> {
             (best, longest) = (sum, sum.norm());
             sum = along(&sum);
         }
-        let cos = cell.corners().into_iter().map(|c| middle.dot(&cell.direction(c)));
-        let cos = cos.fold(1.0, f64::min);
-        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        // By the sine: a cosine near 1 does not tell small angles apart, and small cells would never be done with.
+        let sin = cell.corners().into_iter().map(|c| middle.cross(&cell.direction(c)).norm());
+        let sin = sin.fold(0.0, f64::max);
+        let cos = (1.0 - sin * sin).sqrt();
         let (mut fixed, mut open) = (Vector3::zeros(), 0.0);
         for (g, length) in &own {
             let part = g.dot(&middle);
