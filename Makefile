@@ -44,10 +44,13 @@ test-python: $(TESTS_VENV)/made ## Check the Python module, and the program's re
 kills: $(TESTS_VENV)/made ## Kill a thousand runs at random moments, and check what is left
 	OPM_KILLS=1000 $(TESTS_VENV)/bin/python -m pytest -q -s tests/python/test_faults.py
 
-# The stored inputs, and changes of them, are part of test-rust.
+# The stored inputs, and changes of them, are part of test-rust. All code but that of zstd is safe Rust, so that no sanitizer
+# is needed; checks of overflow are on.
+FUZZ_SECONDS ?= 60
 fuzz: ## Fuzz each target for a minute; needs a nightly toolchain and cargo-fuzz
-	for target in mechanism motion recording joint_list; do \
-	  $(CARGO) +nightly fuzz run $$target -- -max_total_time=60 -timeout=20 || exit 1; \
+	for target in mechanism motion joint_list recording; do \
+	  $(CARGO) +nightly fuzz run -s none --debug-assertions $$target -- \
+	    -max_total_time=$(FUZZ_SECONDS) -timeout=20 -rss_limit_mb=4096 || exit 1; \
 	done
 
 bench: $(PEERS_VENV)/made ## Measure, NumPy and numba too, and write BENCHMARKS.md
@@ -70,13 +73,14 @@ figures: $(FIGURES_VENV)/made ## Draw docs/images from recordings made by opm
 web: ## Build the explorer's page; needs node, and a compiler for WebAssembly
 	web/build.sh
 
-# Bennett's linkages have no inverse kinematics in closed form, and no page.
+# As it is built for the tests: optimised, too. Bennett's linkages have no inverse kinematics in closed form, and no page.
 gallery: ## Write a page of the explorer for every shipped manipulator, to target/gallery
+	$(CARGO) build --quiet --workspace $(FEATURES) --bins
 	mkdir -p target/gallery
 	for file in crates/opm-core/mechanisms/*.toml; do \
 	  name=$$(basename "$$file" .toml); \
 	  case $$name in bennett-*) continue;; esac; \
-	  $(CARGO) run --quiet --release -- --quiet explore "$$name" -o "target/gallery/$$name.html" || exit 1; \
+	  $${CARGO_TARGET_DIR:-target}/debug/opm --quiet explore "$$name" -o "target/gallery/$$name.html" || exit 1; \
 	done
 
 # The pages are the documents of the repository; docs/site/conf.py says how. The crates' reference and the explorer's
@@ -87,7 +91,7 @@ docs: $(SITE_VENV)/made gallery ## Build the documentation site, to target/site,
 	mkdir -p target/site-extra
 	cp -R target/doc target/site-extra/rust
 	cp -R target/gallery target/site-extra/explorer
-	$(SITE_VENV)/bin/python -m pip install --quiet --disable-pip-version-check "./py[plot,design]"
+	MATURIN_PEP517_ARGS="--profile dev $(FEATURES)" $(SITE_VENV)/bin/python -m pip install --quiet --disable-pip-version-check "./py[plot,design]"
 	OPM_NOTEBOOKS=1 $(SITE_VENV)/bin/python -m sphinx -q -W --keep-going -b html -c docs/site . target/site
 	$(SITE_VENV)/bin/python docs/site/check_links.py target/site
 

@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # Builds what a release consists of, into target/dist, and checks it: `make dist`.
 #
-# The source distribution, and for each target that rustc has here: a wheel for every Python from 3.10 on, for systems with
-# glibc 2.17 or later, linked with zig; and the program, without any library it would need if the target is musl's.
+# The source distribution, and for each target that a compiler is here for: a wheel for every Python from 3.10 on, for systems
+# with glibc 2.17 or later, linked with zig; and the program, without any library it would need.
+#
+# A target's standard library is that of rustc, or is added by rustup; or, where that cannot download, it is built from its
+# sources by Debian's compiler: apt-get install rustc-web rust-web-src.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -12,26 +15,37 @@ export PATH=$tools:$PATH
 rm -rf "$dist"
 mkdir -p "$dist"
 
+version=$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
+given=${RUSTFLAGS:-}
+debian=/usr/bin/rustc
+
 # No path of this machine is in what is built: neither that of the sources nor those of the crates and of the compiler.
 home=${CARGO_HOME:-$HOME/.cargo}
-maps="--remap-path-prefix=$PWD=opm --remap-path-prefix=$home=cargo --remap-path-prefix=$(rustc --print sysroot)=rust"
-export RUSTFLAGS="${RUSTFLAGS:-} $maps"
 # The C code of zstd is given the same names.
 export CFLAGS="${CFLAGS:-} -ffile-prefix-map=$home=cargo -ffile-prefix-map=$PWD=opm"
 
-version=$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
-
-has_target() {
-  [ -d "$(rustc --print sysroot)/lib/rustlib/$1/lib" ] || rustup target add "$1" 2>/dev/null
+# Selects the compiler for a target; fails if there is none.
+compiler_for() {
+  unset RUSTC RUSTC_BOOTSTRAP CARGO_UNSTABLE_BUILD_STD
+  local self=
+  if ! [ -d "$(rustc --print sysroot)/lib/rustlib/$1/lib" ] && ! rustup target add "$1" 2>/dev/null; then
+    [ -d "$("$debian" --print sysroot 2>/dev/null)/lib/rustlib/src/rust/library" ] || return 1
+    export RUSTC=$debian RUSTC_BOOTSTRAP=1 CARGO_UNSTABLE_BUILD_STD=std,panic_unwind
+    # The C library and its start files are zig's.
+    case $1 in *-musl) self="-C link-self-contained=no" ;; esac
+  fi
+  local sysroot
+  sysroot=$("${RUSTC:-rustc}" --print sysroot)
+  export RUSTFLAGS="$given --remap-path-prefix=$PWD=opm --remap-path-prefix=$home=cargo --remap-path-prefix=$sysroot=rust $self"
 }
 
 maturin sdist --manifest-path py/Cargo.toml --out "$dist"
 for target in ${TARGETS:-x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu}; do
-  if has_target "$target"; then
+  if compiler_for "$target"; then
     maturin build --release --locked --zig --compatibility manylinux_2_17 --target "$target" \
       --manifest-path py/Cargo.toml --out "$dist"
   else
-    echo "dist: no wheel for $target: rustc has no such target here, and it cannot be added" >&2
+    echo "dist: no wheel for $target: no compiler for it is here" >&2
   fi
 done
 
@@ -42,10 +56,10 @@ program() {
     "${CARGO_TARGET_DIR:-target}/${1%.2.17}/release/opm" README.md LICENSE-MIT LICENSE-APACHE cli/THIRD-PARTY.txt
 }
 for machine in ${MACHINES:-x86_64}; do
-  if has_target "$machine-unknown-linux-musl"; then
+  if compiler_for "$machine-unknown-linux-musl"; then
     program "$machine-unknown-linux-musl" "linux-$machine-static"
-  else
-    echo "dist: opm for $machine is not static: rustc has no $machine-unknown-linux-musl here" >&2
+  elif compiler_for "$machine-unknown-linux-gnu"; then
+    echo "dist: opm for $machine is not static: no compiler for $machine-unknown-linux-musl is here" >&2
     program "$machine-unknown-linux-gnu.2.17" "linux-$machine"
   fi
 done

@@ -25,7 +25,6 @@ version = release = PACKAGE["version"]
 copyright = author
 
 
-
 def _module_from_its_stub():
     """The docstrings of the compiled module stand in its stub as well, and a test holds both equal: nothing is compiled."""
     path = REPOSITORY / "py/python/opm_kinematics/_native.pyi"
@@ -155,6 +154,14 @@ def _formula(translator, node):
     raise SkipNode
 
 
+def _front_door(app, error):
+    """Who opens the folder of the site comes to its first page."""
+    if error is None and app.builder.name == "html":
+        door = f'<!DOCTYPE html><meta charset="utf-8"><title>opm</title><meta http-equiv="refresh" content="0; url={root_doc}.html">'
+        (Path(app.outdir) / "index.html").write_text(f'{door}<a href="{root_doc}.html">opm</a>\n', encoding="utf-8")
+
+
 def setup(app):
     app.add_html_math_renderer("mathml", (_inline_formula, None), (_formula, None))
     app.connect("source-read", _read)
+    app.connect("build-finished", _front_door)

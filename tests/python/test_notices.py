@@ -41,6 +41,7 @@ def test_every_package_has_what_a_registry_shows():
         folder = Path(package["manifest_path"]).parent
         for key in ("description", "license", "repository", "homepage", "documentation", "readme"):
             assert package[key], f"{package['name']} has no {key}"
+        assert package["authors"] and package["metadata"]["docs"]["rs"]["targets"], package["name"]
         assert 1 <= len(package["keywords"]) <= 5 and package["categories"], package["name"]
         assert (folder / package["readme"]).read_text(encoding="utf-8").startswith(f"# {package['name']}\n")
         for name in ("LICENSE-MIT", "LICENSE-APACHE"):
