@@ -7,6 +7,7 @@ use crate::target::Target;
 use opm_core::Manipulator;
 use opm_generate::{GenerateError, Package};
 use std::fs;
+use std::path::Path;
 
 pub fn run(args: &GenerateArgs, output: &Output) -> Result<(), Failure> {
     match &args.language {
@@ -29,11 +30,9 @@ fn write(
     let code = generate(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
     let folder = &args.output;
     let files: Vec<_> = code.files.iter().map(|(name, text)| (folder.join(name), text)).collect();
-    fs::create_dir_all(folder).map_err(|error| Failure::at(folder.display(), error))?;
+    make(folder)?;
     for (path, _) in &files {
-        if let Some(inner) = path.parent() {
-            fs::create_dir_all(inner).map_err(|error| Failure::at(inner.display(), error))?;
-        }
+        path.parent().map_or(Ok(()), make)?;
         loaded.refuse_as_output(path, &[])?;
     }
     // All of them can be written before the first one is.
@@ -44,4 +43,13 @@ fn write(
     let names: Vec<&str> = code.files.iter().map(|(name, _)| &**name).collect();
     output.note(format_args!("{}: {}", folder.display(), names.join(", ")));
     Ok(())
+}
+
+/// Makes a folder, and those that it is in.
+fn make(folder: &Path) -> Result<(), Failure> {
+    if folder.exists() && !folder.is_dir() {
+        let path = folder.display();
+        return Err(Failure::work(format!("{path}: a file, expected a folder or a new name")));
+    }
+    fs::create_dir_all(folder).map_err(|error| Failure::at(folder.display(), error))
 }

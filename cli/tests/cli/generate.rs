@@ -89,6 +89,9 @@ fn wrong_input_is_told() {
     generate(&["bennett-plano-spherical-6r", "-o", &into]).fails_with_one_line(1, &["leg1"]);
     assert!(folder.names().is_empty());
     fs::write(&into, "a file").unwrap();
-    generate(&["five-bar", "-o", &into]).fails_with_one_line(1, &["out"]);
+    generate(&["five-bar", "-o", &into])
+        .fails_with_one_line(1, &["out: a file, expected a folder or a new name"]);
+    let below = folder.arg("out/deeper");
+    generate(&["five-bar", "-o", &below]).fails_with_one_line(1, &["out/deeper"]);
     assert_eq!(folder.read("out"), "a file");
 }

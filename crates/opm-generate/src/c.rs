@@ -18,7 +18,7 @@ mod steps;
 mod twist;
 
 use crate::GenerateError;
-use crate::names::{comment, identifiers, prefix};
+use crate::names::{comment, identifiers, package};
 use crate::tree;
 use geometry::{Geometry, complex, number, rotation, vector};
 use leg::{Function, Given, given};
@@ -31,6 +31,27 @@ use opm_core::mechanism::joint::JointCoordinate;
 use opm_core::numeric::Quantity;
 use opm_core::task::Task;
 use std::fmt::Write;
+
+/// Targets that CMake has itself, and headers that the code includes.
+const RESERVED: [&str; 17] = [
+    "all",
+    "clean",
+    "edit_cache",
+    "hal",
+    "help",
+    "install",
+    "kinematics",
+    "math",
+    "package",
+    "package_source",
+    "preinstall",
+    "rebuild_cache",
+    "rtapi",
+    "rtapi_app",
+    "rtapi_math",
+    "stdio",
+    "test",
+];
 
 /// The most choices: an `unsigned` has 32 bits where controllers have floating-point units.
 const MOST_CHOICES: u32 = 32;
@@ -79,7 +100,7 @@ impl CCode {
 /// The mechanism has more two-valued choices than an `unsigned` has bits.
 pub fn c(manipulator: &Manipulator) -> Result<CCode, GenerateError> {
     let writer = Writer::new(manipulator)?;
-    let name = prefix(&manipulator.mechanism().name);
+    let name = package(&manipulator.mechanism().name, &RESERVED);
     let [header, source] = writer.files(&name);
     let of_mechanism = |text: &str| library::with_prefix(text, &name);
     let (header, source) = (of_mechanism(&header), of_mechanism(&source));
@@ -392,7 +413,8 @@ impl<'a> Writer<'a> {
     /// The struct of the displacements that the legs' functions write.
     fn displacements(&self) -> String {
         let mut text = String::from(
-            "/* Displacements of the joints and along the intersection motion (tau) from home: lengths, and angles as directions. */\n\
+            "/* Displacements of the joints and along the intersection motion (tau) from home: lengths, angles as directions, and of\n   \
+             spherical joints the axis, and half the angle. */\n\
              typedef struct {\n",
         );
         for (number, field) in self.fields.iter().enumerate() {
@@ -403,8 +425,25 @@ impl<'a> Writer<'a> {
             if let Some(tau) = self.tau(leg) {
                 let _ = writeln!(text, "    {} tau_{};", tau.of_type(), number + 1);
             }
+            for section in [Section::Lower, Section::Upper] {
+                if let Chain::Ball(_) = leg.section(section).chain {
+                    let _ = writeln!(text, "    NAME_complex {};", leg::ball(number, section));
+                }
+            }
         }
         text + "} NAME_displacements;\n\n"
+    }
+
+    /// The member that has half the angle of the spherical joint that a coordinate belongs to.
+    fn ball_of(&self, coordinate: usize) -> Option<String> {
+        let legs = self.forms.legs.iter().enumerate();
+        let sections =
+            legs.flat_map(|(leg, form)| [Section::Lower, Section::Upper].map(|of| (leg, of, form)));
+        let mut balls =
+            sections.filter(|(_, of, form)| matches!(form.section(*of).chain, Chain::Ball(_)));
+        let found =
+            balls.find(|(_, of, form)| form.section(*of).coordinates.contains(&Some(coordinate)));
+        found.map(|(leg, of, _)| leg::ball(leg, of))
     }
 
     /// The form in which the displacement of a joint coordinate is given.

@@ -6,7 +6,7 @@
 mod print;
 
 use crate::golden::{listed, poses};
-use crate::names::prefix;
+use crate::names::package;
 use crate::text::commented;
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Function, Node, Type, visit};
@@ -17,6 +17,38 @@ use std::fmt::Write;
 
 const TEST: &str = include_str!("matlab/package/test.m");
 const ALL_MODES: &str = include_str!("matlab/package/all_modes.m");
+
+/// Keywords of MATLAB and of Octave.
+const RESERVED: [&str; 28] = [
+    "break",
+    "case",
+    "catch",
+    "classdef",
+    "continue",
+    "do",
+    "else",
+    "elseif",
+    "end",
+    "endfor",
+    "endfunction",
+    "endif",
+    "endswitch",
+    "endwhile",
+    "for",
+    "function",
+    "global",
+    "if",
+    "otherwise",
+    "parfor",
+    "persistent",
+    "return",
+    "spmd",
+    "switch",
+    "try",
+    "until",
+    "unwind_protect",
+    "while",
+];
 
 /// Writes the kinematics of a mechanism as a package of MATLAB.
 ///
@@ -30,7 +62,7 @@ pub fn matlab(manipulator: &Manipulator) -> Result<Package, GenerateError> {
         let own = [("plus", "sum_of"), ("minus", "difference_of"), ("times", "product_of")];
         own.iter().find(|(known, _)| *known == name).map(|(_, other)| (*other).to_owned())
     });
-    let name = prefix(&manipulator.mechanism().name);
+    let name = package(&manipulator.mechanism().name, &RESERVED);
     let title = crate::names::comment(&manipulator.mechanism().name);
     let head = format!(
         "% Of the closed-form kinematics of {title}.\n% Written by opm {}; write it anew rather than change it.\n",

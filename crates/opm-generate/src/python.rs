@@ -6,7 +6,7 @@ mod print;
 mod ways;
 
 use crate::golden::{listed, poses};
-use crate::names::prefix;
+use crate::names::package;
 use crate::text::{camel, commented};
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Struct, Type, Value};
@@ -20,6 +20,14 @@ const FORWARD: &str = include_str!("python/package/forward.py");
 const TEST: &str = include_str!("python/package/test.py");
 const PROJECT: &str = include_str!("python/package/pyproject.toml");
 
+/// Keywords, and modules that the code imports.
+const RESERVED: [&str; 37] = [
+    "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue",
+    "def", "del", "elif", "else", "except", "finally", "for", "from", "global", "if", "import",
+    "in", "is", "lambda", "nonlocal", "not", "numpy", "or", "pass", "raise", "return", "try",
+    "typing", "while", "with", "yield",
+];
+
 /// Writes the kinematics of a mechanism as a module of Python.
 ///
 /// # Errors
@@ -27,7 +35,7 @@ const PROJECT: &str = include_str!("python/package/pyproject.toml");
 pub fn python(manipulator: &Manipulator) -> Result<Package, GenerateError> {
     let mut code = c::tree(manipulator)?;
     lower(&mut code, Has { choices: true });
-    let name = prefix(&manipulator.mechanism().name);
+    let name = package(&manipulator.mechanism().name, &RESERVED);
     let files = vec![
         (format!("{name}.py"), module(manipulator, &code)),
         (format!("test_{name}.py"), test(manipulator, &name)),

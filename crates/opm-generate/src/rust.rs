@@ -6,7 +6,7 @@
 mod print;
 
 use crate::golden::{listed, poses};
-use crate::names::prefix;
+use crate::names::package;
 use crate::tree::Code;
 use crate::{GenerateError, Package, c};
 use opm_core::Manipulator;
@@ -19,6 +19,67 @@ const MATH: &str = include_str!("rust/package/math.rs");
 const TEST: &str = include_str!("rust/package/golden.rs");
 const CARGO: &str = include_str!("rust/package/Cargo.toml.txt");
 
+/// Keywords, and crates that Rust or the package has.
+const RESERVED: [&str; 57] = [
+    "abstract",
+    "alloc",
+    "as",
+    "async",
+    "await",
+    "become",
+    "box",
+    "break",
+    "const",
+    "continue",
+    "core",
+    "crate",
+    "do",
+    "dyn",
+    "else",
+    "enum",
+    "extern",
+    "false",
+    "final",
+    "fn",
+    "for",
+    "gen",
+    "if",
+    "impl",
+    "in",
+    "let",
+    "libm",
+    "loop",
+    "macro",
+    "match",
+    "mod",
+    "move",
+    "mut",
+    "override",
+    "priv",
+    "proc_macro",
+    "pub",
+    "ref",
+    "return",
+    "self",
+    "static",
+    "std",
+    "struct",
+    "super",
+    "test",
+    "trait",
+    "true",
+    "try",
+    "type",
+    "typeof",
+    "unsafe",
+    "unsized",
+    "use",
+    "virtual",
+    "where",
+    "while",
+    "yield",
+];
+
 /// Writes the kinematics of a mechanism as a package of Rust.
 ///
 /// # Errors
@@ -26,7 +87,7 @@ const CARGO: &str = include_str!("rust/package/Cargo.toml.txt");
 pub fn rust(manipulator: &Manipulator) -> Result<Package, GenerateError> {
     let code = c::tree(manipulator)?;
     // A package has a lower-case name.
-    let name = prefix(&manipulator.mechanism().name).to_lowercase();
+    let name = package(&manipulator.mechanism().name.to_lowercase(), &RESERVED);
     let files = [
         ("Cargo.toml", CARGO.replace("CRATE", &name)),
         ("src/lib.rs", lib(manipulator, &code, &name)),

@@ -163,15 +163,24 @@ impl Writer<'_> {
     fn values(&self, joints: &[(String, usize)], with_imaginary: bool) -> Values {
         let mut directions = Vec::new();
         let mut angle = |field: &str| {
-            directions.push(field.to_owned());
-            format!("angle[{}]", directions.len() - 1)
+            let place = directions.iter().position(|known| known == field);
+            let place = place.unwrap_or_else(|| {
+                directions.push(field.to_owned());
+                directions.len() - 1
+            });
+            format!("angle[{place}]")
         };
         let mut text = String::new();
         for (target, coordinate) in joints {
             let field = format!("at.{}", self.fields[*coordinate]);
-            let value = match self.given(*coordinate) {
-                Given::Value => format!("g->joint[{coordinate}].home + {field}"),
-                Given::Direction | Given::Turns => {
+            let value = match (self.given(*coordinate), self.ball_of(*coordinate)) {
+                (_, Some(half)) => {
+                    let half = format!("at.{half}");
+                    let turned = format!("NAME_turned({}, {half}.im)", angle(&half));
+                    format!("g->joint[{coordinate}].home + {field} * {turned}")
+                }
+                (Given::Value, _) => format!("g->joint[{coordinate}].home + {field}"),
+                (Given::Direction | Given::Turns, _) => {
                     format!("NAME_reported(&g->joint[{coordinate}], {})", angle(&field))
                 }
             };
@@ -185,8 +194,8 @@ impl Writer<'_> {
         if directions.is_empty() {
             return Values { declarations: String::new(), text };
         }
-        // Whole vectors: no angle is left over.
-        let count = directions.len().next_multiple_of(4);
+        // Whole vectors of the shortest kind: no angle is left over.
+        let count = directions.len().next_multiple_of(2);
         let mut gathered = String::new();
         for (number, field) in directions.iter().enumerate() {
             let _ = writeln!(

@@ -52,6 +52,11 @@ pub fn given(section: &SectionForm, joint: usize) -> Given {
     }
 }
 
+/// The member that has half the angle of a spherical joint.
+pub fn ball(leg: usize, section: Section) -> String {
+    format!("half_{}_{}", leg + 1, word(section))
+}
+
 /// Whether a section may be out of reach.
 pub fn may_miss(section: &SectionForm) -> bool {
     section.locked.is_none() && matches!(section.chain, Chain::Planar(_) | Chain::Spherical(_))
@@ -235,6 +240,9 @@ impl Writer<'_> {
             if form.slider.is_some_and(|(slider, _)| slider == joint) {
                 let _ = writeln!(after, "    {target} /= g->leg{}_part.rate;", number + 1);
             }
+        }
+        if let Chain::Ball(_) = form.chain {
+            outputs.push(format!("&at->{}", ball(number, section)));
         }
         let lean =
             leg.lift.as_ref().and_then(|lift| lift.lean).filter(|lean| lean.section == section);

@@ -87,24 +87,22 @@ static NAME_INLINE real NAME_half(real x)
 }
 
 /* The angle of the vector (x, y), right to three units in the last place: (atan t - t) / t^3 in powers of t^2, minimax for
-   t <= 1/2, from the nearest multiple of 45 degrees. It compares nothing, so that compilers compute several at once; a term
-   keeps the quotient of zeros zero. */
+   t <= tan(22.5 degrees), from the nearest multiple of 45 degrees, the angle of the vector (c, s) there. It compares nothing,
+   so that compilers compute several at once; a term keeps the quotient of zeros zero. */
 static NAME_INLINE real NAME_arctangent(real y, real x)
 {
     const real width = NAME_MATH(fabs, x), height = NAME_MATH(fabs, y);
-    const real steep = (real)0.5 - NAME_half(width - height), backwards = (real)0.5 - NAME_half(x);
-    const real shorter = steep * width + (1 - steep) * height, longer = steep * height + (1 - steep) * width;
-    const real wide = (real)0.5 - NAME_half(longer - 2 * shorter);
-    const real t = (shorter - wide * longer) / (longer + wide * shorter + (real)1e-300), z = t * t, w = z * z;
-    const real even = (real)-0.3333333333333333 + w * ((real)-0.14285714285599188 + w * ((real)-0.09090908620322523
-                    + w * ((real)-0.06666435677235948 + w * ((real)-0.05240099507994713
-                    + w * ((real)-0.03806653672057366 + w * (real)-0.009215792047089858)))));
-    const real odd = (real)0.19999999999999488 + w * ((real)0.11111111100917376 + w * ((real)0.07692294712540285
-                   + w * ((real)0.05879578429582425 + w * ((real)0.04628024868570153
-                   + w * (real)0.025006503566489507))));
-    const real eighth = wide * (NAME_PI / 4) + (t + t * (z * (even + z * odd)));
-    const real quarter = steep * (NAME_PI / 2) + (1 - 2 * steep) * eighth;
-    return 2 * NAME_half(y) * (backwards * NAME_PI + (1 - 2 * backwards) * quarter);
+    const real flat = NAME_half(width - (real)0.41421356237309503 * height);
+    const real steep = NAME_half((real)0.41421356237309503 * width - height);
+    const real c = (real)0.5 + flat, s = (real)0.5 - steep;
+    const real t = (height * c - width * s) / (width * c + height * s + (real)1e-300), z = t * t, w = z * z;
+    const real even = (real)-0.3333333333333015 + w * ((real)-0.14285714195262272 + w * ((real)-0.09090782413615411
+                    + w * ((real)-0.06641121339142571 + w * (real)-0.04359097351751042)));
+    const real odd = (real)0.19999999999088966 + w * ((real)0.11111106653632544 + w * ((real)0.07690068317447613
+                   + w * ((real)0.05692539746771612 + w * (real)0.02125986883375036)));
+    const real quarter = (NAME_PI / 4) * (1 - flat - steep) + (t + t * (z * (even + z * odd)));
+    const real side = NAME_half(x);
+    return (NAME_PI - NAME_TAU * side + 4 * side * quarter) * NAME_half(y);
 }
 
 static NAME_INLINE real NAME_atan2(real y, real x)
@@ -679,16 +677,30 @@ static void NAME_solve_spherical_r(const NAME_spherical_r *c, NAME_rotation r, N
     *q1 = NAME_complex_of(r.x.x + r.y.y + r.z.z - 1, NAME_dot(c->a1, axial));
 }
 
-/* A spherical joint: the rotation vector, in base coordinates, of an angle of at most half a revolution. The entries of R
-   give four multiples of its quaternion, of which the longest is used. */
-static void NAME_solve_spherical_s(const NAME_spherical_s *c, NAME_rotation r, real *q1, real *q2, real *q3)
+/* What a rotation vector is of its axis, which has the sine of half the angle as its length. */
+static inline real NAME_turned(real half, real sine)
+{
+    return 2 * half / (sine > 0 ? sine : 1);
+}
+
+/* The rotation vector of a spherical joint, from the axis and half the angle that its closed form gives. */
+static inline NAME_vector NAME_rotation_vector(NAME_vector axis, NAME_complex half)
+{
+    return NAME_add(NAME_vector_of(0, 0, 0), NAME_turned(NAME_angle(half), half.im), axis);
+}
+
+/* A spherical joint: the axis of the rotation, in base coordinates, and half its angle, of at most a right angle, as a
+   direction that has the length of the axis as its sine. The entries of R give four multiples of its quaternion, of which the
+   longest is used. */
+static NAME_INLINE void NAME_solve_spherical_s(const NAME_spherical_s *c, NAME_rotation r, real *q1, real *q2, real *q3,
+                                               NAME_complex *half)
 {
     const real wx = r.y.z - r.z.y, wy = r.z.x - r.x.z, wz = r.x.y - r.y.x;
     const real xy = r.y.x + r.x.y, xz = r.z.x + r.x.z, yz = r.z.y + r.y.z;
     const real ww = 1 + (r.x.x + r.y.y + r.z.z), xx = 1 + (r.x.x - r.y.y - r.z.z);
     const real yy = 1 + (r.y.y - r.x.x - r.z.z), zz = 1 + (r.z.z - r.x.x - r.y.y);
     NAME_vector axis = NAME_vector_of(wx, wy, wz);
-    real w = ww, longest = ww, length, scale;
+    real w = ww, longest = ww, sense;
     if (xx > longest) {
         longest = xx;
         w = wx;
@@ -703,12 +715,12 @@ static void NAME_solve_spherical_s(const NAME_spherical_s *c, NAME_rotation r, r
         w = wz;
         axis = NAME_vector_of(xz, yz, zz);
     }
-    length = NAME_sqrt(NAME_dot(axis, axis));
-    scale = 2 * NAME_atan2(length, NAME_abs(w)) / (length > 0 ? length : 1) * (w < 0 ? -1 : 1);
+    *half = NAME_complex_of(NAME_abs(w), NAME_sqrt(NAME_dot(axis, axis)));
+    sense = w < 0 ? -1 : 1;
     axis = NAME_rotated(c->axes, axis);
-    *q1 = axis.x * scale;
-    *q2 = axis.y * scale;
-    *q3 = axis.z * scale;
+    *q1 = axis.x * sense;
+    *q2 = axis.y * sense;
+    *q3 = axis.z * sense;
 }
 
 /* Two joints on one axis: two linear equations. */

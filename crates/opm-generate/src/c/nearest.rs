@@ -199,6 +199,9 @@ impl Writer<'_> {
         let joints = self.joints_of(number);
         let mut text = String::new();
         for (place, &joint) in joints.iter().enumerate() {
+            if self.ball_of(joint).is_some() {
+                continue;
+            }
             let field = &self.fields[joint];
             let value = match self.given(joint) {
                 Given::Value => format!("g->joint[{joint}].home + at.{field}"),
@@ -208,23 +211,20 @@ impl Writer<'_> {
             };
             let _ = writeln!(text, "        value[{place}] = {value};");
         }
-        for section in [&leg.lower, &leg.upper] {
+        for of in [Section::Lower, Section::Upper] {
+            let section = leg.section(of);
             if let (Chain::Ball(_), [Some(x), Some(y), Some(z)]) =
                 (&section.chain, section.coordinates)
             {
-                let from_home = |field: &str, joint: usize| match field {
-                    "" => format!("previous[{joint}] - g->joint[{joint}].home"),
-                    _ => format!("at.{}", self.fields[joint]),
-                };
-                let vector = |field: &str| {
-                    let parts = [x, y, z].map(|joint| from_home(field, joint));
-                    format!("NAME_vector_of({})", parts.join(", "))
-                };
+                let axis = [x, y, z].map(|joint| format!("at.{}", self.fields[joint])).join(", ");
+                let previous = [x, y, z]
+                    .map(|joint| format!("previous[{joint}] - g->joint[{joint}].home"))
+                    .join(", ");
+                let half = super::leg::ball(number, of);
                 let _ = writeln!(
                     text,
-                    "        {{\n            const NAME_vector near_previous = NAME_nearest_rotation({}, {});",
-                    vector("at"),
-                    vector("")
+                    "        {{\n            const NAME_vector vector = NAME_rotation_vector(NAME_vector_of({axis}), at.{half});\n            \
+                     const NAME_vector near_previous = NAME_nearest_rotation(vector, NAME_vector_of({previous}));",
                 );
                 for (joint, part) in [x, y, z].into_iter().zip(["x", "y", "z"]) {
                     let place = joint - joints.first().copied().unwrap_or(0);

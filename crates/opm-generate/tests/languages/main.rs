@@ -5,6 +5,7 @@ mod comparison;
 mod compiled;
 mod drawn;
 mod matlab;
+mod names;
 mod program;
 mod python;
 mod rust;

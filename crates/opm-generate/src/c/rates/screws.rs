@@ -2,7 +2,7 @@
 //! screws.
 
 use crate::c::Writer;
-use crate::c::leg::{Given, given};
+use crate::c::leg::{Given, ball, given};
 use crate::c::pose::{intersection, kind, numbers, shared, tilt_torsion, word};
 use opm_core::chain::Chain;
 use opm_core::chain::planar::PlanarJoint;
@@ -146,8 +146,9 @@ impl Writer<'_> {
                 .collect();
             let _ = writeln!(
                 text,
-                "    NAME_rotation_vector_rates({member}.axes, NAME_vector_of({}), &{word});",
-                fields.join(", ")
+                "    NAME_rotation_vector_rates({member}.axes, NAME_rotation_vector(NAME_vector_of({}), at->{}), &{word});",
+                fields.join(", "),
+                ball(number, section)
             );
             return SectionRows { text, free, lacking: Vec::new() };
         }
