@@ -70,7 +70,8 @@ impl Wanted {
                 | PanelName::Imaginary
                 | PanelName::Actuated
                 | PanelName::Passive
-                | PanelName::Condition => {}
+                | PanelName::Condition
+                | PanelName::Indices => {}
                 PanelName::Positions => rates.push(Rate::Position),
                 PanelName::Velocities => rates.push(Rate::Velocity),
                 PanelName::Accelerations => rates.push(Rate::Acceleration),
@@ -94,10 +95,10 @@ impl Wanted {
         }
     }
 
-    /// Condition number and measures are not positions: if --panels names them, they are drawn with any
+    /// Condition number, measures and indices are not positions: if --panels names them, they are drawn with any
     /// rates.
     fn takes(&self, trace: &Trace) -> bool {
-        let judged = matches!(trace.group, Group::Condition | Group::Singularity);
+        let judged = matches!(trace.group, Group::Condition | Group::Singularity | Group::Indices);
         self.rates.contains(&trace.rate) || (judged && self.groups.is_some())
     }
 }
@@ -110,6 +111,7 @@ fn rows_of(panel: PanelName) -> &'static [Group] {
         PanelName::Actuated => &[Group::Actuated, Group::Joints],
         PanelName::Passive => &[Group::Passive],
         PanelName::Condition => &[Group::Condition, Group::Singularity],
+        PanelName::Indices => &[Group::Indices],
         PanelName::Positions
         | PanelName::Velocities
         | PanelName::Accelerations
@@ -274,8 +276,8 @@ impl<'a> Motion<'a> {
                 count(thinned.curve.samples())
             ));
         }
-        // Rows in order; each has the positions and then their derivatives.
-        let mut rows: BTreeMap<(Group, u8), Vec<Trace>> = BTreeMap::new();
+        // Rows in order, one for each unit; each has the positions and then their derivatives.
+        let mut rows: BTreeMap<(Group, u8, String), Vec<Trace>> = BTreeMap::new();
         for trace in all {
             let named = args.values.is_empty() || args.values.contains(&trace.name);
             if named && wanted.has(trace.group, args) && wanted.takes(&trace) {
@@ -284,7 +286,8 @@ impl<'a> Motion<'a> {
                     Some(Quantity::Angle) => 1,
                     None => 2,
                 };
-                rows.entry((trace.group, order)).or_default().push(trace);
+                let key = (trace.group, order, trace.unit.clone());
+                rows.entry(key).or_default().push(trace);
             }
         }
         if rows.is_empty() {
@@ -295,7 +298,7 @@ impl<'a> Motion<'a> {
         }
         for panel in &args.panels {
             let wanted = rows_of(*panel);
-            if !wanted.is_empty() && !rows.keys().any(|(group, _)| wanted.contains(group)) {
+            if !wanted.is_empty() && !rows.keys().any(|(group, ..)| wanted.contains(group)) {
                 let (label, name) = (&source.label, panel.name());
                 return Err(Failure::work(format!("{label}: no {name} in what --panels asks for")));
             }
@@ -305,7 +308,7 @@ impl<'a> Motion<'a> {
             .into_iter()
             .filter(|rate| rows.values().flatten().any(|trace| trace.rate == *rate))
             .collect();
-        let rows = rows.into_iter().map(|((group, _), traces)| row(source, group, traces, &rates));
+        let rows = rows.into_iter().map(|((group, ..), traces)| row(source, group, traces, &rates));
         let notes = [notes, source.notes()].concat();
         Ok(TimeFigure {
             heading: Heading { notes, ..heading },
@@ -372,8 +375,10 @@ fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) ->
     let number = |name: &str| names.iter().position(|known| known == name).unwrap_or(0);
     let panel = |traces: Vec<Trace>| {
         let (quantity, rate) = traces.first().map(|trace| (trace.quantity, trace.rate))?;
-        let (Measure { name, unit }, _) =
+        let symbol = traces.first().map(|trace| trace.unit.clone()).filter(|of| !of.is_empty());
+        let (Measure { name, mut unit }, _) =
             source.measure(axis(group, quantity, rate), quantity, rate);
+        unit.symbol = symbol.unwrap_or(unit.symbol);
         let curves = traces.into_iter().map(|trace| (number(&trace.name), trace.curve)).collect();
         let scale = match group {
             Group::Condition => Scale::Logarithmic,
@@ -408,6 +413,7 @@ fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
         (Group::Joints, _) => "Joints",
         (Group::Condition, _) => "Condition number",
         (Group::Singularity, _) => "Singularity measures",
+        (Group::Indices, _) => "Indices",
     };
     match rate {
         Rate::Position => what.to_owned(),

@@ -18,6 +18,8 @@ pub enum PanelName {
     Passive,
     /// Condition number and singularity measures over time
     Condition,
+    /// Indices over time (`opm trajectory --indices`)
+    Indices,
     /// For a motion: positions
     Positions,
     /// For a motion: velocities, in a second column

@@ -1,12 +1,13 @@
 //! The topics of a motion, and the meaning of their values.
 
 use super::source::{Kind, Rate, Source, quantity};
+use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_mcap::Flat;
 use opm_mcap::trajectory::{
     ACCELERATIONS_TOPIC, CONDITION_TOPIC, DEPENDENT_TOPIC, DEPENDENT_VELOCITIES_TOPIC,
-    IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC, JOINTS_TOPIC, POSE_TOPIC, POSE_VELOCITIES_TOPIC,
-    Role, VALID, VELOCITIES_TOPIC,
+    IMAGINARY_TOPIC, IMAGINARY_VELOCITIES_TOPIC, INDICES_TOPIC, JOINTS_TOPIC, POSE_TOPIC,
+    POSE_VELOCITIES_TOPIC, Role, VALID, VELOCITIES_TOPIC,
 };
 use opm_plot::Curve;
 
@@ -23,6 +24,7 @@ pub enum Group {
     Joints,
     Condition,
     Singularity,
+    Indices,
 }
 
 /// The topics that are drawn.
@@ -39,9 +41,10 @@ pub enum TopicKind {
     Joints,
     Imaginary,
     Condition,
+    Indices,
 }
 
-pub const TOPICS: [Topic; 10] = {
+pub const TOPICS: [Topic; 11] = {
     const fn topic(name: &'static str, kind: TopicKind, rate: Rate) -> Topic {
         Topic { name, kind, rate }
     }
@@ -56,6 +59,7 @@ pub const TOPICS: [Topic; 10] = {
         topic(IMAGINARY_TOPIC, TopicKind::Imaginary, Rate::Position),
         topic(IMAGINARY_VELOCITIES_TOPIC, TopicKind::Imaginary, Rate::Velocity),
         topic(CONDITION_TOPIC, TopicKind::Condition, Rate::Position),
+        topic(INDICES_TOPIC, TopicKind::Indices, Rate::Position),
     ]
 };
 
@@ -65,6 +69,8 @@ pub struct Trace {
     pub group: Group,
     pub quantity: Option<Quantity>,
     pub rate: Rate,
+    /// The unit of what is neither a length nor an angle.
+    pub unit: String,
     /// The divisor of the SI values.
     pub factor: f64,
     pub curve: Curve,
@@ -84,10 +90,22 @@ pub fn traces(source: &Source<'_>, topic: Topic, flat: &Flat) -> Vec<Trace> {
 
 fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
     let find = |record: &str| source.metadata(record).get(field).cloned();
+    let mut unit = String::new();
     let (name, quantity, group) = match topic.kind {
         TopicKind::Condition => {
             let group = if field == CONDITION { Group::Condition } else { Group::Singularity };
             (field.to_owned(), None, group)
+        }
+        TopicKind::Indices => {
+            // An effort has the field of its joint behind its own.
+            let of_joint =
+                field.strip_prefix("effort_").filter(|_| Index::from_name(field).is_none());
+            let joint = of_joint.and_then(|field| source.metadata("joints").get(field).cloned());
+            let name = joint.map_or_else(|| field.to_owned(), |joint| format!("effort.{joint}"));
+            let known = find("quantities");
+            let quantity = quantity(known.as_deref());
+            unit = known.filter(|_| quantity.is_none()).unwrap_or_default();
+            (name, quantity, Group::Indices)
         }
         TopicKind::Pose => {
             let mut task = source
@@ -117,7 +135,7 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
         }
     };
     let (_, factor) = source.measure("", quantity, topic.rate);
-    Trace { name, group, quantity, rate: topic.rate, factor, curve: Curve::default() }
+    Trace { name, group, quantity, rate: topic.rate, unit, factor, curve: Curve::default() }
 }
 
 fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {

@@ -208,6 +208,57 @@ fn the_condition_number_is_drawn_beside_accelerations() {
     assert_eq!(titles(&document), ["Actuated joints, acceleration", "Condition number"]);
 }
 
+/// Indices have a panel for each unit, and the values of the table.
+#[test]
+fn indices_are_drawn_by_their_units() {
+    let folder = Folder::new();
+    let load = ["--indices", "--wrench", "10,0,0,0,0,0.5", "--link-stiffness", "1e7,1e4"];
+    let of = [&["--motion", MOTION, "--rate", "10"], &load[..]].concat();
+    let file = motion(&folder, &of);
+    let (_, svg) = plot(&folder, &file, &["--panels", "indices"]);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let panels = class(document.root(), "panel");
+    assert!(titles(&document).iter().all(|title| *title == "Indices"));
+    let axes: Vec<&str> = class(document.root(), "y-axis").into_iter().map(label).collect();
+    let table = folder.arg("table.csv");
+    opm(&[&["trajectory", PLANO, "-o", &table], &of[..]].concat()).text();
+    let text = folder.read("table.csv");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    for (name, axis) in [
+        ("lti", "value"),
+        ("effort.S1", "value (N)"),
+        ("effort.phi14", "value (N m)"),
+        ("rotational_stiffness", "value (N m/rad)"),
+        ("clearance", "length (mm)"),
+    ] {
+        let place = axes.iter().position(|found| *found == axis).expect(axis);
+        let curve = named(panels[place], "curve", name);
+        let points = pieces(paths(curve)[0]).concat();
+        let column = rows[0].iter().position(|found| *found == name).expect(name);
+        let values: Vec<f64> = rows[1..].iter().map(|row| row[column].parse().unwrap()).collect();
+        let [low, high] = values
+            .iter()
+            .fold([f64::MAX, f64::MIN], |[low, high], &value| [low.min(value), high.max(value)]);
+        let scale = if axis.ends_with("(mm)") { 1e3 } else { 1.0 };
+        let up = up(panels[place]);
+        assert_eq!(points.len(), values.len(), "{name}");
+        for ([_, y], value) in points.into_iter().zip(values) {
+            let apart = (up(y) / scale - value).abs();
+            assert!(apart < 2e-3 * (high - low), "{name}: {} {value}", up(y));
+        }
+    }
+    // With everything else they are below it, and a name selects one.
+    let (_, svg) = plot(&folder, &file, &[]);
+    let document = Document::parse(&svg).unwrap();
+    assert_eq!(titles(&document).last(), Some(&"Indices"));
+    let (_, svg) = plot(&folder, &file, &["--values", "effort.S1"]);
+    assert_eq!(titles(&Document::parse(&svg).unwrap()), ["Indices"]);
+    let without = motion(&folder, &["--motion", MOTION, "--rate", "10"]);
+    let none = opm(&["plot", &without, "-o", &folder.arg("none.svg"), "--panels", "indices"]);
+    none.fails_with_one_line(1, &["it holds none of what --panels and --values ask for"]);
+}
+
 /// A tile has as many cells as a sweep of that slice alone counts poses.
 #[test]
 fn slices_have_the_cells_that_a_sweep_counts() {
