@@ -35,11 +35,10 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
     let springs = setup.springs.clone().map(|springs| Compliant::new(&manipulator, springs));
     let springs = springs.transpose().map_err(|error| Failure::flag("--link-stiffness", error))?;
-    if springs.is_some() && setup.gravity.is_some() {
-        let problem = "reactions are those of --wrench alone; give one of them";
-        return Err(Failure::flag("--gravity with --link-stiffness", problem));
-    }
-    let mut springs = springs;
+    let mut springs = springs.map(|springs| match &setup.gravity {
+        Some(gravity) => springs.with_gravity(gravity),
+        None => springs,
+    });
     let mut elastic = None;
     if reached {
         let verified = checks.verify(&manipulator, at.dependent(), loaded.file.units);
@@ -47,8 +46,9 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
         analyser.update(&at)?;
         elastic = springs.as_mut().map(|compliant| {
             let stiffness = compliant.stiffness(&at)?;
-            let reactions = analyser.wrench(&at).map(|w| compliant.reactions(&stiffness, &w));
-            Some(Elastic { stiffness, reactions: reactions.flatten() })
+            let load = setup.has_load().then(|| analyser.wrench(&at).unwrap_or_default());
+            let reactions = load.and_then(|load| compliant.reactions(&stiffness, &load));
+            Some(Elastic { stiffness, reactions })
         });
     }
     let units = loaded.file.units;

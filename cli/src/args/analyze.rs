@@ -26,7 +26,7 @@ use std::path::PathBuf;
 /// and a density, as in models for simulators. The weight of a payload is a --wrench.
 ///
 /// Statics do not tell what the legs of an overconstrained mechanism, or redundant actuators, carry: --link-stiffness
-/// and --joint-stiffness do, by the virtual joint method.
+/// and --joint-stiffness do, by the virtual joint method, for the load and for the weight of links and platform.
 ///
 /// CSV in: as for `opm ik`. CSV out: the pose, `reachable`, `within_limits`, `mode`, `balance`, the efforts
 /// (`effort.NAME`), and the indices that the mechanism has; with --link-stiffness the least stiffness, too.

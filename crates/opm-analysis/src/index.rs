@@ -3,8 +3,9 @@
 //! Another index is a variant here, a row in [`Index::facts`] and an arm in [`Indices::evaluate`].
 
 use crate::setup::{Loads, Setup};
+use crate::springs::SpringError;
 use crate::statics::{MOST, Statics, Velocity};
-use crate::stiffness::{Compliant, SpringError};
+use crate::stiffness::Compliant;
 use crate::transmission::{NoTransmission, Transmissions};
 use crate::wrench::Load;
 use opm_core::Quantity;

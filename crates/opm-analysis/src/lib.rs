@@ -39,6 +39,7 @@ mod efforts;
 mod index;
 mod screws;
 mod setup;
+mod springs;
 mod statics;
 mod stiffness;
 mod transmission;
@@ -50,8 +51,9 @@ pub use efforts::{Balance, Efforts, Worst};
 pub use index::{Facts, Index, IndexBounds, IndexError, Indices};
 pub use screws::{Freedom, Screws};
 pub use setup::{Loads, Setup};
+pub use springs::{SpringError, Springs};
 pub use statics::{Statics, Velocity};
-pub use stiffness::{Compliant, Reactions, SpringError, Springs, Stiffness};
+pub use stiffness::{Compliant, Reactions, Stiffness};
 pub use transmission::{
     ConstraintIndex, InputIndices, NoTransmission, Transmission, Transmissions,
 };

@@ -1,8 +1,8 @@
 //! What a pose is judged by besides the pose itself: a load, springs, a length.
 
 use crate::efforts::{Balance, Efforts};
+use crate::springs::Springs;
 use crate::statics::{Statics, Velocity};
-use crate::stiffness::Springs;
 use crate::weights::{Gravity, Weights};
 use crate::wrench::{Load, Wrench};
 use opm_core::manipulator::{Manipulator, Solution};

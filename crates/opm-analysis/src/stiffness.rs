@@ -14,53 +14,27 @@
 //!
 //! is the load `F` on the leg for a small displacement `δt` of the platform. The stiffness of the platform is the sum over
 //! the legs. A load `W` displaces it by `δt = (Σ K)⁻¹ W`, and each leg carries its own `K δt`.
+//!
+//! The weights of links act on springs and joints of their leg that are nearer to the base. With the wrench `w` of all that
+//! is behind a spring or a joint, each at the reference point of the platform, springs give way by `d = Σ Jθ Kθ⁻¹ Jθᵀ w`, and
+//! passive joints carry `p = Jqᵀ w` that the platform has to balance. The second row is then `Jqᵀ F = −p`, so that
+//!
+//! ```text
+//! F = K δt + F₀,    F₀ = −K d − C⁻¹ Jq (Jqᵀ C⁻¹ Jq)⁻¹ p
+//! ```
+//!
+//! and `δt = (Σ K)⁻¹ (W − Σ F₀)`. A link's centre of mass is on its rigid part, in front of the spring at its end.
 
 use crate::screws::Screws;
+use crate::springs::{SpringError, Springs};
+use crate::weights::{Gravity, Weights};
 use crate::wrench::Wrench;
-use nalgebra::{Cholesky, DMatrix, Matrix6, Point3, U6, Vector3, Vector6};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Point3, U6, Vector3, Vector6};
 use opm_core::manipulator::{Manipulator, Solution};
+use std::ops::Range;
 
 /// A pivot below this share of the largest is rounding.
 const SINGULAR: f64 = 1e-11;
-
-/// How much a mechanism gives way. The passive joints do not resist along their freedoms, and nothing else gives way.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Springs {
-    /// The stiffness of each actuated coordinate, in the order of
-    /// [`Manipulator::actuated`](opm_core::Manipulator::actuated); N/m and N m/rad, infinite for a rigid one.
-    pub actuators: Vec<f64>,
-    /// The stiffness of each link of a leg against translations of its end at the next joint, N/m.
-    pub translation: f64,
-    /// The stiffness of each link of a leg against rotations of that end, N m/rad.
-    pub rotation: f64,
-}
-
-/// Why springs do not suit a manipulator.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SpringError {
-    /// The number of stiffnesses is not that of the actuated coordinates.
-    #[error(
-        "{given} stiffnesses of actuators, expected {expected}, one for each actuated coordinate"
-    )]
-    Count {
-        /// The number that was given.
-        given: usize,
-        /// The number of actuated coordinates.
-        expected: usize,
-    },
-    /// A stiffness is not a positive number.
-    #[error("a stiffness is {0}, expected a positive number")]
-    NotPositive(f64),
-    /// A name is not that of an actuated joint.
-    #[error("no actuated joint {name:?}, expected one of {}", known.join(", "))]
-    Unknown {
-        /// The name.
-        name: String,
-        /// The names of the actuated joints.
-        known: Vec<String>,
-    },
-}
 
 /// How a mechanism gives way at a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,63 +51,14 @@ pub struct Stiffness {
 pub struct Reactions {
     /// The displacement of the platform's reference point, metres, and its rotation vector, radians; base directions.
     pub displacement: Vector6<f64>,
-    /// What each leg carries, as a wrench on the leg at the platform's reference point.
+    /// What the platform does to each leg, as a wrench at the platform's reference point: what the leg carries besides its own
+    /// weight.
     pub legs: Vec<Wrench>,
-    /// What passes through each joint, leg by leg from the base on: the same load as a wrench at the joint's point, on its
-    /// side of the base.
+    /// What passes through each joint, leg by leg from the base on: that load, and the weight of the leg's links behind the
+    /// joint, as a wrench at the joint's point on its side of the base.
     pub joints: Vec<Wrench>,
     /// The effort of every actuated coordinate; N and N m. Where statics determine it, it does not depend on the springs.
     pub efforts: Vec<f64>,
-}
-
-impl Springs {
-    /// The springs of links against translations, N/m, and rotations, N m/rad, and of actuated joints by their names; those
-    /// that are not among them are rigid.
-    ///
-    /// # Errors
-    /// A name is unknown, or a stiffness is not positive.
-    pub fn new(
-        manipulator: &Manipulator,
-        [translation, rotation]: [f64; 2],
-        actuators: &[(String, f64)],
-    ) -> Result<Self, SpringError> {
-        let names = Self::names(manipulator);
-        let mut each = vec![f64::INFINITY; names.len()];
-        for (name, stiffness) in actuators {
-            let Some(place) = names.iter().position(|known| known == name) else {
-                let known = names.iter().map(|&name| name.to_owned()).collect();
-                return Err(SpringError::Unknown { name: name.clone(), known });
-            };
-            each[place] = *stiffness;
-        }
-        let springs = Self { actuators: each, translation, rotation };
-        springs.check(manipulator).map(|()| springs)
-    }
-
-    /// The names of the actuated joints, in the order of [`Springs::actuators`].
-    pub fn names(manipulator: &Manipulator) -> Vec<&str> {
-        let all = manipulator.coordinates();
-        manipulator.actuated().iter().map(|&number| &*all[number].name).collect()
-    }
-
-    /// Checks that there is a positive stiffness for each actuated coordinate of a manipulator, and for the links.
-    ///
-    /// # Errors
-    /// Which one is wrong.
-    pub fn check(&self, manipulator: &Manipulator) -> Result<(), SpringError> {
-        let (given, expected) = (self.actuators.len(), manipulator.actuated().len());
-        if given != expected {
-            return Err(SpringError::Count { given, expected });
-        }
-        let links = [self.translation, self.rotation];
-        match self.actuators.iter().chain(&links).find(|k| k.is_nan() || **k <= 0.0) {
-            Some(&odd) => Err(SpringError::NotPositive(odd)),
-            None => match links.into_iter().find(|k| k.is_infinite()) {
-                Some(odd) => Err(SpringError::NotPositive(odd)),
-                None => Ok(()),
-            },
-        }
-    }
 }
 
 /// Computes stiffnesses at solved poses of one manipulator.
@@ -160,9 +85,16 @@ impl Springs {
 pub struct Compliant<'a> {
     manipulator: &'a Manipulator,
     springs: Springs,
+    weights: Option<Weights<'a>>,
     screws: Screws,
     /// The platform's reference point.
     reference: Point3<f64>,
+    /// The weights of links at the pose, at the reference point, and the coordinates that move each.
+    heavy: Vec<(Range<usize>, Vector6<f64>)>,
+    /// The platform's own weight, at the reference point.
+    platform: Vector6<f64>,
+    /// What the platform does to each leg under the leg's own weight, if the platform is held.
+    held: Vec<Vector6<f64>>,
     /// The unit of length, in which all numbers of a matrix are comparable.
     length: f64,
 }
@@ -177,10 +109,20 @@ impl<'a> Compliant<'a> {
         Ok(Self {
             manipulator,
             springs,
+            weights: None,
             screws: Screws::new(manipulator),
             reference: manipulator.mechanism().platform,
+            heavy: Vec::new(),
+            platform: Vector6::zeros(),
+            held: Vec::new(),
             length: manipulator.characteristic_length(),
         })
+    }
+
+    /// The same with heavy links and a heavy platform: their weights are part of every load.
+    #[must_use]
+    pub fn with_gravity(self, gravity: &Gravity) -> Self {
+        Self { weights: Some(Weights::new(self.manipulator, gravity)), ..self }
     }
 
     /// The stiffness at a solved pose that is in reach. `None` where the passive joints of a leg are dependent, as at some
@@ -189,8 +131,21 @@ impl<'a> Compliant<'a> {
         self.screws.update(at);
         let platform = self.manipulator.platform_at(&at.displacement(self.manipulator));
         self.reference = Point3::from(platform.translation.vector);
+        let at_reference = |force: Vector3<f64>, point: &Point3<f64>| {
+            let wrench = Wrench { force, moment: Vector3::zeros() };
+            Vector6::from(wrench.moved(point, &self.reference).components())
+        };
+        if let Some(weights) = &self.weights {
+            let links = weights.links(&self.screws);
+            self.heavy =
+                links.map(|(own, force, point)| (own, at_reference(force, &point))).collect();
+            let (force, point) = weights.platform(&at.displacement(self.manipulator));
+            self.platform = at_reference(force, &point);
+        }
         let count = self.screws.legs.len();
-        let legs: Vec<Matrix6<f64>> = (0..count).map(|leg| self.leg(leg)).collect::<Option<_>>()?;
+        let legs: Vec<_> = (0..count).map(|leg| self.leg(leg)).collect::<Option<_>>()?;
+        let (legs, held): (Vec<Matrix6<f64>>, _) = legs.into_iter().unzip();
+        self.held = held;
         Some(Stiffness { platform: legs.iter().sum(), legs })
     }
 
@@ -208,21 +163,21 @@ impl<'a> Compliant<'a> {
         })
     }
 
-    /// How a load is shared at the pose of a stiffness, which is the last that was computed. `None` where the platform can
-    /// move without resistance.
+    /// How a load on the platform, with the weights of all bodies if these are heavy, is shared at the pose of a stiffness,
+    /// which is the last that was computed. `None` where the platform can move without resistance.
     pub fn reactions(&self, stiffness: &Stiffness, load: &Wrench) -> Option<Reactions> {
         let unit = self.unit();
         let scaled = unit * stiffness.platform * unit;
-        let load = Vector6::from(load.components());
+        let held: Vector6<f64> = self.held.iter().sum();
+        let load = Vector6::from(load.components()) + self.platform - held;
         let displacement = unit * solve(&scaled, &(unit * load))?;
-        let legs: Vec<Wrench> = (stiffness.legs.iter())
-            .map(|leg| Wrench::from_components((leg * displacement).into()))
-            .collect();
+        let each = stiffness.legs.iter().zip(&self.held);
+        let legs: Vec<Vector6<f64>> = each.map(|(leg, held)| leg * displacement + held).collect();
         let leg_of = |number: usize| self.screws.legs.iter().position(|l| l.contains(&number));
         let actuated = self.manipulator.actuated().iter();
         let efforts = actuated.map(|&number| {
-            let own = leg_of(number).map(|leg| Vector6::from(legs[leg].components()));
-            0.0 - own.unwrap_or_default().dot(&self.twist(number))
+            let own = leg_of(number).map_or(Vector6::zeros(), |leg| legs[leg]);
+            0.0 - (own + self.behind(number)).dot(&self.twist(number))
         });
         let efforts = efforts.collect();
         let mut joints = Vec::new();
@@ -231,10 +186,12 @@ impl<'a> Compliant<'a> {
         {
             let mut number = own.start;
             for joint in &leg.joints {
-                joints.push(wrench.moved(&self.reference, &self.screws.freedoms[number].point));
+                let through = Wrench::from_components((wrench + self.behind(number)).into());
+                joints.push(through.moved(&self.reference, &self.screws.freedoms[number].point));
                 number += joint.coordinates.len();
             }
         }
+        let legs = legs.into_iter().map(|leg| Wrench::from_components(leg.into())).collect();
         Some(Reactions { displacement, legs, joints, efforts })
     }
 
@@ -253,58 +210,74 @@ impl<'a> Compliant<'a> {
         Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
     }
 
-    /// The stiffness of a leg.
-    fn leg(&self, leg: usize) -> Option<Matrix6<f64>> {
+    /// The weights of links that a joint coordinate moves, as a wrench at the reference point.
+    fn behind(&self, number: usize) -> Vector6<f64> {
+        let moved = self.heavy.iter().filter(|(moved_by, _)| moved_by.contains(&number));
+        moved.map(|(_, weight)| weight).sum()
+    }
+
+    /// The stiffness of a leg, and what the platform does to it under its own weight, if the platform is held.
+    fn leg(&self, leg: usize) -> Option<(Matrix6<f64>, Vector6<f64>)> {
         let own = self.screws.legs[leg].clone();
-        let mut compliance = Matrix6::zeros();
-        let mut spring = |twist: &Vector6<f64>, stiffness: f64| {
+        let (mut compliance, mut sag) = (Matrix6::zeros(), Vector6::zeros());
+        let mut spring = |twist: &Vector6<f64>, stiffness: f64, behind: &Vector6<f64>| {
             compliance += twist * twist.transpose() / stiffness;
+            sag += twist * (twist.dot(behind) / stiffness);
         };
         let actuated = self.manipulator.actuated();
         let mut passive = Vec::new();
         for number in own.clone() {
             match actuated.iter().position(|&coordinate| coordinate == number) {
-                Some(actuator) => spring(&self.twist(number), self.springs.actuators[actuator]),
+                Some(actuator) => {
+                    let stiffness = self.springs.actuators[actuator];
+                    spring(&self.twist(number), stiffness, &self.behind(number));
+                }
                 None => passive.push(number),
             }
         }
-        for end in self.link_ends(leg, own) {
+        for (number, end) in self.link_ends(leg, own) {
+            let behind = self.behind(number);
             for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
                 let translation = Vector6::new(axis.x, axis.y, axis.z, 0.0, 0.0, 0.0);
-                spring(&translation, self.springs.translation);
+                spring(&translation, self.springs.translation, &behind);
                 let moved = axis.cross(&(self.reference - end));
                 let rotation = Vector6::new(moved.x, moved.y, moved.z, axis.x, axis.y, axis.z);
-                spring(&rotation, self.springs.rotation);
+                spring(&rotation, self.springs.rotation, &behind);
             }
         }
         let unit = self.unit();
         let back = unit.map(|part| if part == 0.0 { 0.0 } else { part.recip() });
         let inverse = (back * compliance * back).cholesky()?.inverse();
-        let columns: Vec<Vector6<f64>> =
-            passive.iter().map(|&number| (back * self.twist(number)).normalize()).collect();
-        let stiffness = match columns.is_empty() {
-            true => inverse,
-            false => {
-                let q = DMatrix::from_fn(6, columns.len(), |i, j| columns[j][i]);
-                let cq = inverse * &q;
-                let square = regular_inverse(q.transpose() * &cq)?;
-                let lost = &cq * square * cq.transpose();
-                Matrix6::from_fn(|i, j| inverse[(i, j)] - lost[(i, j)])
-            }
-        };
-        Some(back * stiffness * back)
+        let (mut stiffness, mut balancing) = (inverse, Vector6::zeros());
+        if !passive.is_empty() {
+            let twists: Vec<_> = passive.iter().map(|&number| back * self.twist(number)).collect();
+            let q = DMatrix::from_fn(6, twists.len(), |i, j| twists[j][i] / twists[j].norm());
+            let carried = DVector::from_fn(twists.len(), |j, _| {
+                let number = passive[j];
+                self.twist(number).dot(&self.behind(number)) / twists[j].norm()
+            });
+            let cq = inverse * &q;
+            let square = regular_inverse(q.transpose() * &cq)?;
+            let lost = &cq * &square * cq.transpose();
+            stiffness -= Matrix6::from_fn(|i, j| lost[(i, j)]);
+            let balance = &cq * &square * carried;
+            balancing = Vector6::from_fn(|i, _| balance[i]);
+        }
+        let held = -(back * (stiffness * (back * sag) + balancing));
+        Some((back * stiffness * back, held))
     }
 
-    /// The ends of a leg's links that give way: each at the next joint.
+    /// The ends of a leg's links that give way, each at the next joint: the number of that joint's first coordinate, and its
+    /// point.
     fn link_ends(
         &self,
         leg: usize,
-        own: std::ops::Range<usize>,
-    ) -> impl Iterator<Item = Point3<f64>> + '_ {
+        own: Range<usize>,
+    ) -> impl Iterator<Item = (usize, Point3<f64>)> + '_ {
         let joints = &self.manipulator.mechanism().legs[leg].joints;
         let mut first = own.start;
         let points = joints.iter().map(move |joint| {
-            let at = self.screws.freedoms[first].point;
+            let at = (first, self.screws.freedoms[first].point);
             first += joint.coordinates.len();
             at
         });

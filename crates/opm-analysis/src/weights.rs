@@ -7,7 +7,7 @@
 
 use crate::screws::Screws;
 use crate::statics::{MOST, Statics, Velocity};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::skeleton::{Density, Skeleton};
 use std::ops::Range;
@@ -75,6 +75,24 @@ impl<'a> Weights<'a> {
     /// The mass of all links and of the platform, kilograms.
     pub fn mass(&self) -> f64 {
         self.links.iter().map(|link| link.mass).sum::<f64>() + self.platform.0
+    }
+
+    /// The weight of each link at a pose: the coordinates of the joints that move it, the force, newtons, and the centre of mass,
+    /// base coordinates.
+    pub(crate) fn links(
+        &self,
+        screws: &Screws,
+    ) -> impl Iterator<Item = (Range<usize>, Vector3<f64>, Point3<f64>)> {
+        self.links.iter().map(|link| {
+            let centre = screws.freedoms[link.moved_by.end - 1].after * link.home;
+            (link.moved_by.clone(), self.gravity * link.mass, centre)
+        })
+    }
+
+    /// The weight of the platform, and its centre of mass, where the platform is displaced from home.
+    pub(crate) fn platform(&self, displacement: &Isometry3<f64>) -> (Vector3<f64>, Point3<f64>) {
+        let (mass, home) = self.platform;
+        (self.gravity * mass, displacement * home)
     }
 
     /// The work of the weights for each independent velocity at a pose, of which `statics` has taken the solution. `None`

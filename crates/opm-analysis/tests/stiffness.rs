@@ -2,10 +2,11 @@
 
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
-use opm_analysis::{Balance, Compliant, Springs, Statics, Wrench};
+use opm_analysis::{Balance, Compliant, Gravity, Load, Loads, Setup, Springs, Statics, Wrench};
 use opm_core::Manipulator;
 use opm_core::manipulator::Solution;
 use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::skeleton::{Configuration, Density, Skeleton};
 
 /// The motion of the platform's reference point, and its rotation, for a small displacement `twist` (translation of
 /// `point`, then rotation) of everything behind a point.
@@ -18,14 +19,17 @@ fn carried(twist: &Vector6<f64>, point: Vector3<f64>, reference: Vector3<f64>) -
 /// The columns of a leg: what the platform does for a unit of each joint coordinate, and of each spring of a link. By
 /// displacing the leg's own bodies a little, not by screws.
 struct LegColumns {
-    joints: Vec<Vector6<f64>>,
-    /// Three translations and three rotations for each link.
-    links: Vec<Vector6<f64>>,
+    /// With the number of the joint in its leg.
+    joints: Vec<(usize, Vector6<f64>)>,
+    /// Three translations and three rotations for each link, with the number of the joint at its end.
+    links: Vec<(usize, Vector6<f64>)>,
 }
 
 fn columns(leg: &opm_core::Leg, values: &[f64], reference: Vector3<f64>) -> LegColumns {
     let place = leg.displacement(values).unwrap();
     let step = 1e-6;
+    let numbers = leg.joints.iter().enumerate();
+    let numbers = numbers.flat_map(|(number, joint)| vec![number; joint.coordinates.len()]);
     let joints = (0..values.len()).map(|i| {
         let at = |t: f64| {
             let mut values = values.to_vec();
@@ -37,12 +41,13 @@ fn columns(leg: &opm_core::Leg, values: &[f64], reference: Vector3<f64>) -> LegC
         };
         (at(step) - at(-step)) / (2.0 * step)
     });
-    let joints = joints.collect();
+    let joints = numbers.zip(joints).collect();
     let (mut links, mut g, mut rest) = (Vec::new(), nalgebra::Isometry3::identity(), values);
     for (number, joint) in leg.joints.iter().enumerate() {
         if number > 0 {
             let point = (g * joint.point).coords;
-            links.extend((0..6).map(|i| carried(&Vector6::ith(i, 1.0), point, reference)));
+            let column = |i| carried(&Vector6::ith(i, 1.0), point, reference);
+            links.extend((0..6).map(|i| (number, column(i))));
         }
         let (own, others) = rest.split_at(joint.coordinates.len());
         (g, rest) = (g * joint.displacement(own).unwrap(), others);
@@ -50,13 +55,35 @@ fn columns(leg: &opm_core::Leg, values: &[f64], reference: Vector3<f64>) -> LegC
     LegColumns { joints, links }
 }
 
-/// Minimises the energy of all springs under a load, with a multiplier for each leg that has to end at the platform:
-/// displacement, and the load on each leg.
+/// The weights of the links, for each leg and each joint that carries one, and then that of the platform, each as a wrench at
+/// the reference point: masses and places are those of what is drawn.
+fn weights(manipulator: &Manipulator, at: &Solution, gravity: &Gravity) -> Vec<Vec<Vector6<f64>>> {
+    let platform = at.displacement(manipulator);
+    let reference = manipulator.platform_at(&platform).translation.vector;
+    let skeleton = Skeleton::new(manipulator.mechanism(), None);
+    let masses = skeleton.masses(manipulator.mechanism(), gravity.density);
+    let of = Configuration { joints: at.joints(), imaginary: &[], platform };
+    let placed = skeleton.place_in_base(&of).unwrap();
+    let mut each = placed.iter().zip(&masses).skip(1).map(|(at, own)| {
+        let force = gravity.acceleration * own.mass;
+        let moment = ((at * own.centre).coords - reference).cross(&force);
+        Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+    });
+    let legs = manipulator.mechanism().legs.iter();
+    let mut all: Vec<Vec<_>> =
+        legs.map(|leg| each.by_ref().take(leg.joints.len() - 1).collect()).collect();
+    all.push(each.collect());
+    all
+}
+
+/// Minimises the energy of all springs under a load on the platform and the weights of links, with a multiplier for each leg
+/// that has to end at the platform: displacement, and the load on each leg.
 fn least_energy(
     manipulator: &Manipulator,
     at: &Solution,
     springs: &Springs,
     load: &Vector6<f64>,
+    weights: &[Vec<Vector6<f64>>],
 ) -> Option<(Vector6<f64>, Vec<Vector6<f64>>)> {
     let platform = manipulator.platform_at(&at.displacement(manipulator));
     let reference = platform.translation.vector;
@@ -64,19 +91,26 @@ fn least_energy(
     let mut first = 0;
     // Unknowns: the platform, then what gives way in each leg, then multipliers. Rows of springs and joints.
     let (mut moves, mut stiff): (Vec<(usize, Vector6<f64>)>, Vec<f64>) = (Vec::new(), Vec::new());
+    // The work of the weights for each of them.
+    let mut works = Vec::new();
     for (number, leg) in legs.iter().enumerate() {
         let count = leg.coordinates().count();
         let values = &at.joints()[first..first + count];
         let LegColumns { joints, links } = columns(leg, values, reference);
-        for (i, joint) in joints.into_iter().enumerate() {
+        let work = |place: usize, column: &Vector6<f64>| {
+            weights[number].iter().skip(place).map(|weight| weight.dot(column)).sum::<f64>()
+        };
+        for (i, (place, joint)) in joints.into_iter().enumerate() {
             let driven = manipulator.actuated().iter().position(|&c| c == first + i);
             let k = driven.map_or(0.0, |driven| springs.actuators[driven]);
             if k.is_finite() {
+                works.push(work(place, &joint));
                 moves.push((number, joint));
                 stiff.push(k);
             }
         }
-        for (i, link) in links.into_iter().enumerate() {
+        for (i, (place, link)) in links.into_iter().enumerate() {
+            works.push(work(place, &link));
             moves.push((number, link));
             stiff.push(if i % 6 < 3 { springs.translation } else { springs.rotation });
         }
@@ -102,6 +136,7 @@ fn least_energy(
     }
     let mut right = DVector::zeros(size);
     right.rows_mut(0, 6).copy_from(load);
+    right.rows_mut(6, n).copy_from_slice(&works);
     let found = system.full_piv_lu().solve(&right)?;
     let of = |from: usize| Vector6::from_fn(|i, _| found[from + i]);
     Some((of(0), (0..legs.len()).map(|leg| of(6 + n + 6 * leg)).collect()))
@@ -127,13 +162,19 @@ fn shipped_mechanisms_share_loads_as_the_least_energy_says() {
             rotation: drawn(1e3),
         };
         let load = Wrench::from_components([3.0, -1.0, 2.0, 0.2, 0.1, -0.3]);
-        let components = Vector6::from(load.components());
-        let mut compliant = Compliant::new(&manipulator, springs.clone()).unwrap();
+        let acceleration = Vector3::new(2.0, -3.0, -9.0);
+        let gravity = Gravity { acceleration, density: Density::default() };
+        let all = weights(&manipulator, &at, &gravity);
+        let (links, own) = all.split_at(all.len() - 1);
+        let components = Vector6::from(load.components()) + own[0][0];
+        let mut compliant =
+            Compliant::new(&manipulator, springs.clone()).unwrap().with_gravity(&gravity);
         let Some(stiffness) = compliant.stiffness(&at) else { continue };
         let symmetric = (stiffness.platform - stiffness.platform.transpose()).amax();
         assert!(symmetric < 1e-9 * stiffness.platform.amax());
         let Some(found) = compliant.reactions(&stiffness, &load) else { continue };
-        let Some((displacement, legs)) = least_energy(&manipulator, &at, &springs, &components)
+        let Some((displacement, legs)) =
+            least_energy(&manipulator, &at, &springs, &components, links)
         else {
             continue;
         };
@@ -148,13 +189,27 @@ fn shipped_mechanisms_share_loads_as_the_least_energy_says() {
         let whole: Vector6<f64> =
             found.legs.iter().map(|leg| Vector6::from(leg.components())).sum();
         assert!((whole - components).norm() < 1e-7 * components.norm(), "{name}");
+        // What passes through the first joints holds everything.
+        let reference = manipulator.platform_at(&at.displacement(&manipulator)).translation.vector;
+        let mut first = 0;
+        let mut on_base = Vector6::zeros();
+        for leg in &manipulator.mechanism().legs {
+            let point = leg.joints[0].point;
+            let through = found.joints[first].moved(&point, &reference.into());
+            on_base += Vector6::from(through.components());
+            first += leg.joints.len();
+        }
+        let weight: Vector6<f64> = links.iter().flatten().sum();
+        assert!((on_base - components - weight).norm() < 1e-7 * components.norm(), "{name}");
         compared += 1;
         // What statics determine does not depend on springs.
         let mut statics = Statics::new(&manipulator, manipulator.characteristic_length());
         if !statics.update(&at).unwrap() {
             continue;
         }
-        let efforts = statics.efforts(&load);
+        let load = Some(Load { wrench: load, ..Load::default() });
+        let setup = Setup { load, gravity: Some(gravity), ..Setup::new(1.0) };
+        let efforts = Loads::new(&manipulator, &setup).unwrap().efforts(&statics, &at);
         assert_eq!(efforts.balance, Balance::Balanced);
         for (own, known) in found.efforts.iter().zip(&efforts.actuated) {
             let Some(known) = known else { continue };
