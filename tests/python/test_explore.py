@@ -1,7 +1,9 @@
 """The page of `opm explore`, in a real browser, opened from a file without a network."""
 
 import gzip
+import itertools
 import json
+import math
 import re
 import shlex
 import shutil
@@ -699,6 +701,72 @@ def test_the_platform_is_dragged_in_the_view(explore):
     assert explorer.value("pose-x") == "0"
 
 
+def dragged(explorer, name):
+    """Drags the handle of a coordinate; returns how far that moves it, in the unit of the file."""
+    canvas = explorer.page.locator("#view canvas")
+    box = canvas.bounding_box()
+    before = float(explorer.value(f"pose-{name}"))
+    places = ((x, y) for y in range(30, 80, 1) for x in range(20, 85, 1))
+    for across, down in places:
+        at = [box["x"] + 0.01 * across * box["width"], box["y"] + 0.01 * down * box["height"]]
+        explorer.page.mouse.move(*at)
+        if canvas.get_attribute("title") == f"Drag to change {name}":
+            break
+    else:
+        raise AssertionError(f"no handle of {name}")
+    explorer.page.mouse.down()
+    explorer.page.mouse.move(at[0] + 12, at[1] + 2, steps=3)
+    explorer.page.mouse.up()
+    explorer.ready()
+    return float(explorer.value(f"pose-{name}")) - before
+
+
+def test_every_unit_of_files_is_understood(browser, opm, tmp_path):
+    """The same mechanism at another scale looks the same, so that the same drag is the same number."""
+    text = subprocess.run([opm, "examples", "planar-3rpr"], capture_output=True, text=True).stdout
+    assert 'length = "mm", angle = "deg"' in text
+    moved = {}
+    for length, angle, quarter in (("mm", "deg", 90), ("um", "mrad", 500 * math.pi)):
+        mechanism, page = tmp_path / f"{length}.toml", tmp_path / f"{length}.html"
+        mechanism.write_text(text.replace('length = "mm", angle = "deg"', f'length = "{length}", angle = "{angle}"'))
+        subprocess.run([opm, "explore", mechanism, "--quiet", "-o", page], check=True)
+        explorer = Explorer(browser, page)
+        moved[length] = dragged(explorer, "x"), dragged(explorer, "theta")
+        # A joint without limits is shown within half a turn about home, where A1 is zero.
+        mark = explorer.page.locator("tr:has([id='joint-A1']) .bar b")
+        angle_now = float(explorer.text("joint-A1"))
+        shown = mark.evaluate("mark => parseFloat(mark.style.left)")
+        assert shown == pytest.approx(50 + 25 * angle_now / quarter, abs=0.01) and abs(shown - 50) > 0.05
+        # The phase of a sinusoid is in degrees in the page, and in the unit of the file in the motion.
+        home = explorer.value("pose-theta")
+        explorer.choose("motion", "sinusoids")
+        explorer.fill(sine_x_amplitude=0, sine_y_amplitude=0, sine_theta_amplitude=10, sine_theta_phase=90)
+        explorer.page.locator("#time").fill("0.01")
+        explorer.page.locator("#time").fill("0")
+        explorer.ready()
+        assert float(explorer.value("pose-theta")) == pytest.approx(float(home) + 10, abs=1e-3)
+        explorer.close()
+    assert abs(moved["mm"][0]) > 0.1 and moved["um"][0] == pytest.approx(moved["mm"][0], rel=1e-3)
+    assert abs(moved["mm"][1]) > 0.1 and moved["um"][1] == pytest.approx(math.radians(1e3 * moved["mm"][1]), rel=1e-3)
+
+
+def test_a_platform_that_turns_as_it_is_shifted_has_arrows(browser, opm, tmp_path):
+    """Its angle follows from the place. And two coordinates make no body."""
+    page = tmp_path / "five-bar.html"
+    subprocess.run([opm, "explore", "five-bar", "--quiet", "-o", page], check=True)
+    explorer = Explorer(browser, page)
+    assert dragged(explorer, "x") > 1
+    assert explorer.page.locator("#body-show").is_disabled()
+    assert explorer.text("legend").splitlines()[1] == "Links"
+    assert explorer.text("summary") == "Mobility 2, joint screws of rank 3: planar"
+    explorer.close()
+    page = tmp_path / "wrist.html"
+    subprocess.run([opm, "explore", "cartesian-wrist-6dof", "--quiet", "-o", page], check=True)
+    explorer = Explorer(browser, page)
+    assert "translational space and spherical, sharing no motion" in explorer.text("summary")
+    explorer.close()
+
+
 def test_a_page_in_a_frame_of_a_notebook_works(explore, browser, file, tmp_path):
     """Its address is `about:srcdoc`, to which no state can be added."""
     page = file.read_text().replace("&", "&amp;").replace('"', "&quot;")
@@ -994,10 +1062,23 @@ def test_it_is_drawn_in_time(explore, tmp_path):
     assert slice_time < 200 and whole_time < 2000 and body_time < 2000 and frame_time < 1000
 
 
-@pytest.mark.parametrize("width, height, scheme", [(1400, 900, "light"), (1400, 900, "dark"), (390, 844, "light"), (390, 844, "dark")])
+# A desktop, a phone upright and on its side, and a small window.
+SCREENS = [(*size, scheme) for size in [(1400, 900), (390, 844), (844, 390), (1050, 800)] for scheme in ("light", "dark")]
+
+
+@pytest.mark.parametrize("width, height, scheme", SCREENS)
 def test_it_fits_the_screen(explore, tmp_path, width, height, scheme):
     explorer = explore(viewport={"width": width, "height": height}, color_scheme=scheme)
     seen(explorer, tmp_path / f"{width}x{height}-{scheme}.png", "picture")
     assert explorer.page.evaluate("document.documentElement.scrollWidth") <= width
+    # Nothing that is laid over the view hides another, and the mechanism has room.
+    boxes = [explorer.page.locator(f"#{name}").bounding_box() for name in ("legend", "viewing", "status")]
+    for one, other in itertools.combinations(boxes, 2):
+        beside = one["x"] + one["width"] <= other["x"] or other["x"] + other["width"] <= one["x"]
+        below = one["y"] + one["height"] <= other["y"] or other["y"] + other["height"] <= one["y"]
+        assert beside or below, (one, other)
+    stage = explorer.page.locator("#stage").bounding_box()
+    assert stage["height"] >= 300 and stage["width"] >= 300
+    assert sum(box["width"] * box["height"] for box in boxes) < 0.5 * stage["width"] * stage["height"]
     dark = explorer.page.evaluate("document.documentElement.dataset.theme") == "dark"
     assert dark == (scheme == "dark")

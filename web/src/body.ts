@@ -6,7 +6,6 @@ import { byId, element, grouped } from "./dom";
 import { lit } from "./materials";
 import type { BodyState } from "./state";
 import type { Description, Handles, WorkspaceBody } from "./types";
-import { factor } from "./units";
 
 /** How high the range of an angle is drawn, as a share of the size of the mechanism. */
 const HEIGHT = 0.9;
@@ -70,9 +69,10 @@ export class BodyMesh {
   /** Puts the body where its coordinates are positions, and tells how the others are drawn. */
   place(names: string[], description: Description, pose: Record<string, number>, handles: Handles, size: number): string {
     const directions: (Vector3 | null)[] = names.map((name) => {
-      const move = handles.moves[description.coordinates.findIndex((coordinate) => coordinate.name === name)];
+      const number = description.coordinates.findIndex((coordinate) => coordinate.name === name);
+      const [coordinate, move] = [description.coordinates[number], handles.moves[number]];
       const shift = new Vector3(...(move?.shift ?? [0, 0, 0]));
-      return move && Math.hypot(...move.turn) < 1e-6 && Math.abs(shift.length() - 1) < 1e-6 ? shift : null;
+      return coordinate?.quantity === "length" && Math.abs(shift.length() - 1) < 1e-6 ? shift : null;
     });
     const notes: string[] = [];
     const used = directions.filter((direction) => direction !== null);
@@ -90,8 +90,8 @@ export class BodyMesh {
     const [a, b, c] = columns as [Vector3, Vector3, Vector3];
     const at = new Vector3(...handles.at);
     names.forEach((name, i) => {
-      const { home, unit } = description.coordinates.find((coordinate) => coordinate.name === name)!;
-      at.addScaledVector(columns[i]!, -(pose[name] ?? home) * factor(unit));
+      const { home, si } = description.coordinates.find((coordinate) => coordinate.name === name)!;
+      at.addScaledVector(columns[i]!, -(pose[name] ?? home) * si);
     });
     this.mesh.matrix = new Matrix4().makeBasis(a, b, c).setPosition(at);
     this.mesh.matrixWorldNeedsUpdate = true;
@@ -144,7 +144,10 @@ export class BodyPanel {
 
   build({ coordinates }: Description): void {
     this.names = coordinates.map(({ name }) => name);
-    byId("body-panel").hidden = this.names.length < 3;
+    const none = this.names.length < 3;
+    byId("body-panel").hidden = none;
+    this.show.disabled = none;
+    this.show.parentElement!.title = none ? "A body needs three coordinates" : "";
     for (const select of this.axes) select.replaceChildren(...this.names.map((name) => element("option", { value: name }, name)));
   }
 

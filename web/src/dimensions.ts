@@ -3,6 +3,7 @@
 import { byId, element, numberIn, show } from "./dom";
 import { rounded } from "./pose";
 import type { Description, Dimension } from "./types";
+import { halfTurn } from "./units";
 
 export interface DimensionEvents {
   /** A dimension has new numbers; they are final when the pointer is let go, or a number is entered. */
@@ -42,13 +43,14 @@ export class DimensionPanel {
     this.rows.set(name, row);
     // A length may be zero at first: the slider then goes as far as the other lengths of its leg.
     const same = others.filter((other) => other.unit === unit).flatMap((other) => other.values.map(Math.abs));
-    const typical = unit === "deg" ? 90 : unit === "rad" ? 1.5 : unit === "" ? 1 : Math.max(...same, 0) || 1;
+    const turn = halfTurn(unit);
+    const typical = turn ? turn / 2 : unit === "" ? 1 : Math.max(...same, 0) || 1;
     return (parts.length ? parts : [""]).map((part, index) => {
       const [id, text] = part ? [`param-${name}.${part}`, `${label}.${part}`] : [`param-${name}`, label];
       const number = element("input", { type: "number", step: "any", id });
       const slider = element("input", { type: "range", step: "any", "aria-label": `${text}, slider` });
       const value = values[index] ?? 0;
-      const reach = unit === "deg" || unit === "rad" || unit === "" ? typical : Math.abs(value) || typical;
+      const reach = turn || unit === "" ? typical : Math.abs(value) || typical;
       [slider.min, slider.max, slider.value] = [String(value - reach), String(value + reach), String(value)];
       const report = (final: boolean) => {
         const all = row.numbers.map(numberIn);

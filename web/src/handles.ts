@@ -6,7 +6,6 @@ import {
 } from "three";
 import { lit } from "./materials";
 import type { Coordinate, Handles, Move } from "./types";
-import { factor } from "./units";
 import type { View } from "./view";
 
 /** Lengths, as shares of the size of the mechanism. */
@@ -62,9 +61,10 @@ export class HandleSet {
   /** Shows the handles of a pose. Those of the same coordinates are moved, and not made anew. */
   set(coordinates: Coordinate[], { at, moves }: Handles, size: number): void {
     const known = coordinates.flatMap((coordinate, i) => (moves[i] ? [{ coordinate, move: moves[i] }] : []));
-    const turns = ({ turn }: Move) => Math.hypot(...turn) > 1e-6;
-    const shifts = known.filter(({ move }) => !turns(move));
-    const wanted = known.map((one) => ({ moves: [one], turns: turns(one.move) }));
+    // A coordinate that shifts the platform may turn it too, by an angle that follows.
+    const turns = ({ coordinate }: { coordinate: Coordinate }) => coordinate.quantity === "angle";
+    const shifts = known.filter((one) => !turns(one));
+    const wanted = known.map((one) => ({ moves: [one], turns: turns(one) }));
     if (shifts.length > 1) wanted.push({ moves: shifts, turns: false });
     const key = JSON.stringify(wanted.map(({ moves, turns }) => [moves.map(({ coordinate }) => coordinate.name), turns]));
     if (key !== this.key) {
@@ -186,7 +186,7 @@ export class HandleSet {
     const now = this.point(handle, at, this.ray(event));
     if (!now) return;
     const values: Record<string, number> = {};
-    for (const { coordinate: { name, unit }, move } of handle.moves) {
+    for (const { coordinate: { name, si }, move } of handle.moves) {
       let change: number;
       if (handle.turns) {
         const axis = new Vector3(...move.turn).normalize();
@@ -196,7 +196,7 @@ export class HandleSet {
         const shift = new Vector3(...move.shift);
         change = now.clone().sub(from).dot(shift) / shift.lengthSq();
       }
-      values[name] = Number((start[name]! + change / factor(unit)).toPrecision(5));
+      values[name] = Number((start[name]! + change / si).toPrecision(5));
     }
     this.events.moved(values, final);
   }

@@ -4,6 +4,7 @@ import { byId, element, field, numberIn, short, show } from "./dom";
 import { COLOURS } from "./colours";
 import { rounded } from "./pose";
 import type { Counted, Description, Joint, Posture } from "./types";
+import { halfTurn } from "./units";
 
 export interface JointEvents {
   /** An actuated joint is to have this value; it is final when the slider is let go, or a number is entered. */
@@ -82,7 +83,7 @@ export class JointTable {
       if (value instanceof HTMLInputElement) show(value, now === undefined ? undefined : Number(short(now)));
       else value.textContent = now === undefined ? "" : short(now);
       const swept = joint.kind === "imaginary" ? (counted?.imaginary[number - first] ?? null) : null;
-      const turn = joint.unit === "deg" ? 180 : joint.unit === "rad" ? Math.PI : null;
+      const turn = halfTurn(joint.unit);
       const [low, high] = joint.limits ?? swept ?? (turn ? [joint.home - turn, joint.home + turn] : [joint.home - 1, joint.home + 1]);
       (slider ?? bar).title = joint.limits ? `limits ${field(low)} to ${field(high)} ${joint.unit}`
         : swept ? `over the workspace ${short(low)} to ${short(high)} ${joint.unit}` : "no limits";

@@ -18,6 +18,11 @@ export function connectLegend(highlight: (part: PartName | null) => void): void 
   byId("legend").append(...entries.values());
 }
 
+/** Where all legs move in one subspace, links are of no section. */
+export function nameLinks(oneSubspace: boolean): void {
+  entries.get("lower")!.querySelector("button")!.lastChild!.textContent = oneSubspace ? "Links" : PART_NAMES.lower;
+}
+
 /** Lists the parts that there are; the motions of the sections always are. */
 export function showParts(parts: Set<PartName>): void {
   for (const [part, entry] of entries) entry.hidden = part !== "motions" && !parts.has(part);

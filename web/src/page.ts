@@ -286,8 +286,10 @@ export class Page {
     const rebuilt = kinds || !this.description || names(this.description) !== names(description);
     this.description = description;
     const { name, lower, upper, intersection, lambda, mobility, imaginary_joints: imaginary } = description;
-    const motions = upper.dimension ? `${lower.name} and ${upper.name}, sharing a ${intersection.name}` : lower.name;
-    byId("summary").textContent = `Mobility ${mobility}, joint screws of rank ${lambda}: ${motions}; ${imaginary} imaginary joint${imaginary === 1 ? "" : "s"}`;
+    const shared = intersection.dimension ? `a ${intersection.name}` : "no motion";
+    const motions = upper.dimension ? `${lower.name} and ${upper.name}, sharing ${shared}` : lower.name;
+    const joints = imaginary ? `; ${imaginary} imaginary joint${imaginary === 1 ? "" : "s"}` : "";
+    byId("summary").textContent = `Mobility ${mobility}, joint screws of rank ${lambda}: ${motions}${joints}`;
     if (kinds) {
       document.title = `${name} – opm explorer`;
       byId("title").textContent = name;

@@ -16,8 +16,9 @@ export class PosePanel {
   build({ coordinates, dependent }: Description): void {
     this.rows = [];
     const rows = coordinates.map((coordinate) => {
-      const { name, unit, home } = coordinate;
-      const reach = unit === "deg" ? 90 : unit === "rad" ? 1.57 : Math.max(1, Math.abs(home));
+      const { name, unit, si, quantity, home } = coordinate;
+      // Until the grid is fitted: a quarter of a turn, or a decimetre.
+      const reach = quantity === "angle" ? Math.PI / 2 / si : Math.max(0.1 / si, Math.abs(home));
       const slider = element("input", { type: "range", step: "any", "aria-label": `${name}, slider` });
       [slider.min, slider.max, slider.value] = [String(home - reach), String(home + reach), String(home)];
       const number = element("input", { type: "number", step: "any", id: `pose-${name}` });

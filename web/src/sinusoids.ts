@@ -2,6 +2,7 @@
 
 import { byId, element, numberIn } from "./dom";
 import type { Coordinate } from "./types";
+import { halfTurn } from "./units";
 
 const PARTS = ["amplitude", "frequency", "phase"] as const;
 
@@ -35,7 +36,7 @@ export class Sinusoids {
   file(pose: Record<string, number>, units: { length: string; angle: string }): string {
     const lines = this.rows.map(({ coordinate: { name, home }, fields }) => {
       const [amplitude, frequency, phase] = fields.map((field) => numberIn(field) ?? 0) as [number, number, number];
-      const turned = units.angle === "rad" ? (phase * Math.PI) / 180 : phase;
+      const turned = (phase * (halfTurn(units.angle) ?? 180)) / 180;
       const offset = pose[name] ?? home;
       return amplitude && frequency > 0
         ? `${name} = { amplitude = ${amplitude}, frequency = ${frequency}, phase = ${turned}, offset = ${offset} }` : `${name} = ${offset}`;

@@ -13,6 +13,9 @@ export interface Problem {
 export interface Coordinate {
   name: string;
   unit: string;
+  /** The unit in SI. */
+  si: number;
+  quantity: "length" | "angle";
   home: number;
 }
 

@@ -1,8 +1,8 @@
-// The units of files.
+// Angles in the units of files.
 
-const FACTORS: Record<string, number> = { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, rad: 1, deg: Math.PI / 180 };
+const HALF_TURNS: Record<string, number> = { deg: 180, rad: Math.PI, mrad: 1e3 * Math.PI, urad: 1e6 * Math.PI };
 
-/** The SI value of one unit. */
-export function factor(unit: string): number {
-  return FACTORS[unit] ?? 1;
+/** Half a turn in a unit; nothing for a unit that is none of angles. */
+export function halfTurn(unit: string): number | undefined {
+  return HALF_TURNS[unit];
 }

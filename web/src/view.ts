@@ -4,7 +4,7 @@ import { AmbientLight, Box3, DirectionalLight, PerspectiveCamera, Scene, Vector3
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { PartName } from "./colours";
 import { Materials } from "./materials";
-import { showParts } from "./legend";
+import { nameLinks, showParts } from "./legend";
 import { Motions } from "./motions";
 import { Solids } from "./solids";
 import type { Description } from "./types";
@@ -52,6 +52,7 @@ export class View {
   setMechanism(description: Description): void {
     this.solids.set(description.bodies);
     this.motions.set(description);
+    nameLinks(!description.upper.dimension);
     showParts(this.solids.parts());
     this.draw();
   }

@@ -5,9 +5,9 @@ use crate::explorer::Explorer;
 use crate::scene::{self, Body};
 use crate::session::Reply;
 use crate::units::{shown, shown_range};
-use opm_core::TaskCoordinate;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::nalgebra::{Point3, Unit, Vector3};
+use opm_core::{Quantity, TaskCoordinate};
 use serde::Serialize;
 
 /// Most choices whose modes are listed: 256 modes. A mechanism with more has its home mode alone in the list.
@@ -41,6 +41,10 @@ struct Description<'a> {
 struct Coordinate {
     name: &'static str,
     unit: &'static str,
+    /// The unit in SI.
+    si: f64,
+    /// `length` or `angle`.
+    quantity: &'static str,
     home: f64,
 }
 
@@ -73,6 +77,11 @@ pub fn describe(explorer: &Explorer) -> Reply {
     let coordinate = |c: &TaskCoordinate| Coordinate {
         name: c.name,
         unit: units.symbol(c.quantity),
+        si: units.factor(c.quantity),
+        quantity: match c.quantity {
+            Quantity::Length => "length",
+            Quantity::Angle => "angle",
+        },
         home: shown(c.home, c.quantity, units),
     };
     let format = |mode| manipulator.format_mode(mode);
