@@ -5,6 +5,7 @@ mod poses;
 mod report;
 mod row;
 pub mod sizes;
+mod table;
 
 use crate::args::{AccuracyArgs, Output};
 use crate::failure::Failure;
@@ -46,26 +47,42 @@ pub struct Setting<'a> {
 }
 
 impl<'a> Setting<'a> {
+    fn new(
+        args: &AccuracyArgs,
+        loaded: &'a Loaded,
+        manipulator: &'a Manipulator,
+    ) -> Result<Self, Failure> {
+        let mode = load::mode(manipulator, &args.mode)?;
+        let length = args.length.map(Number::characteristic_length).transpose()?;
+        let length = characteristic_length(length, manipulator)?;
+        let model = Model::new(manipulator, loaded.file.family.as_ref(), args.errors);
+        let model = model.with_length(length);
+        let sizes = sizes::read(args, model.sources())?;
+        Ok(Self { loaded, model, sizes, mode })
+    }
+
     pub fn manipulator(&self) -> &'a Manipulator {
         self.model.manipulator()
     }
 }
 
-pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.mechanism, output)?;
-    let manipulator = loaded.compile()?;
-    let mode = load::mode(&manipulator, &args.mode)?;
-    let length = args.length.map(Number::characteristic_length).transpose()?;
-    let length = characteristic_length(length, &manipulator)?;
-    let model = Model::new(&manipulator, loaded.file.family.as_ref(), args.errors);
-    let model = model.with_length(length);
-    let sizes = sizes::read(args, model.sources())?;
-    let setting = Setting { loaded: &loaded, model, sizes, mode };
+/// Notes that there is nothing to add up.
+fn note_zero(args: &AccuracyArgs, output: &Output, setting: &Setting<'_>) {
     let sized = setting.sizes.iter().any(|&size| size > 0.0);
     if !sized && (args.poses.is_some() || args.clearance.is_none()) {
         output
             .note("all errors are zero: give their sizes with --actuators, --axes or --tolerances");
     }
+}
+
+pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
+    let loaded = load::open(&args.mechanism, output)?;
+    if let Some(vary) = &args.vary {
+        return table::run(args, &loaded, vary, output);
+    }
+    let manipulator = loaded.compile()?;
+    let setting = Setting::new(args, &loaded, &manipulator)?;
+    note_zero(args, output, &setting);
     if let Some(input) = &args.poses {
         return poses::run(args, input, output, &setting);
     }
@@ -78,7 +95,7 @@ pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
     unitless::note_pose(output, "--pose", &args.pose, &loaded, &manipulator);
     let (pose, checks) = args.pose.resolve_with_checks(&manipulator)?;
     let mut at = manipulator.solution();
-    let found = manipulator.inverse(&pose, mode, &mut at);
+    let found = manipulator.inverse(&pose, setting.mode, &mut at);
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
     let mut found = None;
     if reached {
@@ -88,6 +105,7 @@ pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
         let budget = Budget::new(&response, &setting.sizes);
         let sources = setting.model.sources();
         let allocation = args.clearance.map(|clearance| {
+            let length = setting.model.length();
             let mut allocation = Allocation::new(clearance.0, length, sources.len());
             allocation.add(&response, sources);
             allocation

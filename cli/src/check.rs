@@ -2,19 +2,37 @@
 
 use crate::args::{CheckArgs, Output};
 use crate::failure::Failure;
-use crate::load;
+use crate::load::{self, Loaded};
+use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch_steps};
+use crate::runs::{self, Cell};
 use crate::text::{Table, count};
 use opm_check::{Certificate, Comparison, Options, check};
+use opm_workspace::Progress;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 pub fn run(args: &CheckArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
+    let progress = interruptible()?;
+    if let Some(vary) = &args.vary {
+        return table(args, &loaded, vary, output, &progress);
+    }
+    let certificate = certify(args, &loaded, output, &progress)?;
+    output.print(&as_json(&certificate), text(&certificate))?;
+    broken(&certificate, &loaded).map_or(Ok(()), |problem| Err(Failure::work(problem)))
+}
+
+fn certify(
+    args: &CheckArgs,
+    loaded: &Loaded,
+    output: &Output,
+    progress: &Progress,
+) -> Result<Certificate, Failure> {
     let manipulator = loaded.compile()?;
     let options = Options { samples: args.samples, seed: args.seed };
-    let (progress, steps) = (interruptible()?, AtomicU64::new(0));
+    let steps = AtomicU64::new(0);
     let work = || {
         check(&manipulator, &options, |done| {
             steps.store(done, Ordering::Relaxed);
@@ -23,16 +41,38 @@ pub fn run(args: &CheckArgs, output: &Output) -> Result<(), Failure> {
     };
     let done = || steps.load(Ordering::Relaxed);
     let found = watch_steps(output, "checking", Some(options.steps()), done, work);
-    let certificate = found.ok_or_else(|| Failure::interrupted("interrupted"))?;
-    output.print(&as_json(&certificate), text(&certificate))?;
-    let mut broken = certificate.comparisons.iter().filter(|comparison| !comparison.holds());
-    match broken.next() {
-        None => Ok(()),
-        Some(first) => {
-            let problem = first.problem.as_deref().unwrap_or_default();
-            Err(Failure::work(format!("{}: {} does not hold: {problem}", loaded.label, first.name)))
-        }
-    }
+    found.ok_or_else(|| Failure::interrupted("interrupted"))
+}
+
+/// The first thing that does not hold.
+fn broken(certificate: &Certificate, loaded: &Loaded) -> Option<String> {
+    let first = certificate.comparisons.iter().find(|comparison| !comparison.holds())?;
+    let problem = first.problem.as_deref().unwrap_or_default();
+    Some(format!("{}: {} does not hold: {problem}", loaded.label, first.name))
+}
+
+/// The certificate for each value of a number of the mechanism file.
+fn table(
+    args: &CheckArgs,
+    loaded: &Loaded,
+    vary: &GridAxis,
+    output: &Output,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    let silent = output.silent();
+    let mut first = None;
+    runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
+        let certificate = certify(args, changed, &silent, progress)?;
+        first = first.take().or_else(|| broken(&certificate, changed));
+        let worst = |found: &Comparison| {
+            let worst = found.worst.unwrap_or(f64::NAN);
+            let shown = if worst.is_finite() { format!("{worst:.1e}") } else { "-".to_owned() };
+            Cell::new(found.name, worst, shown)
+        };
+        let holds = Cell::answer("holds", certificate.holds());
+        Ok([holds].into_iter().chain(certificate.comparisons.iter().map(worst)).collect())
+    })?;
+    first.map_or(Ok(()), |problem| Err(Failure::work(problem)))
 }
 
 fn as_json(certificate: &Certificate) -> Value {

@@ -1,5 +1,7 @@
 //! `opm path`: a path between two poses without a singularity.
 
+mod table;
+
 use crate::args::{Format, Output, PathArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
@@ -10,7 +12,7 @@ use crate::target::Target;
 use crate::text::{self, Table, count, short};
 use crate::unitless;
 use crate::workspace::{Work, threads};
-use opm_core::manipulator::Manipulator;
+use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::file::FileUnits;
 use opm_workspace::{AspectPath, Aspects, NoPath, aspect_at, find_path};
 use serde_json::{Map, Value, json};
@@ -32,40 +34,21 @@ pub fn run(args: &PathArgs, output: &Output) -> Result<(), Failure> {
         ends_in_csv(path)?;
     }
     let loaded = load::open(&args.mechanism, output)?;
-    let manipulator = Arc::new(loaded.compile()?);
-    let mode = load::mode(&manipulator, &args.mode)?;
-    let ends = [("--from", &args.from), ("--to", &args.to)].map(|(flag, pose)| {
-        unitless::note_pose(output, flag, pose, &loaded, &manipulator);
-        pose.resolve_for(flag, &manipulator)
-    });
-    let [from, to] = ends;
-    let ends = [from?, to?];
-    let values = args.grid.iter().flat_map(GridAxis::ends);
-    unitless::note_ranges(output, "--grid", (&loaded, &manipulator), values);
+    if let Some(vary) = &args.vary {
+        return table::run(args, &loaded, vary, output);
+    }
+    let query = Query::new(args, &loaded, Arc::new(loaded.compile()?))?;
+    query.note(output);
     if let Some(path) = file {
         loaded.refuse_as_output(path, &[])?;
     }
     let target = file.map(Target::create).transpose()?;
     let (progress, pool) = (interruptible()?, threads(args.threads)?);
-    let work = Work { output, pool: &pool, progress: &progress };
-    let aspects = work.aspects(&manipulator, mode, &args.grid, loaded.file.units)?;
-    let find = || {
-        let ends = ends.each_ref().map(|pose| &**pose);
-        find_path(&manipulator, mode, &aspects, ends, args.duration, &progress)
-    };
-    let found = match watch(output, "searching", None, || progress.done(), find) {
-        Err(NoPath::Cancelled(_)) => {
-            return Err(Failure::interrupted("interrupted while searching"));
-        }
-        Err(NoPath::End { end, problem }) => {
-            let flag = if end == "the start" { "--from" } else { "--to" };
-            return Err(Failure::flag(flag, format!("the pose is {problem}")));
-        }
-        found => found,
-    };
-    let labels = ends.each_ref().map(|pose| aspect_at(&manipulator, mode, &aspects, pose));
-    let answer =
-        Answer { loaded: &loaded, manipulator: &manipulator, aspects: &aspects, labels, found };
+    let answer = query.search(&Work { output, pool: &pool, progress: &progress })?;
+    if let Err(NoPath::End { end, problem }) = &answer.found {
+        let flag = if *end == "the start" { "--from" } else { "--to" };
+        return Err(Failure::flag(flag, format!("the pose is {problem}")));
+    }
     let path = match (&answer.found, &args.output) {
         (Err(none), Some(_)) => {
             return Err(Failure::work(format!("{}: no path: {none}", loaded.label)));
@@ -95,10 +78,61 @@ fn ends_in_csv(path: &Path) -> Result<(), Failure> {
     Err(Failure::flag("--output", problem))
 }
 
+/// What is asked of one mechanism.
+struct Query<'a> {
+    args: &'a PathArgs,
+    loaded: &'a Loaded,
+    manipulator: Arc<Manipulator>,
+    mode: Mode,
+    /// The poses of --from and --to.
+    ends: [Vec<f64>; 2],
+}
+
+impl<'a> Query<'a> {
+    fn new(
+        args: &'a PathArgs,
+        loaded: &'a Loaded,
+        manipulator: Arc<Manipulator>,
+    ) -> Result<Self, Failure> {
+        let mode = load::mode(&manipulator, &args.mode)?;
+        let from = args.from.resolve_for("--from", &manipulator)?;
+        let to = args.to.resolve_for("--to", &manipulator)?;
+        Ok(Self { args, loaded, manipulator, mode, ends: [from, to] })
+    }
+
+    /// Notes numbers without a unit that look misread.
+    fn note(&self, output: &Output) {
+        let Self { args, loaded, manipulator, .. } = self;
+        for (flag, pose) in [("--from", &args.from), ("--to", &args.to)] {
+            unitless::note_pose(output, flag, pose, loaded, manipulator);
+        }
+        let values = args.grid.iter().flat_map(GridAxis::ends);
+        unitless::note_ranges(output, "--grid", (*loaded, &**manipulator), values);
+    }
+
+    fn search(&self, work: &Work<'_>) -> Result<Answer<'_>, Failure> {
+        let Self { args, loaded, manipulator, mode, ends } = self;
+        let progress = work.progress;
+        let aspects = work.aspects(manipulator, *mode, &args.grid, loaded.file.units)?;
+        let find = || {
+            let ends = ends.each_ref().map(|pose| &**pose);
+            find_path(manipulator, *mode, &aspects, ends, args.duration, progress)
+        };
+        let found = match watch(work.output, "searching", None, || progress.done(), find) {
+            Err(NoPath::Cancelled(_)) => {
+                return Err(Failure::interrupted("interrupted while searching"));
+            }
+            found => found,
+        };
+        let labels = ends.each_ref().map(|pose| aspect_at(manipulator, *mode, &aspects, pose));
+        Ok(Answer { loaded, manipulator, aspects, labels, found })
+    }
+}
+
 struct Answer<'a> {
     loaded: &'a Loaded,
     manipulator: &'a Manipulator,
-    aspects: &'a Aspects,
+    aspects: Aspects,
     /// The aspects of both ends, where the grid tells.
     labels: [Option<u32>; 2],
     found: Result<AspectPath, NoPath>,

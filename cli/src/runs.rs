@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 const NONE: &str = "-";
 
 /// One result of a run.
+#[derive(Clone)]
 pub struct Cell {
     /// Its name in JSON, and the header of its column.
     pub name: String,

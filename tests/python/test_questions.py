@@ -108,6 +108,51 @@ def test_every_command_has_a_table_of_a_varied_number(ask, tmp_path):
     assert [row[name] for name in home["joints"]] == pytest.approx(list(home["joints"].values()), abs=1e-12)
 
 
+def test_accuracy_has_a_table_of_a_varied_number(ask):
+    pose, grid = ["--pose", "x=-130mm,y=20mm,xi=15deg"], ["--grid", "x=-0.13:0.13:5", "--grid", "xi=15deg"]
+    sizes = ["--axes", "0.05mm,0.02deg", "--clearance", "20um"]
+    for where in (pose, grid):
+        runs = ask("accuracy", MECHANISM, "--vary", "h=120mm:160mm:3", *sizes, *where)["runs"]
+        reached = set()
+        for run in runs:
+            alone = ask("accuracy", MECHANISM, "--set", f"h={run['value']!r}", *sizes, *where)
+            reached.add(run["reachable"])
+            assert run["reachable"] == alone["reachable"]
+            values = (run["error.x"], run["worst.length"], run["misfit.angle"], run["uniform.length"])
+            if not run["reachable"]:
+                assert values == (None, None, None, None)
+                continue
+            value = (lambda found: found["value"]) if where == grid else (lambda found: found)
+            misfits = [value(joint["angle"]) for joint in alone["misfit"].values()]
+            uniform = alone["clearance"]["uniform"]["length"]
+            expected = (value(alone["pose_error"]["x"]), value(alone["worst"]["length"]), max(misfits), uniform)
+            assert values == expected and max(misfits) > 0.0
+        assert len(reached) > 1
+
+
+def test_paths_have_a_table_of_a_varied_number(ask):
+    ends = ["--from", "x=-130mm,y=20mm,xi=15deg", "--to", "x=60mm,xi=15deg"]
+    where = [*ends, "--grid", "x=-0.16:0.16:17", "--grid", "y=-0.1:0.1:11", "--grid", "xi=15deg"]
+    joined = []
+    for run in ask("path", MECHANISM, "--vary", "h=120mm:160mm:3", *where)["runs"]:
+        joined.append(run["joined"])
+        if not run["joined"]:
+            assert "the start is out of reach" in run["reason"] and run["clearance"] is None
+            continue
+        alone = ask("path", MECHANISM, "--set", f"h={run['value']!r}", *where)
+        assert (run["from"], run["to"], run["aspects"]) == tuple(alone["aspects"][k] for k in ("from", "to", "number"))
+        assert (run["poses"], run["clearance"], run["reason"]) == (len(alone["t"]), alone["clearance"], None)
+    assert set(joined) == {True, False}
+
+
+def test_certificates_have_a_table_of_a_varied_number(ask):
+    (run,) = ask("check", MECHANISM, "--samples", "5", "--vary", "h=130mm:130mm:1")["runs"]
+    alone = ask("check", MECHANISM, "--samples", "5", "--set", "h=130mm")
+    assert run["holds"] and alone["holds"]
+    assert all(run[found["name"]] == found["worst"] for found in alone["comparisons"])
+    assert run["closure"] > 0.0
+
+
 def test_values_that_do_not_assemble_are_rows_that_say_so(ask):
     runs = ask("workspace", MECHANISM, "--vary", "h=120mm:920mm:2", *GRID)["runs"]
     assert "problem" not in runs[0]
@@ -123,6 +168,7 @@ def test_values_that_do_not_assemble_are_rows_that_say_so(ask):
         (["--set", "h=120mm", "--set", "h=130mm"], "h is given twice"),
         (["--set", "limits.S=0.3:-0.3"], "limits.S"),
         (["--vary", "hh=0.1:0.2:3"], "did you mean `h`"),
+        (["--vary", "h=0.1:0.2"], "NAME=MIN:MAX:COUNT"),
         (["--vary", "h=0.1:0.2:0"], "0 values, expected 1"),
         (["--coordinates", "tilt"], "possible values: euler-angles, tilt-torsion"),
         (["--explain", "--kind", "upper"], "--explain: is of poses"),

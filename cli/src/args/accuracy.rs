@@ -47,6 +47,7 @@ Examples:
   opm accuracy plano-spherical-5dof --axes 0.05mm,0.02deg --grid x=-0.1:0.1:11 \\
       --grid xi=0:30deg:4 -o field.csv
   opm accuracy plano-spherical-5dof --axes 0.05mm,0.02deg --errors links --samples 1000
+  opm accuracy plano-spherical-5dof --pose xi=15deg --axes 0.05mm,0.02deg --vary h=0.1:0.16:7
   opm accuracy planar-3rrr --poses poses.csv --actuators 20urad -o errors.csv")]
 pub struct AccuracyArgs {
     /// The mechanism.
@@ -103,6 +104,15 @@ pub struct AccuracyArgs {
     /// Characteristic length, by which lengths and angles are compared, instead of the spread of the joint axes
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
+    /// The errors for each of these values of a number that --set takes, as a table; `misfit` is the largest of all joints,
+    /// and with --clearance `uniform` is one tolerance for all axes
+    #[arg(
+        long,
+        value_name = "NAME=MIN:MAX:COUNT",
+        allow_hyphen_values = true,
+        conflicts_with_all = ["poses", "samples", "output"]
+    )]
+    pub vary: Option<GridAxis>,
     /// Number of threads of --grid and --samples, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,

@@ -1,6 +1,7 @@
 //! Arguments of `opm check`.
 
 use super::MechanismArgs;
+use crate::pose::GridAxis;
 
 /// Hold a mechanism's closed forms to independent computations: a certificate
 ///
@@ -19,7 +20,8 @@ use super::MechanismArgs;
 Examples:
   opm check plano-spherical-5dof
   opm check my-mechanism.toml --samples 2000 --seed 7
-  opm check my-mechanism.toml --tolerance 0.5mm --format json")]
+  opm check my-mechanism.toml --tolerance 0.5mm --format json
+  opm check plano-spherical-5dof --vary h=100mm:160mm:4")]
 pub struct CheckArgs {
     /// The mechanism.
     #[command(flatten)]
@@ -30,4 +32,7 @@ pub struct CheckArgs {
     /// Seed of the random poses: the same one gives the same certificate
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
+    /// Check for each of these values of a number that --set takes, and print a table of the worst differences
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
+    pub vary: Option<GridAxis>,
 }

@@ -24,7 +24,9 @@ use std::path::PathBuf;
 Examples:
   opm path five-bar --from x=-100mm,y=300mm --to x=100mm,y=250mm
   opm path planar-3rpr --from x=0,y=0 --to x=-14.9mm,y=1.6mm,theta=-43deg -o path.csv
-  opm trajectory planar-3rpr --motion path.csv -o play.mcap")]
+  opm trajectory planar-3rpr --motion path.csv -o play.mcap
+  opm path plano-spherical-5dof --from x=-0.1 --to x=0.05 --grid x=-0.2:0.2:21 \\
+      --vary h=100mm:160mm:4")]
 pub struct PathArgs {
     /// The mechanism.
     #[command(flatten)]
@@ -44,6 +46,14 @@ pub struct PathArgs {
     /// Time that the path takes, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds, allow_hyphen_values = true)]
     pub duration: f64,
+    /// Look for a path for each of these values of a number that --set takes, and print a table
+    #[arg(
+        long,
+        value_name = "NAME=MIN:MAX:COUNT",
+        allow_hyphen_values = true,
+        conflicts_with = "output"
+    )]
+    pub vary: Option<GridAxis>,
     /// Output file for the table of poses; - prints it
     #[arg(short, long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
