@@ -3,7 +3,7 @@
 use crate::args::{MeasureArgs, Output, SectionName};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::pose::{GridAxis, OverAxis};
+use crate::pose::{GridAxis, OverAxis, flag_value};
 use crate::progress::{interruptible, watch, watch_boxes};
 use crate::runs::{self, Cell};
 use crate::text::{self, Table, count, short};
@@ -44,7 +44,7 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     let pool = threads(args.threads)?;
     let ends = args.over.iter().flat_map(OverAxis::ends);
     unitless::note_ranges(output, "--over", (&loaded, &manipulator), ends);
-    let domain = domain(args, output, &manipulator, modes, &pool, &progress)?;
+    let domain = domain(args, output, (&loaded, &manipulator), modes, &pool, &progress)?;
     let goal = Goal { tolerance: args.tolerance, budget: args.budget };
     let before = progress.done();
     let start = Instant::now();
@@ -81,7 +81,7 @@ fn table(
     runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
         let manipulator = changed.compile()?;
         let modes = modes(&args.mode, &manipulator)?;
-        let domain = domain(args, &silent, &manipulator, modes, &pool, &progress)?;
+        let domain = domain(args, &silent, (changed, &manipulator), modes, &pool, &progress)?;
         let found = pool.install(|| measure(&manipulator, &domain, modes, &goal, &progress));
         if found.stop == Stop::Cancelled {
             return Err(Failure::interrupted("interrupted"));
@@ -110,7 +110,7 @@ fn table(
 fn domain(
     args: &MeasureArgs,
     output: &Output,
-    manipulator: &Manipulator,
+    (loaded, manipulator): (&Loaded, &Manipulator),
     modes: Modes,
     pool: &ThreadPool,
     progress: &Progress,
@@ -129,10 +129,16 @@ fn domain(
     let (over, beyond) = watch(output, "fitting ranges", None, || progress.done(), find)
         .map_err(|Cancelled| Failure::interrupted("interrupted while fitting ranges"))?;
     if over.len() > given.len() {
-        // Flags in SI, so that the same run can be repeated.
-        let flags = over.iter().map(|CoordinateRange { name, min, max }| match min == max {
-            true => format!("--over {name}={min}"),
-            false => format!("--over {name}={min}:{max}"),
+        let flags = over.iter().map(|CoordinateRange { name, min, max }| {
+            let of = coordinates.iter().find(|c| c.name == *name);
+            let shown = |end: f64| {
+                of.map_or(end.to_string(), |c| flag_value(end, c.quantity, loaded.file.units))
+            };
+            let [low, high] = [min, max].map(|&end| shown(end));
+            match min == max {
+                true => format!("--over {name}={low}"),
+                false => format!("--over {name}={low}:{high}"),
+            }
         });
         output.note(format_args!("measured over {}", flags.collect::<Vec<_>>().join(" ")));
     }

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::load;
 use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
 use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
@@ -71,10 +72,8 @@ fn unknown(given: &Path, label: &str) -> Failure {
     let names: Vec<_> = examples::MOTIONS.iter().map(|example| example.name).collect();
     // A bare word is more likely a name than a path.
     if given.extension().is_none() && given.components().count() == 1 {
-        let names = names.join(", ");
-        return Failure::work(format!(
-            "{label}: no such file, and no such motion; there are {names}"
-        ));
+        let expected = expected_one_of(label, &names);
+        return Failure::work(format!("{label}: no such file, and no such motion; {expected}"));
     }
     Failure::work(format!("{label}: no such file"))
 }

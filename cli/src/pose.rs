@@ -480,6 +480,16 @@ pub fn find(name: &str, coordinates: &[TaskCoordinate]) -> Result<usize, Misread
     })
 }
 
+/// A value in SI as a flag takes it: in these units if few digits are exactly this value, otherwise in SI.
+pub fn flag_value(value: f64, quantity: Quantity, units: FileUnits) -> String {
+    /// Nanometres, and millionths of degrees.
+    const DIGITS: f64 = 1e6;
+    let rounded = (value / units.factor(quantity) * DIGITS).round() / DIGITS + 0.0;
+    let text = format!("{rounded}{}", units.symbol(quantity));
+    let read = text.parse().ok().and_then(|number: Number| number.value_of("", quantity).ok());
+    if read == Some(value) { text } else { format!("{value}{}", quantity.unit()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -493,6 +503,23 @@ mod tests {
     fn pose(text: &str) -> Result<Vec<f64>, String> {
         let pose: Pose = text.parse().map_err(|error: Misread| error.to_string())?;
         pose.fill(vec![0.5, 0.25], &coordinates()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn values_of_flags_are_read_back_exactly() {
+        let file = FileUnits { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
+        for (value, shown) in [
+            (0.0, "0deg"),
+            (-std::f64::consts::PI, "-180deg"),
+            (-1.7, "-1.7rad"),
+            (0.1 + 0.2, "0.30000000000000004rad"),
+        ] {
+            let text = flag_value(value, Quantity::Angle, file);
+            assert_eq!(text, shown);
+            let read = text.parse::<Number>().unwrap().value_of("", Quantity::Angle);
+            assert_eq!(read, Ok(value));
+        }
+        assert_eq!(flag_value(0.23, Quantity::Length, file), "230mm");
     }
 
     #[test]

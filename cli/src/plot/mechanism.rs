@@ -21,7 +21,7 @@ use opm_interference::{Distances, Interference};
 use opm_plot::{Color, Drawing, Heading, Named, Steps, Unit, ViewFigure};
 use std::collections::BTreeSet;
 
-/// Differences below this are noise of the arithmetic, in metres.
+/// Values below this are noise of the arithmetic, in metres or radians.
 const NOISE: f64 = 1e-9;
 
 /// Draws a mechanism at a pose, or as it was assembled.
@@ -140,6 +140,8 @@ fn pose_line(loaded: &Loaded, manipulator: &Manipulator, solution: &Solution) ->
     let units = loaded.file.units;
     let coordinates = manipulator.task_coordinates().iter().zip(solution.pose());
     let pose = coordinates.map(|(c, &value)| {
+        // What is only rounding is zero.
+        let value = if value.abs() <= NOISE { 0.0 } else { value };
         let value = value_label(value / units.factor(c.quantity));
         format!("{} = {value} {}", c.name, units.symbol(c.quantity))
     });

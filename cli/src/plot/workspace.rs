@@ -65,7 +65,11 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
         if wanted(PanelName::Imaginary) && slices.is_none() {
             return Err(Failure::work(format!("{}: {hint}", source.label)));
         }
-        output.note(format_args!("{}: {hint}", source.label));
+        // A mechanism in one subspace has none to record.
+        let none = source.manipulator().is_some_and(|known| known.imaginary().is_empty());
+        if wanted(PanelName::Imaginary) || !none {
+            output.note(format_args!("{}: {hint}", source.label));
+        }
     }
     if !args.panels.is_empty() && !wanted(PanelName::Imaginary) {
         cloud = None;

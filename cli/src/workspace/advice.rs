@@ -1,7 +1,7 @@
 //! Notes and warnings about a workspace: options that may be a mistake, and flags that help.
 
 use crate::args::Output;
-use crate::pose::Number;
+use crate::pose::flag_value;
 use crate::text::count;
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
@@ -94,21 +94,11 @@ fn fewer(kind: WorkspaceKind, grid: &Grid) -> Option<String> {
 /// The flags for a grid, in these units.
 pub fn grid_flags(grid: &Grid, units: FileUnits) -> String {
     let flag = |(Axis { name, min, max, count }, c): (&Axis, &Coordinate)| {
-        let end = |value: &f64| in_unit(*value, c.quantity, units);
+        let end = |value: &f64| flag_value(*value, c.quantity, units);
         match count {
             1 => format!("--grid {name}={}", end(min)),
             _ => format!("--grid {name}={}:{}:{count}", end(min), end(max)),
         }
     };
     grid.axes().iter().zip(grid.coordinates()).map(flag).collect::<Vec<_>>().join(" ")
-}
-
-/// A value as a flag takes it: in these units if few digits are exactly this value, otherwise in SI.
-fn in_unit(value: f64, quantity: Quantity, units: FileUnits) -> String {
-    /// Nanometres, and millionths of degrees.
-    const DIGITS: f64 = 1e6;
-    let rounded = (value / units.factor(quantity) * DIGITS).round() / DIGITS + 0.0;
-    let text = format!("{rounded}{}", units.symbol(quantity));
-    let read = text.parse().ok().and_then(|number: Number| number.value_of("", quantity).ok());
-    if read == Some(value) { text } else { value.to_string() }
 }

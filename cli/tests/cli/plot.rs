@@ -330,6 +330,10 @@ fn what_is_not_stored_can_be_recorded() {
     let (run, svg) = plot(&folder, &file, &["--quiet"]);
     assert_eq!(run.stderr, "");
     assert_legible(&svg);
+    // In one subspace there are no imaginary joints to record.
+    let args = ["workspace", "planar-3rpr", "-o", &file, "-q", "--grid", "x=0:20mm:9"];
+    opm(&args).text();
+    assert!(!plot(&folder, &file, &[]).0.stderr.contains("imaginary"));
 }
 
 /// The largest disc inside is in the recording, and its picture has it with its numbers.
@@ -595,6 +599,16 @@ fn a_mechanism_is_drawn_where_its_joints_are() {
             named(named(document.root_element(), "panel", "from above"), "text", name);
         }
     }
+}
+
+/// Home of the reference point is computed, and is zero but for rounding.
+#[test]
+fn a_coordinate_that_is_only_rounding_is_zero() {
+    let folder = Folder::new();
+    let (_, svg) = plot(&folder, "schoenflies-lift-4dof", &[]);
+    let document = Document::parse(&svg).unwrap();
+    let home = texts(&document).into_iter().find(|text| text.starts_with("at home: "));
+    assert_eq!(home, Some("at home: x = 0 mm, y = 480 mm, phi = 0 deg, z = −150 mm"));
 }
 
 #[test]

@@ -369,7 +369,9 @@ fn cells_out_of_reach_are_empty() {
 fn wrong_usage_names_the_flag() {
     let folder = Folder::new();
     trajectory(PLANO, "no-such-motion", &[])
-        .fails_with_one_line(1, &["no-such-motion", "no such motion; there are", SINUSOIDS]);
+        .fails_with_one_line(1, &["no-such-motion", "no such motion; expected one of", SINUSOIDS]);
+    trajectory(PLANO, "plano-sperical-sinusoids", &[])
+        .fails_with_one_line(1, &["no such motion; did you mean `plano-spherical-sinusoids`"]);
     trajectory(PLANO, "none.toml", &[]).fails_with_one_line(1, &["none.toml: no such file"]);
     for rate in ["0", "-1", "nan", "fast", "1e10"] {
         trajectory(PLANO, SINUSOIDS, &["--rate", rate]).fails(2, &["--rate"]);
