@@ -665,60 +665,50 @@ def test_a_sum_of_sinusoids_is_followed(explore, opm, tmp_path):
     assert float(explorer.value("pose-x")) == pytest.approx(15, abs=1e-4)
 
 
-def test_the_platform_is_dragged_in_the_view(explore):
-    explorer = explore()
+def handles(explorer):
+    """A place on each handle in the view, by the names of the coordinates that it moves."""
     canvas = explorer.page.locator("#view canvas")
     box = canvas.bounding_box()
     found = {}
     for y in range(int(0.3 * box["height"]), int(0.75 * box["height"]), 7):
         for x in range(int(0.25 * box["width"]), int(0.8 * box["width"]), 12):
             explorer.page.mouse.move(box["x"] + x, box["y"] + y)
-            found.setdefault(canvas.get_attribute("title"), (box["x"] + x, box["y"] + y))
-    assert {f"Drag to change {name}" for name in ("x", "y", "zeta", "xi", "psi", "x, y")} <= set(found)
+            title = canvas.get_attribute("title")
+            if title:
+                found.setdefault(title.removeprefix("Drag to change "), (box["x"] + x, box["y"] + y))
+    return found
+
+
+def drag(explorer, place):
+    """Drags what is at a place of the view to the right, the platform being at home."""
+    explorer.page.click("#home")
+    explorer.ready()
+    x, y = place
+    explorer.page.mouse.move(x, y)
+    explorer.page.mouse.down()
+    explorer.page.mouse.move(x + 20, y + 4, steps=4)
+    explorer.page.mouse.up()
+    explorer.ready()
+
+
+def test_the_platform_is_dragged_in_the_view(explore):
+    explorer = explore()
+    found = handles(explorer)
+    assert {"x", "y", "zeta", "xi", "psi", "x, y"} <= set(found)
     for names in ("x", "zeta", "x, y"):
         explorer.page.click("#home")
         explorer.ready()
         drawn = explorer.bodies()
-        x, y = found[f"Drag to change {names}"]
-        explorer.page.mouse.move(x, y)
-        explorer.page.mouse.down()
-        explorer.page.mouse.move(x + 20, y + 4, steps=4)
-        explorer.page.mouse.up()
-        explorer.ready()
+        drag(explorer, found[names])
         moved = [name for name in ("x", "y", "zeta", "xi", "psi") if float(explorer.value(f"pose-{name}")) != 0]
         assert moved == names.split(", ")
         assert explorer.bodies() != drawn
         # x is to the right in the first view.
         assert "x" not in moved or float(explorer.value("pose-x")) > 0
     # Without handles, the same drag turns the view.
-    explorer.page.click("#home")
     explorer.page.uncheck("#handles")
-    explorer.page.mouse.move(x, y)
-    explorer.page.mouse.down()
-    explorer.page.mouse.move(x + 20, y + 4, steps=4)
-    explorer.page.mouse.up()
-    explorer.ready()
+    drag(explorer, found[names])
     assert explorer.value("pose-x") == "0"
-
-
-def dragged(explorer, name):
-    """Drags the handle of a coordinate; returns how far that moves it, in the unit of the file."""
-    canvas = explorer.page.locator("#view canvas")
-    box = canvas.bounding_box()
-    before = float(explorer.value(f"pose-{name}"))
-    places = ((x, y) for y in range(30, 80, 1) for x in range(20, 85, 1))
-    for across, down in places:
-        at = [box["x"] + 0.01 * across * box["width"], box["y"] + 0.01 * down * box["height"]]
-        explorer.page.mouse.move(*at)
-        if canvas.get_attribute("title") == f"Drag to change {name}":
-            break
-    else:
-        raise AssertionError(f"no handle of {name}")
-    explorer.page.mouse.down()
-    explorer.page.mouse.move(at[0] + 12, at[1] + 2, steps=3)
-    explorer.page.mouse.up()
-    explorer.ready()
-    return float(explorer.value(f"pose-{name}")) - before
 
 
 def test_every_unit_of_files_is_understood(browser, opm, tmp_path):
@@ -731,20 +721,24 @@ def test_every_unit_of_files_is_understood(browser, opm, tmp_path):
         mechanism.write_text(text.replace('length = "mm", angle = "deg"', f'length = "{length}", angle = "{angle}"'))
         subprocess.run([opm, "explore", mechanism, "--quiet", "-o", page], check=True)
         explorer = Explorer(browser, page)
-        moved[length] = dragged(explorer, "x"), dragged(explorer, "theta")
-        # A joint without limits is shown within half a turn about home, where A1 is zero.
-        mark = explorer.page.locator("tr:has([id='joint-A1']) .bar b")
-        angle_now = float(explorer.text("joint-A1"))
+        found, moved[length] = handles(explorer), []
+        for name in ("x", "theta"):
+            home = float(explorer.value(f"pose-{name}"))
+            drag(explorer, found[name])
+            moved[length].append(float(explorer.value(f"pose-{name}")) - home)
+        # A joint without limits is shown within half a turn about home, where B1 is zero.
+        mark = explorer.page.locator("tr:has([id='joint-B1']) .bar b")
+        angle_now = float(explorer.text("joint-B1"))
         shown = mark.evaluate("mark => parseFloat(mark.style.left)")
         assert shown == pytest.approx(50 + 25 * angle_now / quarter, abs=0.01) and abs(shown - 50) > 0.05
+        turned = float(explorer.value("pose-theta"))
         # The phase of a sinusoid is in degrees in the page, and in the unit of the file in the motion.
-        home = explorer.value("pose-theta")
         explorer.choose("motion", "sinusoids")
         explorer.fill(sine_x_amplitude=0, sine_y_amplitude=0, sine_theta_amplitude=10, sine_theta_phase=90)
         explorer.page.locator("#time").fill("0.01")
         explorer.page.locator("#time").fill("0")
         explorer.ready()
-        assert float(explorer.value("pose-theta")) == pytest.approx(float(home) + 10, abs=1e-3)
+        assert float(explorer.value("pose-theta")) == pytest.approx(turned + 10, abs=1e-3)
         explorer.close()
     assert abs(moved["mm"][0]) > 0.1 and moved["um"][0] == pytest.approx(moved["mm"][0], rel=1e-3)
     assert abs(moved["mm"][1]) > 0.1 and moved["um"][1] == pytest.approx(math.radians(1e3 * moved["mm"][1]), rel=1e-3)
@@ -755,7 +749,8 @@ def test_a_platform_that_turns_as_it_is_shifted_has_arrows(browser, opm, tmp_pat
     page = tmp_path / "five-bar.html"
     subprocess.run([opm, "explore", "five-bar", "--quiet", "-o", page], check=True)
     explorer = Explorer(browser, page)
-    assert dragged(explorer, "x") > 1
+    drag(explorer, handles(explorer)["x"])
+    assert float(explorer.value("pose-x")) > 1
     assert explorer.page.locator("#body-show").is_disabled()
     assert explorer.text("legend").splitlines()[1] == "Links"
     assert explorer.text("summary") == "Mobility 2, joint screws of rank 3: planar"
