@@ -48,7 +48,7 @@ kills: $(TESTS_VENV)/made ## Kill a thousand runs at random moments, and check w
 # is needed; checks of overflow are on.
 FUZZ_SECONDS ?= 60
 fuzz: ## Fuzz each target for a minute; needs a nightly toolchain and cargo-fuzz
-	for target in mechanism motion joint_list recording; do \
+	for target in number flags mechanism motion joint_list recording foreign; do \
 	  $(CARGO) +nightly fuzz run -s none --debug-assertions $$target -- \
 	    -max_total_time=$(FUZZ_SECONDS) -timeout=20 -rss_limit_mb=4096 || exit 1; \
 	done

@@ -100,6 +100,9 @@ pub struct Output {
     /// No progress, notes or warnings: only results and errors
     #[arg(short, long, global = true)]
     pub quiet: bool,
+    /// Results are made and not printed: for fuzzers.
+    #[arg(skip)]
+    pub silent: bool,
 }
 
 /// How results are printed.

@@ -18,6 +18,8 @@ mod export;
 mod failure;
 mod fk;
 mod format;
+#[doc(hidden)]
+pub mod fuzzed;
 mod generate;
 mod ik;
 mod inspect;

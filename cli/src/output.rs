@@ -11,17 +11,21 @@ use std::path::Path;
 impl Output {
     /// The same without progress, notes and warnings: those of every run would hide a table of runs.
     pub fn silent(&self) -> Self {
-        Self { format: self.format, quiet: true }
+        Self { quiet: true, ..*self }
     }
 
     /// Prints a result in the selected format.
     pub fn print(&self, json: &impl Serialize, text: impl Display) -> Result<(), Failure> {
-        match self.format {
-            Format::Json => print_with(|out| {
+        let write = |out: &mut dyn Write| match self.format {
+            Format::Json => {
                 serde_json::to_writer(&mut *out, json)?;
                 writeln!(out)
-            }),
-            Format::Text => print_with(|out| write!(out, "{text}")),
+            }
+            Format::Text => write!(out, "{text}"),
+        };
+        match self.silent {
+            true => write(&mut io::sink()).map_err(Failure::stdout),
+            false => print_with(|out| write(out)),
         }
     }
 

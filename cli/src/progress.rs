@@ -7,24 +7,30 @@ use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use opm_workspace::Progress;
 use std::fmt::Write;
 use std::process;
-use std::sync::{Arc, mpsc};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::thread;
 use std::time::Duration;
 
 /// Interval at which the bar is redrawn.
 const TICK: Duration = Duration::from_millis(100);
 
+/// The work that Ctrl-C cancels: the last that was begun. A process has one handler.
+static WORK: Mutex<Option<Arc<Progress>>> = Mutex::new(None);
+
 /// Progress that the first Ctrl-C cancels. The second one ends the process at once.
 pub fn interruptible() -> Result<Arc<Progress>, Failure> {
+    let work = || WORK.lock().unwrap_or_else(PoisonError::into_inner);
     let progress = Arc::new(Progress::default());
-    let heard = Arc::clone(&progress);
-    ctrlc::set_handler(move || {
-        if heard.is_cancelled() {
-            process::exit(130);
-        }
-        heard.cancel();
-    })
-    .map_err(|error| Failure::at("Ctrl-C", error))?;
+    if work().replace(Arc::clone(&progress)).is_none() {
+        ctrlc::set_handler(move || {
+            let Some(heard) = work().clone() else { return };
+            if heard.is_cancelled() {
+                process::exit(130);
+            }
+            heard.cancel();
+        })
+        .map_err(|error| Failure::at("Ctrl-C", error))?;
+    }
     Ok(progress)
 }
 

@@ -1,13 +1,18 @@
 //! What is fuzzed: arbitrary bytes as mechanism files, motion files, recordings and joint lists. Nothing may panic or
 //! hang, and what is accepted has to hold. `fuzz/` has a target of `cargo fuzz` for each; a test replays the stored
-//! corpora and changes of them.
+//! corpora and changes of them. What is fuzzed of the command line is beside that test.
 
+mod bytes;
+mod joints;
+
+pub use bytes::Bytes;
+
+use joints::joints;
 use opm_check::{Comparison, Options, closures, rows};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file;
 use opm_core::motion::{Ends, file as motion_file, table};
 use opm_mcap::{ReadError, read};
-use std::fmt::Write as _;
 use std::io::Write as _;
 use std::sync::LazyLock;
 
@@ -91,103 +96,5 @@ pub fn joint_list(data: &[u8]) {
     {
         let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| at.joints()[i]).collect();
         let _ = manipulator.forward(&actuated).unwrap();
-    }
-}
-
-/// Choices, made by bytes; zeros after the last.
-struct Bytes<'a>(&'a [u8]);
-
-impl Bytes<'_> {
-    fn next(&mut self) -> u8 {
-        let Some((first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        *first
-    }
-
-    fn choose<T: Copy>(&mut self, of: &[T]) -> T {
-        of[self.next() as usize % of.len()]
-    }
-
-    /// A number from -2 to 2; most are round.
-    fn number(&mut self) -> f64 {
-        match self.next() {
-            byte if byte < 200 => f64::from(byte % 17) / 4.0 - 2.0,
-            _ => f64::from(self.next()) / 64.0 - 2.0,
-        }
-    }
-
-    fn vector(&mut self) -> [f64; 3] {
-        std::array::from_fn(|_| self.number())
-    }
-}
-
-/// A mechanism of two to four legs. A leg is a chain in one subgroup and a chain in another, as a rule the same two
-/// in all legs; some joints are anything.
-fn joints(bytes: &mut Bytes<'_>) -> String {
-    let mut text =
-        "format = 1\nname = \"fuzzed\"\nunits = { length = \"m\", angle = \"rad\" }\n[platform]\npoint = [0.1, 0.2, 0.3]\n".to_owned();
-    let sections = [bytes.next() % 5, bytes.next() % 5];
-    let centres = [bytes.vector(), bytes.vector()];
-    let normals =
-        [[0.0, 0.0, 1.0], bytes.choose(&[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.6, 0.0, 0.8]])];
-    let mut number = 0;
-    for leg in 0..2 + bytes.next() % 3 {
-        let _ = writeln!(text, "[[leg]]\nname = \"leg{leg}\"\njoints = [");
-        for section in 0..2 {
-            for _ in 0..1 + bytes.next() % 3 {
-                number += 1;
-                let (kind, axis, point) =
-                    joint(bytes, sections[section], normals[section], centres[section]);
-                let actuated =
-                    if bytes.next().is_multiple_of(3) { ", actuated = true" } else { "" };
-                let limits =
-                    if bytes.next().is_multiple_of(4) { ", limits = [-1.5, 1.0]" } else { "" };
-                let pitch = if kind == "helical" { ", pitch = 0.1" } else { "" };
-                let point = match kind {
-                    "prismatic" => String::new(),
-                    _ => format!(", point = {point:?}"),
-                };
-                let _ = writeln!(
-                    text,
-                    "  {{ name = \"q{number}\", type = \"{kind}\", axis = {axis:?}{point}{pitch}{actuated}{limits} }},"
-                );
-            }
-        }
-        // At least one is actuated.
-        number += 1;
-        let _ = writeln!(
-            text,
-            "  {{ name = \"q{number}\", type = \"revolute\", axis = {:?}, point = {:?}, actuated = true }},\n]",
-            normals[1], centres[1]
-        );
-    }
-    text
-}
-
-/// A joint of a subgroup: planar, spherical, cylindrical, translations of a plane, of space; now and then of none.
-fn joint(
-    bytes: &mut Bytes<'_>,
-    section: u8,
-    normal: [f64; 3],
-    centre: [f64; 3],
-) -> (&'static str, [f64; 3], [f64; 3]) {
-    let across = match normal {
-        [0.0, 0.0, _] => [bytes.number(), 1.0, 0.0],
-        [x, y, z] => [-z, bytes.number(), x + y * 0.0],
-    };
-    let any = |bytes: &mut Bytes<'_>| {
-        let [x, y, z] = bytes.vector();
-        if [x, y, z] == [0.0; 3] { [0.0, 0.0, 1.0] } else { [x, y, z] }
-    };
-    if bytes.next() % 32 == 31 {
-        let kind = bytes.choose(&["revolute", "prismatic", "helical"]);
-        return (kind, any(bytes), bytes.vector());
-    }
-    match section {
-        0 if bytes.next().is_multiple_of(2) => ("revolute", normal, bytes.vector()),
-        0 | 3 => ("prismatic", across, centre),
-        1 => ("revolute", any(bytes), centre),
-        2 => (bytes.choose(&["revolute", "prismatic", "helical"]), normal, centre),
-        _ => ("prismatic", any(bytes), centre),
     }
 }

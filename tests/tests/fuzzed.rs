@@ -1,5 +1,8 @@
 //! The corpora of the fuzz targets, and random changes of them: nothing panics, and what is accepted holds.
 
+mod command;
+
+use command::{flags, foreign, number};
 use fastrand::Rng;
 use opm_core::mechanism::examples;
 use opm_tests::fuzzed::{joint_list, mechanism, motion, recording};
@@ -11,6 +14,9 @@ const CHANGES: usize = 60;
 
 /// Inputs without any model, of joint lists.
 const LISTS: usize = 1500;
+
+/// Command lines without any model.
+const LINES: usize = 60;
 
 fn factor() -> usize {
     std::env::var("OPM_FUZZ").ok().and_then(|text| text.parse().ok()).unwrap_or(1)
@@ -84,4 +90,22 @@ fn joint_lists() {
     let random: Vec<Vec<u8>> = random.collect();
     random.iter().for_each(|input| joint_list(input));
     replay("joint_list", 5, Vec::new(), joint_list);
+}
+
+#[test]
+fn numbers() {
+    replay("number", 6, Vec::new(), number);
+}
+
+#[test]
+fn command_lines() {
+    let mut rng = Rng::with_seed(7);
+    let random = (0..LINES).map(|_| (0..4 + rng.usize(..40)).map(|_| rng.u8(..)).collect());
+    replay("flags", 8, random.collect(), flags);
+}
+
+/// Those of the target before, and others; all commands read them.
+#[test]
+fn recordings_of_strangers() {
+    replay("foreign", 9, Vec::new(), foreign);
 }

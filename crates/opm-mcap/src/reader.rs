@@ -1,5 +1,6 @@
 //! Reads recordings, whole or cut short, in the memory of one message.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
@@ -206,8 +207,10 @@ pub(crate) fn records<E: From<ReadError>>(
     let options = LinearReaderOptions::default()
         .with_validate_data_section_crc(true)
         .with_validate_summary_section_crc(true)
+        .with_emit_chunks(true)
         .with_record_length_limit(RECORD_LIMIT);
-    let options = LinearReaderOptions { prevalidate_chunk_crcs: true, ..options };
+    let damaged =
+        |offset, source| End::Damaged(ReadError::Damaged { path: path.into(), offset, source });
     let mut reader = LinearReader::new_with_options(options);
     let mut offset = 0;
     let mut begun = false;
@@ -223,7 +226,17 @@ pub(crate) fn records<E: From<ReadError>>(
             }
             Some(Ok(LinearReadEvent::Record { opcode, data })) => {
                 begun = true;
-                visit(opcode, data)?;
+                if opcode != op::CHUNK {
+                    visit(opcode, data)?;
+                    continue;
+                }
+                let content = match unpacked(data) {
+                    Ok(content) => content,
+                    Err(source) => return Ok(damaged(offset, source)),
+                };
+                if let Err(source) = each(&content, &mut visit)? {
+                    return Ok(damaged(offset, source));
+                }
             }
             Some(Err(McapError::UnexpectedEof | McapError::UnexpectedEoc)) if begun => {
                 return Ok(End::Early);
@@ -231,12 +244,54 @@ pub(crate) fn records<E: From<ReadError>>(
             Some(Err(McapError::BadMagic | McapError::UnexpectedEof)) if !begun => {
                 return Err(ReadError::NotMcap { path: path.into() }.into());
             }
-            Some(Err(source)) => {
-                let damage = ReadError::Damaged { path: path.into(), offset, source };
-                return Ok(End::Damaged(damage));
-            }
+            Some(Err(source)) => return Ok(damaged(offset, source)),
         }
     }
+}
+
+/// The records of a chunk as they are without compression; its checksum is verified. (The reader of `mcap` takes for
+/// granted that the last record of a chunk ends with it.)
+fn unpacked(chunk: &[u8]) -> Result<Cow<'_, [u8]>, McapError> {
+    let Record::Chunk { header, data } = mcap::parse_record(op::CHUNK, chunk)? else {
+        return Ok(Cow::default());
+    };
+    let size = usize::try_from(header.uncompressed_size).ok().filter(|&size| size <= RECORD_LIMIT);
+    let size = size.ok_or(McapError::ChunkTooLarge(header.uncompressed_size))?;
+    let content = match &*header.compression {
+        "" => data,
+        "zstd" => match zstd::bulk::decompress(&data, size) {
+            Ok(content) => Cow::Owned(content),
+            Err(error) => return Err(McapError::DecompressionError(error.to_string())),
+        },
+        other => return Err(McapError::UnsupportedCompression(other.to_owned())),
+    };
+    // Zero stands for none.
+    let (saved, calculated) = (header.uncompressed_crc, crc32fast::hash(&content));
+    match saved {
+        0 => Ok(content),
+        _ if saved == calculated => Ok(content),
+        _ => Err(McapError::BadChunkCrc { saved, calculated }),
+    }
+}
+
+/// Shows every record of an unpacked chunk to `visit`.
+fn each<E>(
+    mut rest: &[u8],
+    visit: &mut impl FnMut(u8, &[u8]) -> Result<(), E>,
+) -> Result<Result<(), McapError>, E> {
+    while let Some((&opcode, tail)) = rest.split_first() {
+        let Some((length, tail)) = tail.split_first_chunk() else {
+            return Ok(Err(McapError::UnexpectedEoc));
+        };
+        let length = u64::from_le_bytes(*length);
+        let record = usize::try_from(length).ok().and_then(|length| tail.split_at_checked(length));
+        let Some((record, tail)) = record else {
+            return Ok(Err(McapError::RecordTooLarge { opcode, len: length }));
+        };
+        visit(opcode, record)?;
+        rest = tail;
+    }
+    Ok(Ok(()))
 }
 
 /// The content that was found so far.

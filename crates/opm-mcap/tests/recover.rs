@@ -108,3 +108,26 @@ fn what_cannot_be_recovered_is_refused() {
     assert_eq!(fs::read(&target).unwrap(), b"another");
     assert!(read(&cut, nothing).is_ok());
 }
+
+/// In a chunk without compression and without a checksum, where nothing else tells.
+#[test]
+fn a_record_that_is_longer_than_its_chunk_is_damage() {
+    let directory = tempfile::tempdir().unwrap();
+    let record = |opcode: u8, data: &[u8]| {
+        [&[opcode][..], &(data.len() as u64).to_le_bytes(), data].concat()
+    };
+    let recording = |claimed: u64| {
+        // A record of a type that nobody knows, and before it the header of the chunk.
+        let content = [&[0x7f][..], &claimed.to_le_bytes(), &[0; 3]].concat();
+        let size = (content.len() as u64).to_le_bytes();
+        let chunk = [&[0; 16][..], &size, &[0; 4], &[0; 4], &size, &content].concat();
+        let parts = [mcap::MAGIC.to_vec(), record(0x01, &[0; 8]), record(0x06, &chunk)];
+        file(&directory, "foreign.mcap", &parts.concat())
+    };
+    let read = |claimed| read::<ReadError>(&recording(claimed), |_| Ok(()));
+    assert!(!read(3).unwrap().complete);
+    for claimed in [4, 100, u64::MAX] {
+        let error = read(claimed).unwrap_err();
+        assert!(matches!(error, ReadError::Damaged { .. }), "{claimed}: {error:?}");
+    }
+}
