@@ -1,19 +1,16 @@
 //! `opm ik --poses`: a CSV file of poses in, one of joint values out, row by row.
 
-use crate::args::{Format, IkArgs, Output};
+use crate::args::{IkArgs, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose::Checks;
-use crate::pose_table;
+use crate::pose_table::{self, Totals};
 use crate::stream::{self, Stop, Stream, Streams};
-use crate::text::{count, short};
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
 use opm_core::mechanism::file::FileUnits;
-use serde::Serialize;
 use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// The requested working modes.
@@ -34,16 +31,6 @@ struct RowContent {
 /// Where rows are written.
 type Writer<'a> = csv::Writer<&'a mut dyn Write>;
 
-/// The totals of a batch.
-#[derive(Debug, Serialize)]
-struct Summary {
-    poses: u64,
-    reachable: u64,
-    within_limits: u64,
-    seconds: f64,
-    poses_per_second: f64,
-}
-
 pub fn run(
     args: &IkArgs,
     output: &Output,
@@ -55,24 +42,15 @@ pub fn run(
     let streams = Streams { input, output: args.output.as_deref() };
     let wanted = RowContent { modes, all_joints: args.all_joints };
     let solve = |stream: Stream<'_>| solve(stream, (loaded, manipulator), wanted);
-    let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
-    output.note(format_args!(
-        "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
-        args.output.as_deref().unwrap_or(input).display(),
-        count(summary.poses),
-        count(summary.reachable),
-        count(summary.within_limits),
-        short(summary.seconds),
-        count(summary.poses_per_second as u64),
-    ));
-    if output.format == Format::Json { output.print(&summary, "") } else { Ok(()) }
+    let Some(totals) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
+    totals.tell(&streams, output, &totals)
 }
 
 fn solve(
     mut stream: Stream<'_>,
     (loaded, manipulator): (&Loaded, &Manipulator),
     wanted: RowContent,
-) -> Result<Summary, Stop> {
+) -> Result<Totals, Stop> {
     let start = Instant::now();
     let mut columns = pose_table::columns(&mut stream, (loaded, manipulator))?;
     let mut table = Rows::new((loaded, manipulator), wanted, columns.timed(), &mut stream.writer)?;
@@ -83,15 +61,7 @@ fn solve(
         let wrong = |error: &dyn Display| stream::at(label, line, error);
         table.row(pose_table::split(manipulator, values), &mut stream.writer, &wrong)
     })?;
-    let seconds = start.elapsed().as_secs_f64().max(1e-9);
-    let poses = stream.rows.load(Ordering::Relaxed);
-    Ok(Summary {
-        poses,
-        reachable: table.reachable,
-        within_limits: table.within_limits,
-        seconds,
-        poses_per_second: poses as f64 / seconds,
-    })
+    Ok(Totals::new(&stream, start, [table.reachable, table.within_limits]))
 }
 
 /// The rows of the result.

@@ -1,17 +1,70 @@
 //! Tables of poses that are read row by row: task coordinates, and coordinates that follow from them.
 
+use crate::args::{Format, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose::{Checks, find};
-use crate::stream::{Columns, Stream, Wanted, other_columns};
+use crate::stream::{Columns, Stream, Streams, Wanted, other_columns};
+use crate::text::{count, short};
 use crate::unitless::Plausible;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
+use serde::Serialize;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// The totals of a table.
+#[derive(Debug, Serialize)]
+pub struct Totals {
+    poses: u64,
+    reachable: u64,
+    within_limits: u64,
+    seconds: f64,
+    poses_per_second: f64,
+}
+
+impl Totals {
+    /// Those of the poses that a stream has read since `start`.
+    pub fn new(stream: &Stream<'_>, start: Instant, [reachable, within_limits]: [u64; 2]) -> Self {
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
+        let poses = stream.rows.load(Ordering::Relaxed);
+        let poses_per_second = poses as f64 / seconds;
+        Self { poses, reachable, within_limits, seconds, poses_per_second }
+    }
+
+    /// Tells them in words, and in JSON if that was asked for: as a part of `summary`.
+    pub fn tell(
+        &self,
+        streams: &Streams<'_>,
+        output: &Output,
+        summary: &impl Serialize,
+    ) -> Result<(), Failure> {
+        output.note(format_args!(
+            "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
+            streams.output.unwrap_or(streams.input).display(),
+            count(self.poses),
+            count(self.reachable),
+            count(self.within_limits),
+            short(self.seconds),
+            count(self.poses_per_second as u64),
+        ));
+        if output.format == Format::Json { output.print(summary, "") } else { Ok(()) }
+    }
+}
 
 /// The columns of a table of poses. Their values are the task coordinates, and then the coordinates that follow from them.
 pub fn columns<'m>(
     stream: &mut Stream<'_>,
+    mechanism: (&Loaded, &'m Manipulator),
+) -> Result<Columns<'m>, Failure> {
+    columns_beside(stream, mechanism, &[])
+}
+
+/// The same where the table may have columns with these names, too, which are passed over.
+pub fn columns_beside<'m>(
+    stream: &mut Stream<'_>,
     (loaded, manipulator): (&Loaded, &'m Manipulator),
+    beside: &[String],
 ) -> Result<Columns<'m>, Failure> {
     let (own, following) = (manipulator.task_coordinates(), manipulator.dependent_coordinates());
     let wanted = |optional: bool| {
@@ -26,7 +79,7 @@ pub fn columns<'m>(
     // The other columns of a table that this program wrote.
     let others = other_columns(manipulator);
     stream.columns(values.collect(), |name| {
-        if others.iter().any(|other| other == name) {
+        if others.iter().chain(beside).any(|other| other == name) {
             return Ok(None);
         }
         if let Some(number) = following.iter().position(|c| c.name == name) {

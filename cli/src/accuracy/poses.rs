@@ -1,27 +1,13 @@
 //! `opm accuracy --poses`: a CSV file of poses in, one of errors out, row by row.
 
 use super::{Setting, row};
-use crate::args::{AccuracyArgs, Format, Output};
+use crate::args::{AccuracyArgs, Output};
 use crate::failure::Failure;
-use crate::pose::find;
-use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
-use crate::text::{count, short};
-use crate::unitless::Plausible;
+use crate::pose_table::{self, Totals};
+use crate::stream::{self, Stop, Stream, Streams};
 use opm_accuracy::Budget;
-use serde::Serialize;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
-
-/// The totals of a batch.
-#[derive(Debug, Serialize)]
-struct Summary {
-    poses: u64,
-    reachable: u64,
-    within_limits: u64,
-    seconds: f64,
-    poses_per_second: f64,
-}
 
 pub fn run(
     args: &AccuracyArgs,
@@ -31,58 +17,41 @@ pub fn run(
 ) -> Result<(), Failure> {
     let streams = Streams { input, output: args.output.as_deref() };
     let solve = |stream: Stream<'_>| solve(stream, setting);
-    let Some(summary) = stream::run(&streams, output, setting.loaded, solve)? else {
+    let Some(totals) = stream::run(&streams, output, setting.loaded, solve)? else {
         return Ok(());
     };
-    output.note(format_args!(
-        "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
-        args.output.as_deref().unwrap_or(input).display(),
-        count(summary.poses),
-        count(summary.reachable),
-        count(summary.within_limits),
-        short(summary.seconds),
-        count(summary.poses_per_second as u64),
-    ));
-    if output.format == Format::Json { output.print(&summary, "") } else { Ok(()) }
+    totals.tell(&streams, output, &totals)
 }
 
-fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Summary, Stop> {
+fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> {
     let start = Instant::now();
     let (manipulator, mode) = (setting.manipulator(), setting.mode);
     let coordinates = manipulator.task_coordinates();
-    let values = coordinates.iter().map(|c| Wanted {
-        name: c.name,
-        quantity: c.quantity,
-        plausible: Plausible::new(c.quantity, c.home, (setting.loaded, manipulator)),
-        optional: false,
-    });
     let errors = row::header(manipulator);
-    let others = other_columns(manipulator);
-    let mut columns = stream.columns(values.collect(), |name| {
-        // A table that this command wrote is read, too.
-        if others.iter().chain(&errors).any(|other| other == name) {
-            return Ok(None);
-        }
-        manipulator.refuse_following(name).map_err(|error| error.to_string())?;
-        find(name, coordinates).map(Some).map_err(|error| error.to_string())
-    })?;
+    // A table that this command wrote is read, too.
+    let mut columns =
+        pose_table::columns_beside(&mut stream, (setting.loaded, manipulator), &errors)?;
     let header = (columns.timed().then_some("t").into_iter())
         .chain(coordinates.iter().map(|c| c.name))
         .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
         .chain(["reachable", "within_limits", "mode"])
         .chain(errors.iter().map(String::as_str));
     stream.writer.write_record(header)?;
-    let (mut at, mut pose) = (manipulator.solution(), manipulator.home_pose());
+    let (mut at, mut values) = (manipulator.solution(), pose_table::blank(manipulator));
     let (mut reachable, mut within_limits) = (0, 0);
     let mode_text = manipulator.format_mode(mode);
-    stream.each(&mut columns, &mut pose, |stream, line, time, pose| {
+    stream.each(&mut columns, &mut values, |stream, line, time, values| {
         let label = stream.label;
+        let (pose, checks) = pose_table::split(manipulator, values);
         let found = manipulator.inverse(pose, mode, &mut at);
         let reached = found.map_err(|error| stream::at(label, line, error))?.is_some();
         let within = reached && at.within_limits();
         let mut dependent = vec![None; manipulator.dependent_coordinates().len()];
         let mut cells = vec![None; errors.len()];
         if reached {
+            let verified =
+                checks.verify(manipulator, at.dependent(), setting.loaded.file.units);
+            verified.map_err(|error| stream::at(label, line, error))?;
             dependent = at.dependent().iter().map(|&value| Some(value)).collect();
             let response = setting.model.at(&at);
             let response = response.map_err(|error| stream::at(label, line, error))?;
@@ -93,8 +62,5 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Summary, Stop>
         let answers = (u8::from(reached), u8::from(within), &mode_text);
         Ok(stream.writer.serialize((time.as_slice(), pose, dependent, answers, cells))?)
     })?;
-    let seconds = start.elapsed().as_secs_f64().max(1e-9);
-    let poses = stream.rows.load(Ordering::Relaxed);
-    let poses_per_second = poses as f64 / seconds;
-    Ok(Summary { poses, reachable, within_limits, seconds, poses_per_second })
+    Ok(Totals::new(&stream, start, [reachable, within_limits]))
 }

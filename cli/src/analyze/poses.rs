@@ -1,29 +1,24 @@
 //! `opm analyze --poses`: a CSV file of poses in, one of efforts and indices out, row by row.
 
 use super::{Analyser, word};
-use crate::args::{AnalyzeArgs, Format, Output};
+use crate::args::{AnalyzeArgs, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
-use crate::pose_table;
+use crate::pose_table::{self, Totals};
 use crate::stream::{self, Stop, Stream, Streams};
-use crate::text::{count, short};
 use opm_analysis::Index;
 use opm_core::manipulator::Mode;
 use opm_study::effort_names;
 use serde::Serialize;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-/// The totals of a batch.
+/// The totals of a table, and at how many poses efforts balance the load.
 #[derive(Debug, Serialize)]
 struct Summary {
-    poses: u64,
-    reachable: u64,
-    within_limits: u64,
+    #[serde(flatten)]
+    totals: Totals,
     balanced: u64,
-    seconds: f64,
-    poses_per_second: f64,
 }
 
 pub fn run(
@@ -36,16 +31,7 @@ pub fn run(
     let streams = Streams { input, output: args.output.as_deref() };
     let solve = |stream: Stream<'_>| solve(stream, loaded, analyser, mode);
     let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
-    output.note(format_args!(
-        "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
-        args.output.as_deref().unwrap_or(input).display(),
-        count(summary.poses),
-        count(summary.reachable),
-        count(summary.within_limits),
-        short(summary.seconds),
-        count(summary.poses_per_second as u64),
-    ));
-    if output.format == Format::Json { output.print(&summary, "") } else { Ok(()) }
+    summary.totals.tell(&streams, output, &summary)
 }
 
 fn solve(
@@ -105,8 +91,6 @@ fn solve(
         let row = (time.as_slice(), pose, dependent, answers, balance, cells, numbers);
         Ok(stream.writer.serialize(row)?)
     })?;
-    let seconds = start.elapsed().as_secs_f64().max(1e-9);
-    let poses = stream.rows.load(Ordering::Relaxed);
-    let poses_per_second = poses as f64 / seconds;
-    Ok(Summary { poses, reachable, within_limits, balanced, seconds, poses_per_second })
+    let totals = Totals::new(&stream, start, [reachable, within_limits]);
+    Ok(Summary { totals, balanced })
 }
