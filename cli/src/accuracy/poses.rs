@@ -49,8 +49,7 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> 
         let mut dependent = vec![None; manipulator.dependent_coordinates().len()];
         let mut cells = vec![None; errors.len()];
         if reached {
-            let verified =
-                checks.verify(manipulator, at.dependent(), setting.loaded.file.units);
+            let verified = checks.verify(manipulator, at.dependent(), setting.loaded.file.units);
             verified.map_err(|error| stream::at(label, line, error))?;
             dependent = at.dependent().iter().map(|&value| Some(value)).collect();
             let response = setting.model.at(&at);
