@@ -5,6 +5,7 @@ mod analyze;
 mod calibrate;
 mod check;
 mod convert;
+mod design;
 mod explore;
 mod export;
 mod generate;
@@ -21,6 +22,7 @@ pub use analyze::AnalyzeArgs;
 pub use calibrate::CalibrateArgs;
 pub use check::CheckArgs;
 pub use convert::ConvertArgs;
+pub use design::DesignArgs;
 pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
 pub use generate::{CodeArgs, GenerateArgs, Language};
@@ -72,6 +74,7 @@ Examples:
   opm analyze plano-spherical-5dof --wrench 0,0,0,1,0,0   what the actuators carry at a pose
   opm calibrate plano-spherical-5dof --plan 40 -o plan.csv   poses to measure a machine at
   opm accuracy plano-spherical-5dof --axes 0.05mm,0.02deg   what errors of its parts do
+  opm design problem.toml -o better.toml               dimensions that reach more, by optimisation
   opm fk translational-helical-3dof --joints S1=9mm,S2=-14mm,S3=5mm
                                                        poses at joint values
   opm workspace plano-spherical-5dof -o cloud.mcap     its workspace, for Foxglove or Rerun
@@ -124,6 +127,7 @@ pub enum Command {
     Analyze(AnalyzeArgs),
     Calibrate(CalibrateArgs),
     Accuracy(AccuracyArgs),
+    Design(DesignArgs),
     Fk(FkArgs),
     Linkage(LinkageArgs),
     Trajectory(TrajectoryArgs),

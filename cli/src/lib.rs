@@ -12,6 +12,7 @@ mod check;
 mod completions;
 mod convert;
 mod decompose;
+mod design;
 mod examples;
 mod explore;
 mod export;
@@ -85,6 +86,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Analyze(command) => analyze::run(command, output),
         Command::Calibrate(command) => calibrate::run(command, output),
         Command::Accuracy(command) => accuracy::run(command, output),
+        Command::Design(command) => design::run(command, output),
         Command::Fk(command) => fk::run(command, output),
         Command::Linkage(command) => linkage::run(command, output),
         Command::Trajectory(command) => trajectory::run(command, output),

@@ -2,11 +2,12 @@
 
 mod choice;
 mod cloud;
+pub mod ending;
 mod grid;
 mod inscribed;
 mod label;
 mod layout;
-mod mechanism;
+pub mod mechanism;
 mod motion;
 pub mod options;
 mod singular;
@@ -22,23 +23,16 @@ use crate::failure::Failure;
 use crate::output::{is_stdout, print_with};
 use crate::progress::interruptible;
 use crate::target::Target;
+use ending::Ending;
 use opm_plot::{Drawing, Size, png};
 use serde_json::json;
 use source::Source;
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// The first bytes of every MCAP file.
 const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
-
-/// The formats of pictures.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Ending {
-    Svg,
-    Png,
-    Pdf,
-}
 
 pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
     let printed = is_stdout(&args.output);
@@ -46,18 +40,13 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
         let problem = "the picture takes standard output; give it a file with --output";
         return Err(Failure::flag("--format json", problem));
     }
-    let ending = match args.output.extension().and_then(|ending| ending.to_str()) {
-        _ if printed => Ending::Svg,
-        Some("svg") => Ending::Svg,
-        Some("png") => Ending::Png,
-        Some("pdf") => Ending::Pdf,
-        _ => {
+    let ending = match printed {
+        true => Ending::Svg,
+        false => Ending::of(&args.output).ok_or_else(|| {
             let place = args.output.display();
-            let problem = format!(
-                "{place}: expected a name that ends in .svg, .png or .pdf, or - for SVG on standard output"
-            );
-            return Err(Failure::flag("--output", problem));
-        }
+            let problem = format!("{place}: {}, or - for SVG on standard output", ending::EXPECTED);
+            Failure::flag("--output", problem)
+        })?,
     };
     if args.output.canonicalize().is_ok_and(|output| args.file.canonicalize().ok() == Some(output))
     {
@@ -67,12 +56,7 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
     let target = if printed { None } else { Some(Target::create(&args.output)?) };
     let Picture { drawing, complete } = picture(args, output)?;
     let place = args.output.display();
-    let bytes = match ending {
-        Ending::Svg => drawing.to_svg().map(String::into_bytes).map_err(io::Error::other),
-        Ending::Png => drawing.to_png().map_err(io::Error::other),
-        Ending::Pdf => drawing.to_pdf(),
-    };
-    let bytes = bytes.map_err(|error| Failure::at(&place, error))?;
+    let bytes = ending.bytes(&drawing).map_err(|error| Failure::at(&place, error))?;
     match target {
         Some(target) => target.commit(&bytes)?,
         None => print_with(|out| out.write_all(&bytes))?,

@@ -5,6 +5,7 @@ use super::sized::drawn;
 use crate::args::{MechanismArgs, Output, PlotArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::pose::Pose;
 use crate::text::{nearest_text, reason};
 use crate::unitless;
 use nalgebra::{Isometry3, Point3};
@@ -42,21 +43,30 @@ pub fn draw(args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
         change: args.change.clone(),
     };
     let loaded = load::open(&given, output)?;
-    let figure = figure(&loaded, args, output)?;
+    let at = At { pose: args.pose.as_ref(), mode: args.mode.as_deref() };
+    let figure = figure(&loaded, &at, output)?;
     drawn(args, |size| figure.draw(size))
 }
 
-fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigure, Failure> {
+/// Where a mechanism is drawn: at home in the mode of home, unless it is said.
+#[derive(Clone, Copy, Default)]
+pub struct At<'a> {
+    pose: Option<&'a Pose>,
+    mode: Option<&'a str>,
+}
+
+/// The figure of a mechanism.
+pub fn figure(loaded: &Loaded, at: &At<'_>, output: &Output) -> Result<ViewFigure, Failure> {
     let mechanism = &loaded.file.mechanism;
-    let posed = args.pose.is_some() || args.mode.is_some();
+    let posed = at.pose.is_some() || at.mode.is_some();
     match Manipulator::new(mechanism.clone()) {
         Ok(manipulator) => {
-            let solution = solve(loaded, &manipulator, args, output)?;
+            let solution = solve(loaded, &manipulator, at, output)?;
             if !solution.within_limits() {
                 output.warn(format_args!("the pose is beyond the limits of a joint"));
             }
             let (decomposition, imaginary) = (manipulator.decomposition(), manipulator.imaginary());
-            let at = Configuration {
+            let configuration = Configuration {
                 joints: solution.joints(),
                 imaginary: solution.imaginary(),
                 platform: solution.displacement(&manipulator),
@@ -75,7 +85,7 @@ fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigur
             let pairs =
                 distances.nearer_than(0.0).flat_map(|near| interference.members_of(near.pair));
             let red: BTreeSet<_> = pairs.map(|member| member.name.clone()).collect();
-            assemble(loaded, Some(joints), &at, lines, &red)
+            assemble(loaded, Some(joints), &configuration, lines, &red)
         }
         // It has no inverse kinematics, so that no other pose is known than that at home.
         Err(_) if posed => Err(loaded.compile().map_or_else(
@@ -112,17 +122,17 @@ fn figure(loaded: &Loaded, args: &PlotArgs, output: &Output) -> Result<ViewFigur
 fn solve(
     loaded: &Loaded,
     manipulator: &Manipulator,
-    args: &PlotArgs,
+    at: &At<'_>,
     output: &Output,
 ) -> Result<Solution, Failure> {
-    let pose = match &args.pose {
+    let pose = match at.pose {
         Some(pose) => {
             unitless::note_pose(output, "--pose", pose, loaded, manipulator);
             pose.resolve(manipulator)?
         }
         None => manipulator.home_pose(),
     };
-    let mode = load::mode(manipulator, args.mode.as_deref().unwrap_or("home"))?;
+    let mode = load::mode(manipulator, at.mode.unwrap_or("home"))?;
     let mut buffer = manipulator.solution();
     let found = manipulator.inverse(&pose, mode, &mut buffer);
     if let Some(found) = found.map_err(|error| Failure::flag("--pose", error))? {

@@ -5,6 +5,9 @@ upper section is optimised first, for a set of orientations. The result is the r
 Then the lower section is optimised to reach as many places as it can *with every value in these ranges*. A place that it
 reaches so is dexterous: the whole mechanism reaches it in every orientation of the set.
 
+This module is for costs that are functions in Python, alone or beside :func:`dexterous`. The command ``opm design`` designs
+by a file: it has more measures, constraints, the front of two objectives, and goes on after an interruption.
+
 The optimiser is CMA-ES from the package ``cma``: ``pip install 'opm-kinematics[design]'``. Values are in SI units and radians.
 """
 

@@ -1,0 +1,106 @@
+//! `opm design`: dimensions by optimisation.
+
+mod files;
+mod picture;
+mod report;
+
+use crate::args::{DesignArgs, Output};
+use crate::failure::Failure;
+use crate::load::{self, Loaded};
+use crate::plot::ending::{EXPECTED, Ending};
+use crate::progress::{interruptible, watch_steps};
+use crate::target::Target;
+use crate::workspace::threads;
+use files::Files;
+use opm_core::mechanism::file::MechanismFile;
+use opm_design::{DesignError, Draft, Problem, Variables, Watch, design};
+use report::Report;
+use std::path::{Path, PathBuf};
+
+/// Largest size of a file of a problem. A larger one is something else.
+const LONGEST: u64 = 1 << 20;
+
+pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
+    let label = args.problem.display().to_string();
+    let given = load::text(&args.problem, LONGEST, "problem of design")?;
+    let text = given.ok_or_else(|| Failure::work(format!("{label}: No such file or directory")))?;
+    let (problem, loaded) = read(&text, args)?;
+    let picture = match &args.picture {
+        None => None,
+        Some(path) => {
+            let Some(ending) = Ending::of(path) else {
+                let problem = format!("{}: {EXPECTED}", path.display());
+                return Err(Failure::flag("--picture", problem));
+            };
+            Some((ending, Target::create(path)?))
+        }
+    };
+    let mut files = Files::new(args, &problem, &loaded)?;
+    let resumed = files.log.len();
+    let (watch, pool) = (Watch::new(interruptible()?), threads(args.threads)?);
+    let found = watch_steps(
+        output,
+        "designing",
+        Some(problem.budget),
+        || watch.evaluated(),
+        || pool.install(|| design(&problem, &loaded.file, &mut files.log, &watch)),
+    );
+    let found = found.map_err(|error| match error {
+        DesignError::Cancelled => {
+            let evaluated = watch.evaluated();
+            let kept = files.kept().map_or_else(String::new, |path| {
+                format!("; {} has them, and --resume goes on with it", path.display())
+            });
+            Failure::interrupted(format!("interrupted after {evaluated} designs{kept}"))
+        }
+        DesignError::Log(error) => {
+            Failure::at(files.kept().unwrap_or(Path::new("log")).display(), error)
+        }
+        error => Failure::at(&label, error),
+    })?;
+    if found.designs.iter().any(|design| !design.feasible) {
+        output.warn(format_args!(
+            "{label}: no design keeps all constraints; this is the nearest one"
+        ));
+    }
+    let names = files.commit(&found, args.designs)?;
+    if let Some((ending, target)) = picture {
+        let drawing = picture::draw(&problem, &loaded, &found, output)?;
+        let path = args.picture.as_deref().unwrap_or(Path::new("")).display();
+        let bytes = ending.bytes(&drawing).map_err(|error| Failure::at(path, error))?;
+        target.commit(&bytes)?;
+    }
+    let report =
+        Report { problem: &problem, loaded: &loaded, found: &found, names: &names, resumed };
+    output.print(&report.json(), report.text())
+}
+
+/// The problem, and the mechanism that it names: a file beside it, or a shipped one.
+fn read(text: &str, args: &DesignArgs) -> Result<(Problem, Loaded), Failure> {
+    let label = args.problem.display().to_string();
+    let wrong =
+        |errors: opm_design::ProblemErrors| Failure::because(errors.in_file(&label), errors);
+    let draft = Draft::read(text).map_err(wrong)?;
+    let folder = args.problem.parent().unwrap_or(Path::new(""));
+    let beside = folder.join(draft.mechanism());
+    let name = if beside.exists() { beside } else { PathBuf::from(draft.mechanism()) };
+    if name == Path::new(load::DASH) {
+        return Err(Failure::work(format!("{label}: `mechanism` is -, expected a file or a name")));
+    }
+    let mut loaded = load::read_as_it_is(&name)
+        .map_err(|failure| Failure::work(format!("{label}: `mechanism`: {failure}")))?;
+    loaded.compile()?;
+    let (problem, file) = draft.resolve(&loaded.file).map_err(wrong)?;
+    loaded.file = MechanismFile { places: Default::default(), ..file };
+    loaded.text = loaded.file.text();
+    let variables = match (&problem.variables, args.undivided) {
+        (Variables::Undivided(_), true) => {
+            return Err(Failure::flag("--undivided", format!("{label} is not divided")));
+        }
+        (_, true) => problem.variables.clone().undivided(),
+        _ => problem.variables.clone(),
+    };
+    let budget = args.budget.unwrap_or(problem.budget);
+    let seed = args.seed.unwrap_or(problem.seed);
+    Ok((Problem { budget, seed, variables, ..problem }, loaded))
+}

@@ -1,0 +1,106 @@
+//! The files that a design writes.
+
+use crate::args::DesignArgs;
+use crate::failure::Failure;
+use crate::load::Loaded;
+use crate::output::is_stdout;
+use crate::target::Target;
+use opm_design::{Design, Log, LogError, Outcome, Problem, columns};
+use std::path::{Path, PathBuf};
+
+/// The mechanism files, and the evaluations beside them.
+pub struct Files {
+    pub log: Log,
+    /// That of a single design, opened before the work.
+    target: Option<Target>,
+    output: Option<PathBuf>,
+    evaluations: Option<PathBuf>,
+}
+
+impl Files {
+    pub fn new(args: &DesignArgs, problem: &Problem, loaded: &Loaded) -> Result<Self, Failure> {
+        let Some(output) = &args.output else {
+            return Ok(Self { log: Log::none(), target: None, output: None, evaluations: None });
+        };
+        if is_stdout(output) {
+            let problem = "the report goes to standard output, expected a file";
+            return Err(Failure::flag("--output", problem));
+        }
+        if output.extension().is_none_or(|ending| ending != "toml") {
+            let problem = format!("{}: expected a name that ends in .toml", output.display());
+            return Err(Failure::flag("--output", problem));
+        }
+        loaded.refuse_as_output(output, &[&args.problem])?;
+        let target = match problem.objectives.len() {
+            1 => Some(Target::create(output)?),
+            _ => None,
+        };
+        let evaluations = output.with_extension("csv");
+        let columns = columns(problem, &loaded.file);
+        let log = match args.resume {
+            true => Log::resume(&evaluations, &columns),
+            false => Log::create(&evaluations, &columns),
+        };
+        let log = log.map_err(|error| match error {
+            LogError::OtherProblem => {
+                Failure::flag("--resume", format!("{}: {error}", evaluations.display()))
+            }
+            error => Failure::at(evaluations.display(), error),
+        })?;
+        Ok(Self { log, target, output: Some(output.clone()), evaluations: Some(evaluations) })
+    }
+
+    /// The file of the evaluations.
+    pub fn kept(&self) -> Option<&Path> {
+        self.evaluations.as_deref()
+    }
+
+    /// Writes the designs, and gives the name of the file of each; `None` for one that is not written.
+    pub fn commit(
+        self,
+        found: &Outcome,
+        most: Option<u64>,
+    ) -> Result<Vec<Option<PathBuf>>, Failure> {
+        let count = found.designs.len();
+        let Some(output) = self.output else { return Ok(vec![None; count]) };
+        if let Some(target) = self.target {
+            target.commit(found.designs[0].file.text().as_bytes())?;
+            return Ok(vec![Some(output)]);
+        }
+        let stem = output.file_stem().map_or_else(String::new, |stem| stem.display().to_string());
+        let digits = count.to_string().len();
+        let chosen = spread(count, most);
+        let write = |(number, design): (usize, &Design)| {
+            if !chosen.contains(&number) {
+                return Ok(None);
+            }
+            let path = output.with_file_name(format!("{stem}-{:0digits$}.toml", number + 1));
+            Target::create(&path)?.commit(design.file.text().as_bytes())?;
+            Ok::<_, Failure>(Some(path))
+        };
+        found.designs.iter().enumerate().map(write).collect()
+    }
+}
+
+/// At most `most` of some numbers from 0 on, evenly spread, with both ends.
+fn spread(count: usize, most: Option<u64>) -> Vec<usize> {
+    let most = most.map_or(count, |most| count.min(usize::try_from(most).unwrap_or(count)));
+    match most {
+        0 | 1 => (0..count.min(most)).collect(),
+        _ => (0..most).map(|i| (i * (count - 1) + (most - 1) / 2) / (most - 1)).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spread;
+
+    #[test]
+    fn designs_are_chosen_evenly() {
+        assert_eq!(spread(5, None), [0, 1, 2, 3, 4]);
+        assert_eq!(spread(5, Some(9)), [0, 1, 2, 3, 4]);
+        assert_eq!(spread(9, Some(3)), [0, 4, 8]);
+        assert_eq!(spread(9, Some(1)), [0]);
+        assert_eq!(spread(100, Some(4)), [0, 33, 66, 99]);
+    }
+}
