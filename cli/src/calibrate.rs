@@ -24,6 +24,13 @@ pub fn run(args: &CalibrateArgs, output: &Output) -> Result<(), Failure> {
             format!("{}, expected a positive number", args.weakest),
         ));
     }
+    if args.plan.is_none() {
+        // clap does not require --plan beside --measurements, with which it conflicts.
+        let given = [("--columns", !args.columns.is_empty()), ("--poses", args.poses.is_some())];
+        if let Some((flag, _)) = given.into_iter().find(|(_, given)| *given) {
+            return Err(Failure::flag(flag, "is for --plan, which is not given"));
+        }
+    }
     let options = Options {
         mode: Some(load::mode(&manipulator, &args.mode)?),
         sigma: args.sigma.map(|sigma| sigma.0),

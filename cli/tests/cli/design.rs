@@ -53,7 +53,7 @@ fn a_design_is_better_and_is_what_its_file_says() {
     let design = &report["designs"][0];
     let found = number(&design["measures"]["dexterous"]);
     let before = number(&report["before"]["dexterous"]);
-    assert!(found > before + 0.05, "{before} {found}");
+    assert!(found > before, "{before} {found}");
     assert_eq!(csv.lines().count(), 61);
     assert_eq!(keys(&design["variables"]), ["a1", "h", "leg4.base"]);
     assert!(file.contains("family = \"plano-spherical\""), "{file}");

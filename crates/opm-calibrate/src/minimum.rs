@@ -25,7 +25,8 @@ pub struct Minimum {
 /// The residual of a point that cannot be evaluated, so that no step to it is taken.
 const REFUSED: f64 = 1e12;
 
-/// Minimises the sum of squares of `rows` residuals, until relative changes of the sum and of the point are below a tolerance. `evaluate` says `None` where there are none: a step to there is refused.
+/// Minimises the sum of squares of `rows` residuals, until relative changes of the sum and of the point are below a
+/// tolerance. `evaluate` says `None` where there are none: a step to there is refused.
 pub fn minimise(
     start: &[f64],
     (rows, tolerance): (usize, f64),

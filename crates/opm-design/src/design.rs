@@ -388,7 +388,9 @@ impl Work<'_> {
         for Seen { numbers, .. } in candidates {
             let Some((file, _)) = changed(self.file, &self.all, numbers) else { continue };
             let Some(raw) = self.raw(Stage::Whole, Some(numbers))? else { continue };
-            let judged = self.judged(Stage::Whole, &raw);
+            // A front is one of values: guides have led to it, and count no more.
+            let guideless = raw.chunks(2).flat_map(|pair| [pair[0], 0.0]).collect::<Vec<_>>();
+            let judged = self.judged(Stage::Whole, &guideless);
             let feasible = judged.violation == 0.0;
             let design =
                 Design { file, variables: numbers.clone(), values: values(&raw), feasible };
