@@ -1,6 +1,6 @@
 //! The design of a problem: what is evaluated, and what is found.
 
-use crate::evaluate::{self, Upper, Value};
+use crate::evaluate::{self, Ranges, Upper, Value};
 use crate::judge::Judged;
 use crate::log::{Columns, Log, LogError, fingerprint};
 use crate::measure::Measure;
@@ -89,7 +89,7 @@ pub struct Outcome {
     /// The values of the mechanism as it was given.
     pub before: Option<Vec<f64>>,
     /// The ranges of the imaginary joints, by name, that the lower section was designed for; none if all was designed at once.
-    pub ranges: Vec<(String, [f64; 2])>,
+    pub ranges: Ranges,
     /// How many designs were evaluated: of the upper section, and of the lower section or the whole.
     pub evaluations: [u64; 2],
 }
@@ -362,7 +362,7 @@ impl Work<'_> {
     }
 
     /// The upper section's variables, and the ranges of the imaginary joints that it requires.
-    fn upper(&mut self, budget: u64) -> Result<(Vec<f64>, Vec<(String, [f64; 2])>), DesignError> {
+    fn upper(&mut self, budget: u64) -> Result<(Vec<f64>, Ranges), DesignError> {
         let seen = self.search(Stage::Upper, budget)?;
         let best = least(&seen).numbers.clone();
         let raw = self.evaluated(Stage::Upper, std::slice::from_ref(&best))?;
@@ -371,7 +371,7 @@ impl Work<'_> {
         let names = self.columns.numbers.iter().skip(UPPER.len()).step_by(2);
         let named = names.filter_map(|name| name.strip_suffix(".lowest"));
         let ends = raw[UPPER.len()..].chunks(2).map(|ends| [ends[0], ends[1]]);
-        let ranges: Vec<(String, [f64; 2])> = named.map(str::to_owned).zip(ends).collect();
+        let ranges: Ranges = named.map(str::to_owned).zip(ends).collect();
         match raw[0] > 0.0 && ranges.iter().all(|(_, ends)| ends.iter().all(|x| x.is_finite())) {
             true => Ok((best, ranges)),
             false => Err(nothing()),

@@ -15,6 +15,9 @@ use rayon::prelude::*;
 /// Poses that a thread works on at a time.
 const PIECE: u64 = 256;
 
+/// The lowest and the highest value of joints, by name; radians and metres.
+pub type Ranges = Vec<(String, [f64; 2])>;
+
 /// A measure of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
@@ -207,7 +210,7 @@ struct Asked {
 #[derive(Clone, Debug, Default)]
 struct Found {
     worst: Vec<(Index, f64)>,
-    ranges: Vec<(String, [f64; 2])>,
+    ranges: Ranges,
 }
 
 impl Asked {

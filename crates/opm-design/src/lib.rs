@@ -42,6 +42,7 @@ mod optimise;
 mod problem;
 
 pub use design::{Design, DesignError, Outcome, Watch, columns, design};
+pub use evaluate::Ranges;
 pub use file::{Draft, ProblemErrors};
 pub use log::{Columns, Log, LogError};
 pub use measure::Measure;

@@ -87,7 +87,7 @@ impl Log {
         let text = std::fs::read_to_string(path)?;
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         let mut reader =
-            csv::ReaderBuilder::new().flexible(true).from_reader(text[..whole].as_bytes());
+            csv::ReaderBuilder::new().flexible(true).from_reader(&text.as_bytes()[..whole]);
         let header = reader.headers().map_err(io)?;
         if !header.iter().eq(columns.header()) {
             return Err(LogError::OtherProblem);
