@@ -66,6 +66,27 @@ def test_a_grid_is_its_poses(accuracy, opm, tmp_path):
     assert table.read_text() == one.read_text()
 
 
+def test_a_table_with_coordinates_that_follow_is_read_back(opm, tmp_path):
+    wanted = tmp_path / "wanted.csv"
+    wanted.write_text("x,y\n0.02,0.3\n-0.05,0.25\n")
+
+    def run(table):
+        command = [opm, "accuracy", "five-bar", *SIZES, "--poses", table]
+        return subprocess.run(command, capture_output=True, text=True)
+
+    first = run(wanted)
+    assert first.returncode == 0, first.stderr
+    rows = list(csv.DictReader(first.stdout.splitlines()))
+    assert all(math.isfinite(float(row["theta"])) for row in rows)
+    table = tmp_path / "table.csv"
+    table.write_text(first.stdout)
+    assert run(table).stdout == first.stdout
+    # A value that does not follow is refused.
+    table.write_text(first.stdout.replace(rows[1]["theta"], "3"))
+    wrong = run(table)
+    assert wrong.returncode == 1 and f"{table}:3: theta is given as" in wrong.stderr
+
+
 def test_tolerances_keep_the_clearance(accuracy, tmp_path):
     options = ["--pose", "x=10mm,xi=15deg", "--errors", "links"]
     allowed = accuracy(PAPER, *options, "--clearance", "20um")["clearance"]

@@ -238,7 +238,12 @@ pub(crate) fn records<E: From<ReadError>>(
                     return Ok(damaged(offset, source));
                 }
             }
-            Some(Err(McapError::UnexpectedEof | McapError::UnexpectedEoc)) if begun => {
+            // The writer gives a chunk its length when it closes it.
+            Some(Err(
+                McapError::UnexpectedEof
+                | McapError::UnexpectedEoc
+                | McapError::RecordTooLarge { opcode: op::CHUNK, len: u64::MAX },
+            )) if begun => {
                 return Ok(End::Early);
             }
             Some(Err(McapError::BadMagic | McapError::UnexpectedEof)) if !begun => {
