@@ -6,7 +6,7 @@ use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::file::MechanismFile;
 use opm_workspace::{Axis, Grid};
 
-/// A problem of design. [`Problem::read`] reads one.
+/// A problem of design. [`Draft`](crate::Draft) reads one from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The grid that measures are taken over, metres and radians. Coordinates without an axis stay at home.
