@@ -28,9 +28,23 @@ def test_every_export_of_the_package_is_documented():
         assert name == "__version__" or exported.__doc__, name
 
 
-def test_the_examples_are_typed():
+#: Forms of arguments that no example has.
+FORMS = """
+import numpy as np
+import opm_kinematics as opm
+
+m = opm.examples.load("plano-spherical-5dof")
+opm.sweep(m, x=np.linspace(-0.1, 0.1, 5), y=[-0.1, 0.0, 0.1], zeta=0.1, xi=(0.0, 0.3, 4))
+m.inverse({"x": 0.01, "xi": 0.1})
+m.inverse(transforms=np.eye(4))
+"""
+
+
+def test_the_examples_are_typed(tmp_path):
     examples = sorted(map(str, (Path(__file__).parents[2] / "examples").glob("*.py")))
-    command = [sys.executable, "-m", "mypy", "--strict", "--disable-error-code=import-untyped", *examples]
+    forms = tmp_path / "forms.py"
+    forms.write_text(FORMS)
+    command = [sys.executable, "-m", "mypy", "--strict", "--disable-error-code=import-untyped", *examples, str(forms)]
     found = subprocess.run(command, capture_output=True, text=True, check=False)
     assert examples and found.returncode == 0, found.stdout + found.stderr
 

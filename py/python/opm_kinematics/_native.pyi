@@ -2525,7 +2525,7 @@ def sweep(
     threads: int | None = None,
     executor: _Executor | None = None,
     shards: int | None = None,
-    **axes: float | tuple[float, float, SupportsIndex],
+    **axes: float | tuple[float, float, SupportsIndex] | Sequence[float] | NDArray[np.float64],
 ) -> Sweep:
     """Find which poses of a grid are reachable and within all limits, or another kind of workspace.
 
