@@ -667,16 +667,19 @@ def test_a_sum_of_sinusoids_is_followed(explore, opm, tmp_path):
 
 def handles(explorer):
     """A place on each handle in the view, by the names of the coordinates that it moves."""
-    canvas = explorer.page.locator("#view canvas")
-    box = canvas.bounding_box()
-    found = {}
-    for y in range(int(0.3 * box["height"]), int(0.75 * box["height"]), 7):
-        for x in range(int(0.25 * box["width"]), int(0.8 * box["width"]), 12):
-            explorer.page.mouse.move(box["x"] + x, box["y"] + y)
-            title = canvas.get_attribute("title")
-            if title:
-                found.setdefault(title.removeprefix("Drag to change "), (box["x"] + x, box["y"] + y))
-    return found
+    # The events of a mouse, sent in the page: one by one from outside, thousands of them take half a minute.
+    found = explorer.page.locator("#view canvas").evaluate("""canvas => {
+        const [box, found] = [canvas.getBoundingClientRect(), {}];
+        for (let y = 0.3 * box.height; y < 0.75 * box.height; y += 7) {
+            for (let x = 0.25 * box.width; x < 0.8 * box.width; x += 12) {
+                const [clientX, clientY] = [Math.round(box.x + x), Math.round(box.y + y)];
+                canvas.dispatchEvent(new PointerEvent("pointermove", { clientX, clientY, bubbles: true }));
+                if (canvas.title) found[canvas.title] ??= [clientX, clientY];
+            }
+        }
+        return found;
+    }""")
+    return {title.removeprefix("Drag to change "): place for title, place in found.items()}
 
 
 def drag(explorer, place):

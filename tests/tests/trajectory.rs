@@ -166,7 +166,7 @@ fn what_is_violated_is_reported_and_nothing_else() {
     let (bridged, others): (Vec<_>, Vec<_>) =
         PAIRS.into_iter().partition(|pair| meet(*pair) != Meet::Nothing);
     for (pairs, mut rng) in [(bridged, Rng::with_seed(7)), (others, Rng::with_seed(8))] {
-        for pair in std::iter::repeat_n(pairs, 8).flatten() {
+        for pair in std::iter::repeat_n(pairs, 4).flatten() {
             let options = Options { limited: 0.5, balls: true };
             let (mechanism, decomposition) = mechanism(&mut rng, pair, options);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
