@@ -18,6 +18,10 @@ done
 for archive in "$dist"/opm-*.tar.gz; do
   mkdir "$scratch/$(basename "$archive")"
   tar --extract --gzip --file "$archive" --directory "$scratch/$(basename "$archive")"
+  if [ "$(find "$scratch/$(basename "$archive")" -mindepth 1 -maxdepth 1 | wc -l)" -ne 1 ]; then
+    echo "$archive: more than one folder" >&2
+    exit 1
+  fi
 done
 # No path of the machine that built it. The folder of a build and the home are the two that could be in there.
 if grep --recursive --files-with-matches --binary --fixed-strings -e "$PWD" -e "${CARGO_HOME:-$HOME/.cargo}/" "$scratch"; then
@@ -31,7 +35,8 @@ found=0
 for python in ${PYTHONS:-python3.10 python3.11 python3.12 python3.13 python3.14}; do
   if ! "$python" -c 'import venv' 2>/dev/null; then continue; fi
   "$python" -m venv "$scratch/$python"
-  "$scratch/$python/bin/python" -m pip install --quiet --disable-pip-version-check "$dist"/*"$machine".whl
+  "$scratch/$python/bin/python" -m pip install --quiet --no-warn-script-location --disable-pip-version-check \
+    "$dist"/*"$machine".whl
   (cd "$scratch" && "$scratch/$python/bin/python" - <<'CODE'
 import opm_kinematics as opm
 

@@ -51,7 +51,7 @@ done
 
 program() {
   cargo zigbuild --release --locked -p opm-kinematics --bin opm --target "$1"
-  tar --create --gzip --file "$dist/opm-$version-$2.tar.gz" --transform "s,.*/,opm-$version/," \
+  tar --create --gzip --file "$dist/opm-$version-$2.tar.gz" --transform "s,^\(.*/\)*,opm-$version/," \
     --owner=0 --group=0 --numeric-owner \
     "${CARGO_TARGET_DIR:-target}/${1%.2.17}/release/opm" README.md LICENSE-MIT LICENSE-APACHE cli/THIRD-PARTY.txt
 }
