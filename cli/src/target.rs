@@ -21,7 +21,8 @@ impl Target {
     /// Writes it, and gives it its name.
     pub fn commit(mut self, bytes: &[u8]) -> Result<(), Failure> {
         let Some(mut file) = self.file.take() else { return Ok(()) };
-        let written = match file.write_all(bytes) {
+        // A small file is on the disk only once it is flushed.
+        let written = match file.write_all(bytes).and_then(|()| file.flush()) {
             Ok(()) => file.commit(),
             Err(error) => {
                 file.discard();

@@ -105,16 +105,17 @@ def test_runs_killed_at_random_moments(opm, whole, tmp_path):
     assert tally["recovered"] > 0 or KILLS < 20
 
 
+def limit(size):
+    """Files of this process may have so many bytes."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+
 @pytest.mark.parametrize("kind", ["workspace", "trajectory", "merge", "shard"])
 def test_a_disk_that_is_full_at_any_byte(opm, whole, tmp_path, kind):
     """A limit on the size of files: the write that passes it fails, as on a full disk."""
     arguments, expected, _ = whole[kind]
     rng, found_some = random.Random(SEED), 0
-
-    def limit(size):
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-
     sizes = [0, 1, 7, 8, 100, len(expected) - 1, len(expected) - 9]
     sizes += [rng.randrange(len(expected)) for _ in range(DISKS - len(sizes))]
     for size in sizes:
@@ -132,3 +133,19 @@ def test_a_disk_that_is_full_at_any_byte(opm, whole, tmp_path, kind):
         found_some += found is not None
     # A shard of this size is one chunk, which is whole or cannot be read.
     assert found_some > 2 or kind == "shard"
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [("plot", "out.svg"), ("plot", "out.png"), ("export mjcf", "out.xml"), ("convert", "out.toml"), ("explore", "out.html")],
+)
+def test_a_full_disk_leaves_nothing_of_a_file_that_is_written_at_once(opm, tmp_path, command, name):
+    target = tmp_path / name
+    run = [opm, *command.split(), MECHANISM, "-o", target]
+    subprocess.run(run, check=True, capture_output=True)
+    for size in (0, 1000, target.stat().st_size - 1):
+        target.write_bytes(BEFORE)
+        done = subprocess.run(run, capture_output=True, preexec_fn=lambda size=size: limit(size))
+        message = done.stderr.decode()
+        assert done.returncode == 1 and name in message and "File too large" in message, message
+        assert [path.name for path in tmp_path.iterdir()] == [name] and target.read_bytes() == BEFORE
