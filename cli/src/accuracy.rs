@@ -1,6 +1,7 @@
 //! `opm accuracy`: pose errors, sensitivities and misfits.
 
 mod grid;
+mod over;
 mod poses;
 mod report;
 mod row;
@@ -88,6 +89,9 @@ pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
     }
     if !args.grid.is_empty() {
         return grid::run(args, output, &setting);
+    }
+    if !args.over.is_empty() {
+        return over::run(args, output, &setting);
     }
     if args.output.is_some() {
         return Err(Failure::flag("--output", "is for --poses and --grid"));

@@ -1,18 +1,21 @@
 //! Errors of parts and actuators for arrays of poses.
 
+mod over;
+mod samples;
+mod sizes;
+
+pub use over::AccuracyBounds;
+pub use samples::AccuracySamples;
+
 use crate::arguments;
-use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
-use crate::velocity::characteristic_length;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
-use opm_accuracy::{Allocation, Both, Budget, ErrorModel, Model, Source, Tolerances};
-use opm_core::Quantity;
-use opm_core::mechanism::file::hint::expected_one_of;
+use opm_accuracy::{Allocation, Budget};
 use pyo3::prelude::*;
-use pyo3::types::PyMapping;
-use std::num::NonZeroUsize;
+use sizes::{ErrorArguments, pair};
+use std::num::{NonZeroU64, NonZeroUsize};
 
 /// Poses that a thread works on between two checks whether it should stop: each takes milliseconds.
 const BLOCK: usize = 16;
@@ -41,6 +44,8 @@ pub struct Accuracy {
     /// (n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. None without
     /// `clearance`.
     permitted_uniform: Option<Py<PyArray2<f64>>>,
+    /// Mechanisms with errors that are drawn at random. None without `samples`.
+    samples: Option<Py<AccuracySamples>>,
     /// (p,), metres and radians: the size of each error.
     sizes: Py<PyArray1<f64>>,
     /// Names of the errors: actuated joints, parameters of the family, axes.
@@ -63,6 +68,7 @@ pickled!(Accuracy {
     permitted_alone,
     permitted_share,
     permitted_uniform,
+    samples,
     sizes,
     parameters,
     joints,
@@ -77,94 +83,6 @@ impl Accuracy {
         let (poses, errors) = (self.reachable.bind(py).len()?, self.parameters.len());
         Ok(format!("<Accuracy at {poses} poses, {reachable} reachable: {errors} errors>"))
     }
-}
-
-/// A size that is not negative.
-fn size(given: &Bound<'_, PyAny>, what: &str) -> PyResult<f64> {
-    let number = given.extract().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
-    number.ok_or_else(|| {
-        let shown = arguments::shown(given);
-        wrong(format!("{what} is {shown}, expected a number of at least 0"))
-    })
-}
-
-/// A pair of sizes, a length and an angle. Either may be None.
-fn pair(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Both> {
-    let Ok([length, angle]) = given.extract::<[Bound<'_, PyAny>; 2]>() else {
-        let shown = arguments::shown(given);
-        return Err(wrong(format!("{what} is {shown}, expected two numbers: (metres, radians)")));
-    };
-    let of = |part: &Bound<'_, PyAny>| match part.is_none() {
-        true => Ok(None),
-        false => size(part, what).map(Some),
-    };
-    Ok(Both { length: of(&length)?, angle: of(&angle)? })
-}
-
-/// The entries of a mapping, by name.
-fn entries<'py>(
-    given: &Bound<'py, PyAny>,
-    what: &str,
-) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
-    let unsuitable = || {
-        let shown = arguments::shown(given);
-        wrong(format!("{what} is {shown}, expected a dict"))
-    };
-    let mapping = given.cast::<PyMapping>().map_err(|_| unsuitable())?;
-    mapping.items()?.iter().map(|item| item.extract().map_err(|_| unsuitable())).collect()
-}
-
-/// The name, if it is among those that are known.
-fn known(name: &str, what: &str, names: &[&str]) -> PyResult<()> {
-    if names.contains(&name) {
-        return Ok(());
-    }
-    Err(wrong(format!("tolerances: {name:?} is not {what}; {}", expected_one_of(name, names))))
-}
-
-/// The argument `tolerances`: a file, or a dict with the same keys in metres and radians.
-fn tolerances(given: &Bound<'_, PyAny>, sources: &[Source]) -> PyResult<Tolerances> {
-    let py = given.py();
-    let mut found = Tolerances::default();
-    if given.cast::<PyMapping>().is_err() {
-        let path = arguments::path(given)?;
-        let text = arguments::text(py, &path, "file of tolerances", "")?;
-        let read = Tolerances::read(&text, sources);
-        return read.map_err(|errors| wrong(errors.in_file(path.display())));
-    }
-    let both = |given: &Bound<'_, PyAny>, what: &str| -> PyResult<Both> {
-        let mut both = Both::default();
-        for (name, value) in entries(given, what)? {
-            known(&name, "a tolerance", &["length", "angle"])?;
-            let place = if name == "length" { &mut both.length } else { &mut both.angle };
-            *place = Some(size(&value, &format!("{what}[{name:?}]"))?);
-        }
-        Ok(both)
-    };
-    for (name, value) in entries(given, "tolerances")? {
-        known(&name, "a key", &["length", "angle", "actuators", "joint", "parameter"])?;
-        let what = format!("tolerances[{name:?}]");
-        match &*name {
-            "length" => found.axes.length = Some(size(&value, &what)?),
-            "angle" => found.axes.angle = Some(size(&value, &what)?),
-            "actuators" => found.actuators = both(&value, &what)?,
-            "joint" => {
-                for (joint, value) in entries(&value, &what)? {
-                    known(&joint, "a joint", &Tolerances::joint_names(sources))?;
-                    let sizes = both(&value, &format!("{what}[{joint:?}]"))?;
-                    found.joints.insert(joint, sizes);
-                }
-            }
-            _ => {
-                for (single, value) in entries(&value, &what)? {
-                    known(&single, "an error", &Tolerances::single_names(sources))?;
-                    let size = size(&value, &format!("{what}[{single:?}]"))?;
-                    found.single.insert(single, size);
-                }
-            }
-        }
-    }
-    Ok(found)
 }
 
 #[pymethods]
@@ -185,6 +103,11 @@ impl Manipulator {
     ///     whose errors act everywhere.
     /// clearance : (length, angle), optional
     ///     The play that joints have, metres and radians: asks for the tolerances that keep within it. Either may be None.
+    /// samples : int, optional
+    ///     Draws so many mechanisms at each pose, whose errors are uniform within their sizes, and assembles them beyond first
+    ///     order: Monte Carlo. Each takes about a millisecond.
+    /// seed : int
+    ///     Of what is drawn: equal seeds draw equal mechanisms.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
     /// length : float, optional
@@ -210,8 +133,8 @@ impl Manipulator {
     /// >>> bool(found.worst_length[0] > 50e-6), bool(found.misfit_length.max() > 1e-6)
     /// (True, True)
     #[pyo3(signature = (
-        poses, *, actuators = None, tolerances = None, errors = "axes", clearance = None, mode = "home", length = None,
-        threads = None
+        poses, *, actuators = None, tolerances = None, errors = "axes", clearance = None, samples = None, seed = 1,
+        mode = "home", length = None, threads = None
     ))]
     #[allow(clippy::too_many_arguments)]
     fn accuracy<'py>(
@@ -222,6 +145,8 @@ impl Manipulator {
         tolerances: Option<&Bound<'py, PyAny>>,
         errors: &str,
         clearance: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arguments::samples)] samples: Option<NonZeroU64>,
+        #[pyo3(from_py_with = arguments::seed)] seed: u64,
         mode: &str,
         length: Option<f64>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
@@ -229,31 +154,9 @@ impl Manipulator {
         let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
         let poses = Rows::new(&poses)?;
         let inner = &*self.inner;
-        let length = characteristic_length(inner, length)?;
-        let Some(errors) = ErrorModel::from_name(errors) else {
-            return Err(wrong(format!("errors is {errors:?}, expected \"axes\" or \"links\"")));
-        };
-        let model = Model::new(inner, self.family.as_ref(), errors).with_length(length);
-        let sources = model.sources();
-        let mut sizes = match tolerances {
-            Some(given) => self::tolerances(given, sources)?,
-            None => Tolerances::default(),
-        };
-        if let Some(given) = actuators {
-            sizes.actuators = pair(given, "actuators")?;
-            let lacks = |s: &&Source| s.is_actuator() && sizes.actuators.of(s.quantity).is_none();
-            if let Some(source) = sources.iter().find(lacks) {
-                let what = match source.quantity {
-                    Quantity::Length => "a length",
-                    Quantity::Angle => "an angle",
-                };
-                let name = &source.name;
-                return Err(wrong(format!(
-                    "actuators: {name} is {what}, and no size is given for it"
-                )));
-            }
-        }
-        let sizes = sizes.of(sources);
+        let given = ErrorArguments { actuators, tolerances, errors, length };
+        let (model, sizes) = given.read(self)?;
+        let (sources, length) = (model.sources(), model.length());
         let clearance = clearance.map(|given| pair(given, "clearance")).transpose()?;
         let coordinates = inner.task_coordinates().len();
         let joints: Vec<String> = inner.mechanism().joints().map(|j| j.name.clone()).collect();
@@ -302,7 +205,13 @@ impl Manipulator {
         let asked = |number: usize| -> PyResult<Option<Py<PyArray2<f64>>>> {
             clearance.map(|_| frozen(tables.table(number))).transpose()
         };
+        let samples = samples.map(|count| {
+            let drawn = samples::draw(py, &model, (&poses, mode), (count, seed), &sizes, threads)?;
+            Py::new(py, drawn)
+        });
+        let samples = samples.transpose()?;
         Ok(Accuracy {
+            samples,
             pose_error: frozen(tables.table(0))?,
             worst_length: flat(1)?,
             worst_angle: flat(2)?,

@@ -82,6 +82,19 @@ pub fn budget(given: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
     whole(given, "budget", &(1..=u64::MAX)).map(Some)
 }
 
+/// The argument `samples`, in the range that the command line allows.
+pub fn samples(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroU64>> {
+    if given.is_none() {
+        return Ok(None);
+    }
+    Ok(NonZeroU64::new(whole(given, "samples", &(1..=opm_study::MOST_SAMPLES))?))
+}
+
+/// The argument `seed`.
+pub fn seed(given: &Bound<'_, PyAny>) -> PyResult<u64> {
+    whole(given, "seed", &(0..=u64::MAX))
+}
+
 /// The argument `scalars`: a sequence of names. A single string is not taken for one.
 pub fn scalars(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
     if given.is_none() {

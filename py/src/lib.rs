@@ -47,7 +47,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::accuracy::Accuracy;
+    use crate::accuracy::{Accuracy, AccuracyBounds, AccuracySamples};
     #[pymodule_export]
     use crate::analysis::Analysis;
     #[pymodule_export]

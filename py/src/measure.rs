@@ -50,7 +50,7 @@ type MeasureState = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
 
 /// The range of a coordinate: one value, or the lowest and the highest.
 #[derive(FromPyObject)]
-enum Range {
+pub enum Range {
     Fixed(f64),
     Between((f64, f64)),
 }

@@ -1,5 +1,7 @@
 """Errors of parts and actuators for arrays of poses, against forward kinematics and each other."""
 
+import pickle
+
 import numpy as np
 import opm_kinematics as opm
 import pytest
@@ -86,9 +88,70 @@ def test_files_and_dicts_say_the_same(manipulator, tmp_path):
     assert one.sizes[one.parameters.index("leg1.h")] == 10e-6
 
 
+def test_a_box_has_a_bound(manipulator):
+    half = 0.02
+    found = manipulator.accuracy_over({"x": (-half, half), "y": (0, half)}, tolerances=AXES, gap=0.1)
+    assert found.tight and repr(found).startswith("<AccuracyBounds: at most ")
+    generator = np.random.default_rng(3)
+    poses = np.tile(manipulator.home, (200, 1))
+    poses[:, 0] += generator.choice([-half, half, 0.3 * half], 200)
+    poses[:, 1] += generator.uniform(0, half, 200)
+    at = manipulator.accuracy(poses, tolerances=AXES)
+    for values, bound, largest in [
+        (at.worst_length, found.length, found.found_length),
+        (at.worst_angle, found.angle, found.found_angle),
+    ]:
+        assert values.max() <= bound <= 1.1 * largest * (1 + 1e-9)
+    at = manipulator.accuracy([found.pose_length, found.pose_angle], tolerances=AXES)
+    assert at.worst_length[0] == pytest.approx(found.found_length, rel=1e-9)
+    assert at.worst_angle[1] == pytest.approx(found.found_angle, rel=1e-9)
+    again = manipulator.accuracy_over({"x": (-half, half), "y": (0, half)}, tolerances=AXES, gap=0.1, threads=1)
+    assert found == again == pickle.loads(pickle.dumps(found))
+    away = manipulator.accuracy_over({"x": (9, 10)}, tolerances=AXES)
+    assert np.isnan(away.found_length) and away.pose_length == []
+
+
+@pytest.mark.parametrize(
+    ("over", "options", "expected"),
+    [
+        ({"X": (0, 1)}, {}, "not a task coordinate.*did you mean"),
+        ({"x": (1, 0)}, {}, "the smaller one first"),
+        ({"x": "far"}, {}, "expected a number or"),
+        ({"x": (0, 0.01)}, {"gap": 0}, "expected a positive share"),
+        ({"x": (0, 0.01)}, {"budget": 0}, "at least 1"),
+        ({"x": (0, 0.01)}, {"tolerances": {"parameter": {"leg1.h": 1e-5}}}, "has no bounds over boxes"),
+    ],
+)
+def test_wrong_boxes_are_named(manipulator, over, options, expected):
+    with pytest.raises(opm.OpmError, match=expected):
+        manipulator.accuracy_over(over, **({"tolerances": AXES} | options))
+
+
+def test_drawn_mechanisms_spread_as_first_order_says(manipulator):
+    poses = np.asarray(manipulator.home) + [[0, 0, 0, 0.2, 0], [10, 0, 0, 0, 0], [0.02, 0, 0, 0.3, 0]]
+    small = {"length": 1e-6, "angle": 1e-6}
+    found = manipulator.accuracy(poses, tolerances=small, errors="links", samples=500, seed=4)
+    drawn = found.samples
+    assert (drawn.count, drawn.seed, drawn.failed.tolist()) == (500, 4, [0, 0, 0])
+    # Uniform errors within a size deviate by the size over the root of three.
+    expected = np.sqrt(np.square(found.sensitivity * found.sizes[None, :, None]).sum(axis=1) / 3)
+    np.testing.assert_allclose(drawn.deviations[[0, 2]], expected[[0, 2]], rtol=0.2)
+    assert np.isnan(drawn.deviations[1]).all() and np.isnan(drawn.length[1])
+    reached = [0, 2]
+    assert (drawn.length[reached] <= found.worst_length[reached] * (1 + 1e-4)).all()
+    assert (drawn.misfit_length[reached] <= found.misfit_length[reached] * (1 + 1e-4) + 1e-15).all()
+    again = manipulator.accuracy(poses, tolerances=small, errors="links", samples=500, seed=4, threads=1)
+    assert again == found == pickle.loads(pickle.dumps(found))
+    assert manipulator.accuracy(poses[:1], tolerances=small, samples=20, seed=5).samples.seed == 5
+    assert manipulator.accuracy(poses[:1], tolerances=small).samples is None
+
+
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
+        ({"samples": 0}, "samples is 0, expected a whole number from 1"),
+        ({"samples": 2.5}, "samples is 2.5"),
+        ({"samples": 10, "seed": -1}, "seed is -1"),
         ({"errors": "parts"}, 'expected "axes" or "links"'),
         ({"tolerances": {"lenght": 1}}, "did you mean `length`"),
         ({"tolerances": {"joint": {"S9": {}}}}, "is not a joint"),

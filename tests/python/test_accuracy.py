@@ -101,6 +101,22 @@ def test_tolerances_keep_the_clearance(accuracy, tmp_path):
     assert max(play["length"] for play in kept["misfit"].values()) == pytest.approx(20e-6, rel=1e-8)
 
 
+def test_a_bound_over_a_box_is_above_all_of_its_poses(accuracy):
+    box = [f"--over={name}=-20mm:20mm" for name in "xy"]
+    found = accuracy(PAPER, *SIZES, *box, "--gap", 0.1)
+    assert found == accuracy(PAPER, *SIZES, *box, "--gap", 0.1, "--threads", 1)
+    assert found["tight"] and found["over"]["x"] == [-0.02, 0.02] and found["over"]["xi"] == [0, 0]
+    grid = accuracy(PAPER, *SIZES, "--grid=x=-20mm:20mm:9", "--grid=y=-20mm:20mm:9")["worst"]
+    for what in ("length", "angle"):
+        largest, bound = grid[what]["value"], found[what]["bound"]
+        assert largest <= bound <= 1.1 * found[what]["found"] * (1 + 1e-9)
+        assert found[what]["found"] >= 0.99 * largest
+    # With few boxes the bound is wider, and holds.
+    wide = accuracy(PAPER, *SIZES, *box, "--budget", 40)
+    assert not wide["tight"]
+    assert all(wide[what]["bound"] is None or wide[what]["bound"] >= found[what]["found"] for what in ("length", "angle"))
+
+
 def test_drawn_mechanisms_are_within_the_worst_case(accuracy):
     options = ["--pose", "x=10mm,xi=15deg", "--errors", "links", *SIZES, "--samples", 200]
     found = accuracy(PAPER, *options, "--seed", 5)
@@ -124,6 +140,13 @@ def test_drawn_mechanisms_are_within_the_worst_case(accuracy):
         (["-o", "out.csv"], "--output: is for --poses and --grid"),
         (["--samples", "0"], "--samples"),
         (["--grid", "q=1"], "no such task coordinate"),
+        (["--over", "q=1"], "no task coordinate q, did you mean"),
+        (["--over", "x=1mm:-1mm"], "x"),
+        (["--over", "x=0:1mm", "--over", "x=0:2mm"], "x is given twice"),
+        (["--over", "x=0:1mm", "--gap", "0"], "--gap: 0, expected a positive share"),
+        (["--over", "x=0:1mm", "--clearance", "20um"], "cannot be used with"),
+        (["--over", "x=0:1mm", "--vary", "h=0.1:0.16:7"], "cannot be used with"),
+        (["--gap", "0.1"], "--over"),
     ],
 )
 def test_wrong_input_is_named(opm, arguments, expected):

@@ -2,15 +2,13 @@
 
 use super::MechanismArgs;
 use crate::accuracy::sizes::Pair;
-use crate::pose::{GridAxis, Number, Pose};
+use crate::pose::{GridAxis, Number, OverAxis, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use opm_accuracy::ErrorModel;
+use opm_study::{BOX_BUDGET, MOST_SAMPLES};
 use opm_workspace::MOST_THREADS;
 use std::path::PathBuf;
-
-/// Most mechanisms that are drawn: they take a gigabyte of memory.
-const MOST_SAMPLES: u64 = 1_000_000;
 
 /// Accuracy: pose errors, sensitivities, and errors of axes that no motion takes up
 ///
@@ -34,6 +32,9 @@ const MOST_SAMPLES: u64 = 1_000_000;
 /// order, and tells the standard deviation of every task coordinate from its nominal value, and what 95 % of the mechanisms
 /// do not exceed.
 ///
+/// --over bounds the worst displacement and the worst rotation of the platform over a box of poses: no pose of it that is in
+/// reach has larger ones, to first order in the errors. It takes errors of axes and actuators.
+///
 /// CSV in: as for `opm ik`. CSV out: the pose, `reachable`, `within_limits`, `mode`, `error.NAME` of every task coordinate,
 /// `worst.length`, `worst.angle`, `misfit.JOINT.length` and `misfit.JOINT.angle`. With --grid, rows are the poses in reach and
 /// within limits, and the largest errors over all of them are printed with their poses.
@@ -46,6 +47,7 @@ Examples:
   opm accuracy plano-spherical-5dof --pose xi=15deg --clearance 20um
   opm accuracy plano-spherical-5dof --axes 0.05mm,0.02deg --grid x=-0.1:0.1:11 \\
       --grid xi=0:30deg:4 -o field.csv
+  opm accuracy plano-spherical-5dof --axes 0.05mm,0.02deg --over x=-20mm:20mm --over y=-20mm:20mm
   opm accuracy plano-spherical-5dof --axes 0.05mm,0.02deg --errors links --samples 1000
   opm accuracy plano-spherical-5dof --pose xi=15deg --axes 0.05mm,0.02deg --vary h=0.1:0.16:7
   opm accuracy planar-3rrr --poses poses.csv --actuators 20urad -o errors.csv")]
@@ -66,6 +68,32 @@ pub struct AccuracyArgs {
         conflicts_with_all = ["pose", "poses"]
     )]
     pub grid: Vec<GridAxis>,
+    /// Range of one task coordinate, or a single value, for a guaranteed bound of the errors over a box of poses; other
+    /// coordinates stay at home
+    #[arg(
+        long,
+        value_name = "AXIS=MIN:MAX|AXIS=VALUE",
+        conflicts_with_all = ["pose", "poses", "grid", "clearance", "samples", "output"]
+    )]
+    pub over: Vec<OverAxis>,
+    /// With --over: stop when the bounds are within this share above the largest errors found
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 0.05,
+        requires = "over",
+        allow_hyphen_values = true
+    )]
+    pub gap: f64,
+    /// With --over: largest number of boxes
+    #[arg(
+        long,
+        value_name = "BOXES",
+        default_value_t = BOX_BUDGET,
+        requires = "over",
+        value_parser = clap::value_parser!(u64).range(1..)
+    )]
+    pub budget: u64,
     /// Errors of actuators: a length for sliders, an angle for others
     #[arg(long, value_name = "LENGTH,ANGLE", allow_hyphen_values = true)]
     pub actuators: Option<Pair>,
@@ -110,10 +138,10 @@ pub struct AccuracyArgs {
         long,
         value_name = "NAME=MIN:MAX:COUNT",
         allow_hyphen_values = true,
-        conflicts_with_all = ["poses", "samples", "output"]
+        conflicts_with_all = ["poses", "over", "samples", "output"]
     )]
     pub vary: Option<GridAxis>,
-    /// Number of threads of --grid and --samples, instead of one per processor
+    /// Number of threads of --grid, --over and --samples, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
     /// Output file for the CSV of --poses or --grid; standard output if it is -

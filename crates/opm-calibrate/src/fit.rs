@@ -80,7 +80,11 @@ impl Problem<'_> {
         let numbers = (0..self.rows.len()).into_par_iter();
         let solved = numbers.map(|number| match &last.rows[number] {
             None => Some(None),
-            Some(solved) => self.row(number).solve(&predictor, &solved.pose).map(Some),
+            Some(solved) => {
+                // Near the boundary of reach, its last pose may be beyond it now: a step that loses it would be refused.
+                let again = || self.row(number).first(&predictor);
+                self.row(number).solve(&predictor, &solved.pose).or_else(again).map(Some)
+            }
         });
         let rows: Option<Vec<Option<Solved>>> = solved.collect();
         let rows = rows?;

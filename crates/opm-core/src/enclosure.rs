@@ -34,14 +34,15 @@ use crate::chain::{Branch, Chain};
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::task::{CoordinateKind, Task, TaskCoordinate};
-use affine::{Affine, Plane};
+use affine::Plane;
 use raised::RaisedChain;
 use share::Share;
 use slice::{Bounded, Rectangle, Slice};
 use std::f64::consts::{PI, TAU};
 use target::{Coordinate, Enclosed, Target};
 
-pub use places::{Ball, BodyPoint, MovingBody};
+pub use affine::Affine;
+pub use places::{Ball, BodyPoint, CarriedPoint, MovingBody};
 pub use share::MOST;
 
 /// One coordinate of a box.

@@ -55,6 +55,8 @@ pub struct BoxTest<'a> {
     places: Vec<ScaledBall>,
     /// Whether each point is asked for, while they are collected.
     marked: Vec<bool>,
+    /// The pair that was too near at the last pose that was tested and failed: a pose beside it mostly fails by the same.
+    nearest: usize,
 }
 
 /// Where the end of a capsule is.
@@ -109,6 +111,7 @@ impl<'a> BoxTest<'a> {
             wanted: Vec::new(),
             asked: Vec::new(),
             balls: Vec::new(),
+            nearest: 0,
         }
     }
 
@@ -151,7 +154,15 @@ impl<'a> BoxTest<'a> {
     /// Whether the pairs that were left open are far enough apart at one pose.
     pub fn at(&mut self, solution: &Solution, open: &Open) -> bool {
         self.distances.place(self.manipulator, solution);
-        self.distances.are_apart(&open.pairs, self.least)
+        let apart = |pair: usize| self.distances.are_apart(pair, self.least);
+        if open.pairs.contains(&self.nearest) && !apart(self.nearest) {
+            return false;
+        }
+        match open.pairs.iter().find(|&&pair| !apart(pair)) {
+            Some(&near) => self.nearest = near,
+            None => return true,
+        }
+        false
     }
 
     /// Finds where the ends of the capsules of some pairs are.

@@ -11,6 +11,9 @@ use opm_workspace::{Cancelled, Grid, Progress, in_order};
 /// Poses that a thread works on between two visits: a response takes far longer than to hand it over.
 const PIECE: u64 = 32;
 
+/// The most mechanisms that are drawn at a pose: each takes some hundred bytes.
+pub const MOST_SAMPLES: u64 = 1_000_000;
+
 /// What is asked of the accuracy over a grid.
 #[derive(Clone, Copy, Debug)]
 pub struct AccuracyRequest<'a> {

@@ -59,6 +59,7 @@
 //! | [`WorkspaceRequest`] | a request; [`RequestError`] names the [`RequestOption`] that is wrong |
 //! | [`Workspace`] | a request that is checked and complete |
 //! | [`AccuracyRequest`], [`Drawing`] | errors of parts and actuators over the poses of a grid, and drawn at random |
+//! | [`BoxRequest`] | the worst pose errors over a box of poses, with a guaranteed bound |
 //! | [`Analysis`] | the results: counts, set, shape, conditioning |
 //! | [`SetupOptions`] | what poses are judged by: load, gravity, springs |
 //! | [`PointOptions`] | which values a recording stores of every point |
@@ -70,6 +71,7 @@
 //! and can cancel it.
 
 mod accuracy;
+mod accuracy_box;
 mod analysis;
 mod columns;
 mod error;
@@ -88,7 +90,8 @@ pub mod text;
 mod tracker;
 mod workspace;
 
-pub use accuracy::{AccuracyField, AccuracyRequest, AccuracyRow, Drawing};
+pub use accuracy::{AccuracyField, AccuracyRequest, AccuracyRow, Drawing, MOST_SAMPLES};
+pub use accuracy_box::{BOX_BUDGET, Bounded, BoxError, BoxErrors, BoxRequest};
 pub use analysis::{Analysis, Shape};
 pub use columns::{
     AxisScale, Column, NamedColumn, PointChoice, PointColumns, PointOptions,

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 from . import examples
 from ._native import (
     Accuracy,
+    AccuracyBounds,
+    AccuracySamples,
     Analysis,
     Aspect,
     Assemblies,
@@ -59,6 +61,8 @@ from ._native import (
 
 __all__ = [
     "Accuracy",
+    "AccuracyBounds",
+    "AccuracySamples",
     "Analysis",
     "Aspect",
     "Assemblies",

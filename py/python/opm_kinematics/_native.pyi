@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Accuracy",
+    "AccuracyBounds",
+    "AccuracySamples",
     "Aspect",
     "Analysis",
     "Assemblies",
@@ -1105,6 +1107,8 @@ class Manipulator:
         tolerances: Mapping[str, Any] | str | PathLike[str] | None = None,
         errors: str = "axes",
         clearance: tuple[float | None, float | None] | None = None,
+        samples: int | None = None,
+        seed: int = 1,
         mode: str = "home",
         length: float | None = None,
         threads: int | None = None,
@@ -1125,6 +1129,11 @@ class Manipulator:
             whose errors act everywhere.
         clearance : (length, angle), optional
             The play that joints have, metres and radians: asks for the tolerances that keep within it. Either may be None.
+        samples : int, optional
+            Draws so many mechanisms at each pose, whose errors are uniform within their sizes, and assembles them beyond first
+            order: Monte Carlo. Each takes about a millisecond.
+        seed : int
+            Of what is drawn: equal seeds draw equal mechanisms.
         mode : str
             ``"home"``, or a sign for every two-valued choice.
         length : float, optional
@@ -1149,6 +1158,60 @@ class Manipulator:
         >>> found = m.accuracy([m.home], tolerances={"length": 50e-6, "angle": 350e-6}, errors="links")
         >>> bool(found.worst_length[0] > 50e-6), bool(found.misfit_length.max() > 1e-6)
         (True, True)
+        """
+    def accuracy_over(
+        self,
+        over: Mapping[str, tuple[float, float] | float],
+        *,
+        actuators: tuple[float | None, float | None] | None = None,
+        tolerances: Mapping[str, Any] | str | PathLike[str] | None = None,
+        errors: str = "axes",
+        gap: float = 0.05,
+        budget: int | None = None,
+        mode: str = "home",
+        length: float | None = None,
+        threads: int | None = None,
+    ) -> AccuracyBounds:
+        """The worst displacement and rotation of the platform over a box of poses, with a guaranteed bound: affine arithmetic
+        misses no pose between others. To first order in the errors.
+
+        Parameters
+        ----------
+        over : dict of str to (min, max) or float
+            A range or a value for task coordinates by their names, metres and radians. Others stay at home.
+        actuators : (length, angle), optional
+            As for :meth:`accuracy`.
+        tolerances : dict or path, optional
+            As for :meth:`accuracy`; of axes and actuators.
+        errors : str
+            As for :meth:`accuracy`.
+        gap : float
+            Stops when the bounds are within this share above the largest errors found.
+        budget : int, optional
+            Largest number of boxes: 20,000 if not given. Where it ends earlier, ``tight`` is False and the bounds hold.
+        mode : str
+            ``"home"``, or a sign for every two-valued choice.
+        length : float, optional
+            As for :meth:`accuracy`.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. One for each processor if not given.
+
+        Returns
+        -------
+        AccuracyBounds
+
+        Raises
+        ------
+        OpmError
+            A coordinate is unknown, its ends are not in order, or the errors have no bounds over boxes.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("plano-spherical-5dof")
+        >>> found = m.accuracy_over({"x": (-0.02, 0.02)}, tolerances={"length": 50e-6, "angle": 350e-6}, gap=0.1)
+        >>> found.found_length <= found.length <= 1.1 * found.found_length
+        True
         """
     def analyze(
         self,
@@ -1436,6 +1499,9 @@ class Accuracy:
         """(n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. None without
         `clearance`."""
     @property
+    def samples(self) -> AccuracySamples | None:
+        """Mechanisms with errors that are drawn at random. None without `samples`."""
+    @property
     def sizes(self) -> NDArray[np.float64]:
         """(p,), metres and radians: the size of each error."""
     @property
@@ -1450,6 +1516,69 @@ class Accuracy:
     @property
     def held(self) -> NDArray[np.bool_]:
         """(n,): whether the actuators hold the platform, so that its error is known."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class AccuracyBounds:
+    """The worst errors of the platform over a box of poses: the largest that was found, and a bound that no pose in reach exceeds."""
+
+    @property
+    def length(self) -> float:
+        """Metres: no pose of the box that is in reach displaces the platform's reference point by more. Infinite if nothing is known."""
+    @property
+    def angle(self) -> float:
+        """Radians: no pose of the box that is in reach rotates the platform by more."""
+    @property
+    def found_length(self) -> float:
+        """Metres: the largest displacement that was found at a pose. NaN if no pose was in reach."""
+    @property
+    def found_angle(self) -> float:
+        """Radians: the largest rotation that was found at a pose."""
+    @property
+    def pose_length(self) -> list[float]:
+        """The pose with the largest displacement, metres and radians. Empty if no pose was in reach."""
+    @property
+    def pose_angle(self) -> list[float]:
+        """The pose with the largest rotation."""
+    @property
+    def tight(self) -> bool:
+        """Whether both bounds are within `gap` above what was found."""
+    @property
+    def boxes(self) -> int:
+        """How many boxes were bounded."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class AccuracySamples:
+    """What errors do that are drawn at random, each uniform within its size: of mechanisms that are assembled beyond first order.
+    NaN where a pose is out of reach, and where a number is not known."""
+
+    @property
+    def deviations(self) -> NDArray[np.float64]:
+        """(n, d), metres and radians: the standard deviation of every task coordinate from its nominal value."""
+    @property
+    def length(self) -> NDArray[np.float64]:
+        """(n,), metres: what 95 % of the displacements of the platform's reference point do not exceed."""
+    @property
+    def angle(self) -> NDArray[np.float64]:
+        """(n,), radians: what 95 % of the platform's rotations do not exceed."""
+    @property
+    def misfit_length(self) -> NDArray[np.float64]:
+        """(n, j), metres: what 95 % of the plays of each joint do not exceed."""
+    @property
+    def misfit_angle(self) -> NDArray[np.float64]:
+        """(n, j), radians: what 95 % of the plays of each joint do not exceed."""
+    @property
+    def failed(self) -> NDArray[np.uint64]:
+        """(n,): how many mechanisms cannot be assembled near the pose."""
+    @property
+    def count(self) -> int:
+        """How many mechanisms are drawn at each pose."""
+    @property
+    def seed(self) -> int:
+        """The seed of what is drawn."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 

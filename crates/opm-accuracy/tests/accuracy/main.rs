@@ -1,6 +1,7 @@
 //! First-order responses, compared with mechanisms that are made with errors and assembled by Newton's method.
 
 mod assembled;
+mod enclosed;
 mod family;
 
 use assembled::Assembly;

@@ -39,6 +39,16 @@ pub enum MovingBody {
     Platform,
 }
 
+impl MovingBody {
+    /// The number of the leg that it is a link of.
+    fn leg(self) -> Option<usize> {
+        match self {
+            Self::Link { leg, .. } => Some(leg),
+            Self::Platform => None,
+        }
+    }
+}
+
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
@@ -50,6 +60,18 @@ pub struct Ball {
 
 impl Ball {
     const ANYWHERE: Self = Self { centre: Point3::new(0.0, 0.0, 0.0), radius: f64::INFINITY };
+}
+
+/// A point that some joint coordinates of a leg move, where it is at home.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarriedPoint {
+    /// The number of the leg.
+    pub leg: usize,
+    /// The number of joint coordinates of the leg that move the point: none for a point of the base, all for one of the
+    /// platform.
+    pub coordinates: usize,
+    /// The point at home, in base coordinates, metres.
+    pub home: Point3<f64>,
 }
 
 /// A point over a box, in base coordinates.
@@ -93,8 +115,37 @@ impl Manipulator {
             out.resize(points.len(), Ball::ANYWHERE);
             return;
         }
-        let places = Places::<2>::new(self, mode, sides);
+        let asked = |leg: usize| points.iter().any(|point| point.body.leg() == Some(leg));
+        let places = Places::<2>::new(self, mode, sides, asked);
         out.extend(points.iter().map(|point| places.ball(point)));
+    }
+
+    /// Where points of the links are at every pose of a box that one working mode reaches, as functions of the sides that have
+    /// a width, in the order of these; `None` where nothing is known. The box is one as for [`Manipulator::places_over`], of
+    /// which at most `N` sides have a width.
+    ///
+    /// # Panics
+    /// If the number of sides is another, or more than `N` of them have a width.
+    #[doc(hidden)]
+    pub fn carried_over<const N: usize>(
+        &self,
+        mode: Mode,
+        sides: &[Side],
+        points: &[CarriedPoint],
+    ) -> Vec<Option<[Affine<N>; 3]>> {
+        assert_eq!(sides.len(), self.task().coordinates.len(), "a side for every coordinate");
+        if !self.encloses_places() {
+            return vec![None; points.len()];
+        }
+        let asked = |leg: usize| points.iter().any(|point| point.leg == leg);
+        let places = Places::<N>::new(self, mode, sides, asked);
+        let place = |point: &CarriedPoint| {
+            let home = point.home.coords;
+            let home: Place<N> = [home.x, home.y, home.z].map(Affine::constant);
+            let place = places.behind(point.leg, point.coordinates, home)?;
+            place.iter().all(|x| x.radius().is_finite()).then_some(place)
+        };
+        points.iter().map(place).collect()
     }
 }
 
@@ -105,7 +156,8 @@ struct Places<'a, const N: usize> {
     upper: Target<N>,
     /// The height above home, metres.
     rise: Affine<N>,
-    legs: Vec<LegPlaces<N>>,
+    /// Those of the legs that have some of the points.
+    legs: Vec<Option<LegPlaces<N>>>,
 }
 
 /// The displacements of a leg over a box.
@@ -124,7 +176,13 @@ struct LegPlaces<const N: usize> {
 }
 
 impl<'a, const N: usize> Places<'a, N> {
-    fn new(manipulator: &'a Manipulator, mode: Mode, sides: &[Side]) -> Self {
+    /// The displacements of those legs that are asked for.
+    fn new(
+        manipulator: &'a Manipulator,
+        mode: Mode,
+        sides: &[Side],
+        asked: impl Fn(usize) -> bool,
+    ) -> Self {
         let task = manipulator.task();
         let mut next = 0;
         let coordinates: Vec<_> = sides
@@ -145,9 +203,9 @@ impl<'a, const N: usize> Places<'a, N> {
         let (v, b) = (target::task::lower(task, lower), Upper::new(task, upper));
         let conditions = LegConditions { manipulator, mode: Some(mode), rise };
         let mut first = 0;
-        let legs = (0..manipulator.legs.len()).map(|leg| {
-            let places = LegPlaces::new(&conditions, leg, first, &v, &b);
-            first += places.coordinates.len();
+        let legs = manipulator.mechanism().legs.iter().enumerate().map(|(number, own)| {
+            let places = asked(number).then(|| LegPlaces::new(&conditions, number, first, &v, &b));
+            first += own.coordinates().count();
             places
         });
         let legs = legs.collect();
@@ -178,11 +236,13 @@ impl<'a, const N: usize> Places<'a, N> {
 
     /// A point behind `joints` joints of a leg; `None` where nothing is known of it.
     fn on_link(&self, leg: usize, joints: usize, point: Place<N>) -> Option<Place<N>> {
-        let of = &self.legs[leg];
-        if !of.known {
-            return None;
-        }
-        let (at, all) = (of.ends[joints], of.coordinates.len());
+        self.behind(leg, self.legs[leg].as_ref()?.ends[joints], point)
+    }
+
+    /// A point behind `at` joint coordinates of a leg; `None` where nothing is known of it.
+    fn behind(&self, leg: usize, at: usize, point: Place<N>) -> Option<Place<N>> {
+        let of = self.legs[leg].as_ref().filter(|of| of.known)?;
+        let all = of.coordinates.len();
         let (start, end) = if at <= of.split { (0, of.split) } else { (of.split, all) };
         let inner = || of.outward(start..at, point);
         let outer = || {
@@ -286,6 +346,12 @@ impl<const N: usize> LegPlaces<N> {
         for (joint, end) in joints.iter().zip(&ends[1..]) {
             if joint.kind == JointKind::Spherical {
                 coordinates[end - 3..*end].iter_mut().for_each(|(_, found)| *found = None);
+            }
+        }
+        // A rotation is a unit vector from here on: it moves many points.
+        for (screw, found) in &mut coordinates {
+            if screw.angular != Vector3::zeros() && screw.angular.dot(&screw.linear) == 0.0 {
+                *found = found.map(|turn| Enclosed::UnitDirection(turn.unit_vector()));
             }
         }
         let split = manipulator.decomposition().legs[number].lower.len();
