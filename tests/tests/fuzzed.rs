@@ -13,7 +13,7 @@ use std::path::Path;
 const CHANGES: usize = 60;
 
 /// Inputs without any model, of joint lists.
-const LISTS: usize = 1500;
+const LISTS: usize = 700;
 
 /// Command lines without any model.
 const LINES: usize = 60;

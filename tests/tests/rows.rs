@@ -209,7 +209,7 @@ fn round_numbers_are_no_exception() {
 fn limits_that_lie_on_poses_are_no_exception() {
     let mut rng = Rng::with_seed(21);
     let mut met = 0;
-    for round in 0..400 {
+    for round in 0..200 {
         let pair = LEVEL[round % LEVEL.len()];
         let options = Options { limited: 0.0, balls: false };
         let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
