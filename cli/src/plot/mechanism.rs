@@ -48,7 +48,7 @@ pub fn draw(args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
     drawn(args, |size| figure.draw(size))
 }
 
-/// Where a mechanism is drawn: at home in the mode of home, unless it is said.
+/// The pose and the working mode in which a mechanism is drawn; those of home by default.
 #[derive(Clone, Copy, Default)]
 pub struct At<'a> {
     pose: Option<&'a Pose>,

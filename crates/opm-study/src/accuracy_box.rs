@@ -33,7 +33,8 @@ pub struct Bounded {
     pub found: f64,
     /// That pose, radians and metres.
     pub pose: Vec<f64>,
-    /// The value is not larger at any pose of the box that is in reach; infinite if nothing is known.
+    /// The value is not larger at any pose of the box that is in reach; infinite if nothing is known, zero if no pose is in
+    /// reach.
     pub bound: f64,
 }
 

@@ -5,7 +5,7 @@ use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::examples::EXAMPLES;
 
-/// What errors of some tens of nanometres do beyond first order, as a share.
+/// How far errors of some tens of nanometres deviate from first order, as a share.
 const SECOND_ORDER: f64 = 1e-3;
 
 /// The rounding of a worst case.
