@@ -50,9 +50,30 @@ type MeasureState = ([f64; 3], u64, String, String, Vec<(String, f64, f64)>);
 
 /// The range of a coordinate: one value, or the lowest and the highest.
 #[derive(FromPyObject)]
-pub enum Range {
+enum Range {
     Fixed(f64),
     Between((f64, f64)),
+}
+
+/// Ranges of coordinates by their names: a number, or the lowest and the highest.
+pub fn ranges(over: &Bound<'_, PyMapping>) -> PyResult<Vec<CoordinateRange>> {
+    let given: Vec<(String, Bound<'_, PyAny>)> = over.items()?.extract()?;
+    let ranges = given.into_iter().map(|(name, range)| match range.extract() {
+        Ok(Range::Fixed(value)) => Ok(CoordinateRange::new(name, value, value)),
+        // A range without width has measure zero: a mistake.
+        Ok(Range::Between((min, max))) if min == max => {
+            let found = range.repr()?;
+            Err(wrong(format!(
+                "{name} is {found}, expected min below max, or one value to hold it"
+            )))
+        }
+        Ok(Range::Between((min, max))) => Ok(CoordinateRange::new(name, min, max)),
+        Err(_) => {
+            let found = range.repr()?;
+            Err(wrong(format!("{name} is {found}, expected a number or (min, max)")))
+        }
+    });
+    ranges.collect()
 }
 
 /// Measure the workspace, or how much of orientations or places one section alone reaches, with guaranteed bounds.
@@ -103,26 +124,7 @@ pub fn measure(
     executor: Option<Bound<'_, PyAny>>,
     #[pyo3(from_py_with = arguments::shards)] shards: Option<NonZeroU64>,
 ) -> PyResult<Measure> {
-    let given: Vec<(String, Bound<'_, PyAny>)> = match over {
-        Some(over) => over.items()?.extract()?,
-        None => Vec::new(),
-    };
-    let given = given.into_iter().map(|(name, range)| match range.extract() {
-        Ok(Range::Fixed(value)) => Ok(CoordinateRange::new(name, value, value)),
-        // A range without width has measure zero: a mistake.
-        Ok(Range::Between((min, max))) if min == max => {
-            let found = range.repr()?;
-            Err(wrong(format!(
-                "{name} is {found}, expected min below max, or one value to hold it"
-            )))
-        }
-        Ok(Range::Between((min, max))) => Ok(CoordinateRange::new(name, min, max)),
-        Err(_) => {
-            let found = range.repr()?;
-            Err(wrong(format!("{name} is {found}, expected a number or (min, max)")))
-        }
-    });
-    let given: Vec<CoordinateRange> = given.collect::<PyResult<_>>()?;
+    let given = over.map(ranges).transpose()?.unwrap_or_default();
     let modes = modes(manipulator.get(), mode)?;
     let query = Query { of: manipulator, sections: sections(section)?, modes, threads };
     let goal = goal(tolerance, budget)?;

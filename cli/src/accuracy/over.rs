@@ -11,7 +11,6 @@ use crate::text::{self, Table, short};
 use crate::unitless;
 use crate::workspace::threads;
 use opm_core::Quantity;
-use opm_core::mechanism::file::hint::expected_one_of;
 use opm_study::{Bounded, BoxError, BoxErrors, BoxRequest};
 use opm_workspace::Sections;
 use serde_json::{Value, json};
@@ -24,34 +23,15 @@ pub fn run(args: &AccuracyArgs, output: &Output, setting: &Setting<'_>) -> Resul
     if !(args.gap > 0.0 && args.gap.is_finite()) {
         return Err(Failure::flag("--gap", format!("{}, expected a positive share", args.gap)));
     }
-    let mut sides: Vec<[f64; 2]> = manipulator.home_pose().iter().map(|&home| [home; 2]).collect();
     let coordinates = Sections::Whole.coordinates(manipulator);
-    let mut given = Vec::new();
-    for axis in &args.over {
-        let range = axis.resolve(&coordinates).map_err(|error| Failure::flag("--over", error))?;
-        let Some(number) = coordinates.iter().position(|c| c.name == range.name) else {
-            let known: Vec<&str> = coordinates.iter().map(|c| &*c.name).collect();
-            let expected = expected_one_of(&range.name, &known);
-            return Err(Failure::flag(
-                "--over",
-                format!("no task coordinate {}, {expected}", range.name),
-            ));
-        };
-        if given.contains(&number) {
-            return Err(Failure::flag("--over", format!("{} is given twice", range.name)));
-        }
-        if range.min > range.max {
-            let problem = format!("{}: expected the smaller one first", range.name);
-            return Err(Failure::flag("--over", problem));
-        }
-        given.push(number);
-        sides[number] = [range.min, range.max];
-    }
+    let over = args.over.iter().map(|axis| axis.resolve(&coordinates));
+    let over: Result<Vec<_>, _> = over.collect();
+    let over = over.map_err(|error| Failure::flag("--over", error))?;
     let request = BoxRequest {
         model: &setting.model,
         sizes: &setting.sizes,
         mode: setting.mode,
-        ends: &sides,
+        over: &over,
         gap: args.gap,
         most: args.budget,
     };
@@ -71,12 +51,13 @@ pub fn run(args: &AccuracyArgs, output: &Output, setting: &Setting<'_>) -> Resul
             args.budget
         ));
     }
-    output.print(&json(setting, &sides, &found), text(setting, &found))
+    output.print(&json(setting, &found), text(setting, &found))
 }
 
-fn json(setting: &Setting<'_>, sides: &[[f64; 2]], found: &BoxErrors) -> Value {
+fn json(setting: &Setting<'_>, found: &BoxErrors) -> Value {
     let coordinates = setting.manipulator().task_coordinates();
-    let over = coordinates.iter().zip(sides).map(|(c, ends)| (c.name.to_owned(), json!(ends)));
+    let over =
+        coordinates.iter().zip(&found.over).map(|(c, ends)| (c.name.to_owned(), json!(ends)));
     let of = |bounded: &Bounded| {
         let pose = coordinates.iter().map(|c| c.name).zip(bounded.pose.iter().copied());
         json!({ "found": finite(bounded.found), "bound": finite(bounded.bound), "pose": named(pose) })

@@ -4,7 +4,8 @@ use opm_accuracy::{Budget, Model, Unbounded};
 use opm_core::Quantity;
 use opm_core::enclosure::{BoxQuery, Side};
 use opm_core::manipulator::{Manipulator, Mode};
-use opm_workspace::{Cancelled, Progress, in_order};
+use opm_workspace::measure::{CoordinateRange, RangeError};
+use opm_workspace::{Cancelled, Progress, Sections, in_order};
 
 /// The most boxes that are bounded if nothing else is said: some ten seconds.
 pub const BOX_BUDGET: u64 = 20_000;
@@ -18,8 +19,8 @@ pub struct BoxRequest<'a> {
     pub sizes: &'a [f64],
     /// The working mode.
     pub mode: Mode,
-    /// The lowest and the highest value of each task coordinate, radians and metres.
-    pub ends: &'a [[f64; 2]],
+    /// The ranges of task coordinates. Others stay at home.
+    pub over: &'a [CoordinateRange],
     /// The share by which a bound may exceed the largest error that was found at a pose.
     pub gap: f64,
     /// The most boxes that are bounded.
@@ -41,6 +42,8 @@ pub struct Bounded {
 /// The worst pose errors over a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoxErrors {
+    /// The lowest and the highest value of each task coordinate, radians and metres.
+    pub over: Vec<[f64; 2]>,
     /// The displacement of the platform's reference point, metres.
     pub length: Bounded,
     /// The rotation of the platform, radians.
@@ -73,15 +76,13 @@ impl BoxRequest<'_> {
     /// threads.
     ///
     /// # Errors
-    /// The errors have no bounds over boxes, or the work was cancelled.
-    ///
-    /// # Panics
-    /// If there is not one pair of ends for each task coordinate.
+    /// A range is wrong, the errors have no bounds over boxes, or the work was cancelled.
     pub fn errors(&self, progress: &Progress) -> Result<BoxErrors, BoxError> {
+        let over = CoordinateRange::of_each(self.model.manipulator(), Sections::Whole, self.over)?;
         self.model.check_boxes(self.sizes)?;
         let none = || Bounded { found: f64::NAN, pose: Vec::new(), bound: 0.0 };
         let mut worst = [none(), none()];
-        let mut parts = vec![Part { ends: self.ends.to_vec(), bounds: [f64::INFINITY; 2] }];
+        let mut parts = vec![Part { ends: over.clone(), bounds: [f64::INFINITY; 2] }];
         let mut boxes = 0;
         while !parts.is_empty() && (boxes == 0 || boxes + parts.len() as u64 <= self.most) {
             boxes += parts.len() as u64;
@@ -118,7 +119,7 @@ impl BoxRequest<'_> {
         parts.iter().for_each(|part| part.count(&mut worst));
         let tight = worst.iter().all(|own| own.bound <= own.found * (1.0 + self.gap));
         let [length, angle] = worst;
-        Ok(BoxErrors { length, angle, boxes, tight })
+        Ok(BoxErrors { over, length, angle, boxes, tight })
     }
 
     /// Bounds the errors in a part, and computes them at a pose where they are large. `None` if no pose is in reach.
@@ -198,6 +199,9 @@ impl Part {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BoxError {
+    /// A coordinate is unknown or repeated, or its ends are not finite numbers in their order.
+    #[error(transparent)]
+    Range(#[from] RangeError),
     /// The errors have no bounds over boxes.
     #[error(transparent)]
     Unbounded(#[from] Unbounded),

@@ -26,11 +26,13 @@
 //! ```
 
 mod cell;
+mod coordinate_range;
 mod domain;
 mod ranges;
 
 pub use cell::{Bounds, Cell};
-pub use domain::{CoordinateRange, Domain, DomainAxis, DomainError};
+pub use coordinate_range::{CoordinateRange, RangeError};
+pub use domain::{Domain, DomainAxis, DomainError};
 pub use ranges::default_ranges;
 
 use crate::progress::{Cancelled, Progress};

@@ -5,9 +5,8 @@ use crate::arguments;
 use crate::error::wrong;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
-use crate::measure::Range;
+use crate::measure::ranges;
 use crate::pickle::pickled;
-use opm_core::mechanism::file::hint::expected_one_of;
 use opm_study::{Bounded, BoxErrors, BoxRequest};
 use opm_workspace::Progress;
 use pyo3::prelude::*;
@@ -120,13 +119,13 @@ impl Manipulator {
         }
         let given = ErrorArguments { actuators, tolerances, errors, length };
         let (model, sizes) = given.read(self)?;
-        let ends = self.ends(over)?;
+        let over = ranges(over)?;
         let most = budget.unwrap_or(opm_study::BOX_BUDGET);
-        let request = BoxRequest { model: &model, sizes: &sizes, mode, ends: &ends, gap, most };
+        let request = BoxRequest { model: &model, sizes: &sizes, mode, over: &over, gap, most };
         let progress = Progress::default();
         let found =
             interrupt::run(py, threads, || request.errors(&progress), || progress.cancel())?;
-        let BoxErrors { length, angle, boxes, tight } =
+        let BoxErrors { length, angle, boxes, tight, .. } =
             found.map_err(|error| wrong(error.to_string()))?;
         let [Bounded { found: found_length, pose: pose_length, bound: length }, other] =
             [length, angle];
@@ -141,34 +140,5 @@ impl Manipulator {
             tight,
             boxes,
         })
-    }
-}
-
-impl Manipulator {
-    /// The ends of each task coordinate of a box; those that are not given stay at home.
-    fn ends(&self, over: &Bound<'_, PyMapping>) -> PyResult<Vec<[f64; 2]>> {
-        let inner = &*self.inner;
-        let names: Vec<&str> = inner.task_coordinates().iter().map(|c| c.name).collect();
-        let mut ends: Vec<[f64; 2]> = inner.home_pose().iter().map(|&home| [home; 2]).collect();
-        let given: Vec<(String, Bound<'_, PyAny>)> = over.items()?.extract()?;
-        for (name, range) in given {
-            let Some(number) = names.iter().position(|known| *known == name) else {
-                let hint = expected_one_of(&name, &names);
-                return Err(wrong(format!("over: {name:?} is not a task coordinate; {hint}")));
-            };
-            ends[number] = match range.extract() {
-                Ok(Range::Fixed(value)) if value.is_finite() => [value; 2],
-                Ok(Range::Between((min, max))) if min <= max && (max - min).is_finite() => {
-                    [min, max]
-                }
-                _ => {
-                    let shown = arguments::shown(&range);
-                    return Err(wrong(format!(
-                        "over: {name} is {shown}, expected a number or (min, max), the smaller one first"
-                    )));
-                }
-            };
-        }
-        Ok(ends)
     }
 }

@@ -1,10 +1,11 @@
 //! The domain of a measure: a range of every coordinate, and the weight of its parts.
 
 use super::cell::Cell;
+use super::coordinate_range::{CoordinateRange, RangeError};
 use crate::grid::Sections;
 use opm_core::Quantity;
 use opm_core::enclosure::{BoxQuery, HalfTurn, MOST, Side};
-use opm_core::manipulator::{ImaginaryJoint, LARGEST, Manipulator};
+use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::numeric::number::readable;
 use opm_core::task::CoordinateKind;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -15,24 +16,6 @@ const MOST_PIECES: usize = 4096;
 
 /// Measures that stay finite numbers in any units of length and angle.
 const MEASURES: RangeInclusive<f64> = 1e-280..=1e280;
-
-/// The range of one coordinate that a measure is taken over.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CoordinateRange {
-    /// The name of the coordinate.
-    pub name: String,
-    /// The lowest value, radians or metres.
-    pub min: f64,
-    /// The highest value, radians or metres. It equals the lowest if the coordinate has a single value.
-    pub max: f64,
-}
-
-impl CoordinateRange {
-    /// The range of coordinate `name` from `min` to `max`, radians or metres.
-    pub fn new(name: impl Into<String>, min: f64, max: f64) -> Self {
-        Self { name: name.into(), min, max }
-    }
-}
 
 /// One coordinate of a domain.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,33 +114,9 @@ pub enum DomainError {
          the height; a grid of its workspace can be counted"
     )]
     Inclined,
-    /// No coordinate has the name of the range.
-    #[error("no {} {name}, expected one of {expected}", sections.coordinate())]
-    Unknown {
-        /// The name, as given.
-        name: String,
-        /// The sections that are measured.
-        sections: Sections,
-        /// The names of all coordinates, separated by commas.
-        expected: String,
-    },
-    /// Two ranges are of the same coordinate.
-    #[error("{0} is given twice")]
-    Twice(String),
-    /// An end of a range is not a finite number, or the ends are reversed.
-    #[error(
-        "{name}: {} to {}, expected numbers up to {LARGEST:e}, the smaller one first",
-        readable(*min),
-        readable(*max)
-    )]
-    Range {
-        /// The name of the coordinate.
-        name: String,
-        /// The lowest value, as given.
-        min: f64,
-        /// The highest value, as given.
-        max: f64,
-    },
+    /// A coordinate is unknown or repeated, or its ends are not finite numbers in their order.
+    #[error(transparent)]
+    Range(#[from] RangeError),
     /// The range of a tilt has too many half turns.
     #[error(
         "{name}: {} to {}, expected at most {MOST_PIECES} half turns",
@@ -224,25 +183,12 @@ impl Domain {
         if axes.is_empty() {
             return Err(DomainError::NoUpperSection);
         }
-        let mut seen = vec![false; axes.len()];
-        for CoordinateRange { name, min, max } in given {
-            let Some(number) = axes.iter().position(|axis| axis.name == *name) else {
-                let names: Vec<_> = axes.iter().map(|axis| &*axis.name).collect();
-                let expected = names.join(", ");
-                return Err(DomainError::Unknown { name: name.clone(), sections, expected });
-            };
-            if std::mem::replace(&mut seen[number], true) {
-                return Err(DomainError::Twice(name.clone()));
-            }
-            let (name, min, max) = (name.clone(), *min, *max);
-            if !(min <= max && min.abs().max(max.abs()) <= LARGEST) {
-                return Err(DomainError::Range { name, min, max });
-            }
-            let axis = &mut axes[number];
+        let ends = CoordinateRange::of_each(manipulator, sections, given)?;
+        for (axis, [min, max]) in axes.iter_mut().zip(ends) {
             (axis.min, axis.max) = (min, max);
             if matches!(axis.kind, Kind::Tilt { .. }) && (max - min) / PI > (MOST_PIECES - 2) as f64
             {
-                return Err(DomainError::Turns { name, min, max });
+                return Err(DomainError::Turns { name: axis.name.clone(), min, max });
             }
         }
         let wide: Vec<usize> = (0..axes.len()).filter(|&i| axes[i].has_width()).collect();
