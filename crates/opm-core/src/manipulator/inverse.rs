@@ -36,7 +36,6 @@ impl Manipulator {
     /// }
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[inline]
     pub fn inverse<'a>(
         &self,
         pose: &[f64],
@@ -54,7 +53,6 @@ impl Manipulator {
     ///
     /// # Errors
     /// As [`Manipulator::inverse`].
-    #[inline]
     pub fn inverse_near<'a>(
         &self,
         pose: &[f64],
@@ -155,7 +153,6 @@ impl Manipulator {
     }
 
     /// Solves a pose, or returns an error if it is not valid.
-    #[inline]
     fn solve(
         &self,
         pose: &[f64],
