@@ -22,6 +22,7 @@ mod affine;
 mod area;
 mod boundary;
 mod chain;
+mod opening;
 mod places;
 mod planar;
 mod raised;
@@ -42,7 +43,7 @@ use std::f64::consts::{PI, TAU};
 use target::{Coordinate, Enclosed, Target};
 
 pub use affine::Affine;
-pub use places::{Ball, BodyPoint, CarriedPoint, MovingBody};
+pub use places::{BodyPoint, CarriedPoint, MovingBody, Place};
 pub use share::MOST;
 
 /// One coordinate of a box.

@@ -1,18 +1,13 @@
-//! Whether all distances are large enough over boxes of poses, without a distance at each pose.
+//! Whether all distances are large enough over boxes of poses, without a distance at each pose: by certain bounds ([`gap`]).
 //!
-//! Over a box, each end of a capsule is in a ball ([`Manipulator::places_over`]). Every point of the capsule's axis is a
-//! mean of its ends, and so within the larger of their radii of the same mean of the balls' centres. So with `d` the
-//! distance of the capsules between the centres, and `r` and `s` these radii,
-//!
-//! ```text
-//! d - r - s  <=  the distance at each pose of the box  <=  d + r + s
-//! ```
+//! [`gap`]: crate::gap
 
-use crate::distance::{Capsule, INACCURACY};
+use crate::Interference;
+use crate::distance::INACCURACY;
 use crate::distances::Distances;
+use crate::gap::{CapsuleOver, Gap, PointOver, Poses};
 use crate::member::{End, Shape, scaled};
-use crate::{Interference, Pair};
-use opm_core::enclosure::{Ball, BodyPoint, MovingBody, Side};
+use opm_core::enclosure::{BodyPoint, MovingBody, Place, Side};
 use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::joint::JointKind;
 use parry3d_f64::math::Vector;
@@ -31,10 +26,10 @@ pub enum Clearance {
     Open,
 }
 
-/// The pairs that bounds over a box leave open. The others are far enough apart.
+/// The pairs of shapes that bounds over a box leave open. The others are far enough apart.
 #[derive(Clone, Debug, Default)]
 pub struct Open {
-    pairs: Vec<usize>,
+    pairs: Vec<[usize; 2]>,
 }
 
 /// Decides by a clearance, over boxes of poses and at single poses, with working memory of its own.
@@ -51,12 +46,16 @@ pub struct BoxTest<'a> {
     /// The points that are asked for, and where they are.
     wanted: Vec<usize>,
     asked: Vec<BodyPoint>,
-    balls: Vec<Ball>,
-    places: Vec<ScaledBall>,
+    found: Vec<Option<Place<2>>>,
+    places: Vec<PointOver>,
     /// Whether each point is asked for, while they are collected.
     marked: Vec<bool>,
+    /// Those sides of the last box that have a width: the number of the coordinate, the middle, and half of the width.
+    wide: Vec<(usize, f64, f64)>,
+    /// The pairs that the last box left open. One that is too near at a pose comes first at the next one.
+    gaps: Vec<Gap>,
     /// The pair that was too near at the last pose that was tested and failed: a pose beside it mostly fails by the same.
-    nearest: usize,
+    nearest: [usize; 2],
 }
 
 /// Where the end of a capsule is.
@@ -64,13 +63,6 @@ pub struct BoxTest<'a> {
 enum EndPlace {
     AtRest(Vector),
     Moving(usize),
-}
-
-/// A ball in units of the mechanism's size.
-#[derive(Clone, Copy, Debug)]
-struct ScaledBall {
-    centre: Vector,
-    radius: f64,
 }
 
 impl<'a> BoxTest<'a> {
@@ -99,19 +91,20 @@ impl<'a> BoxTest<'a> {
             Shape::Box { .. } | Shape::HalfSpace { .. } => [nowhere; 2],
         });
         let ends = ends.collect();
-        let anywhere = ScaledBall { centre: Vector::ZERO, radius: f64::INFINITY };
         Self {
             manipulator,
             distances: Distances::new(interference),
             least: least / interference.unit,
-            places: vec![anywhere; points.len()],
+            places: vec![PointOver::at_rest(Vector::ZERO); points.len()],
             marked: vec![false; points.len()],
             points,
             ends,
             wanted: Vec::new(),
             asked: Vec::new(),
-            balls: Vec::new(),
-            nearest: 0,
+            found: Vec::new(),
+            wide: Vec::new(),
+            gaps: Vec::new(),
+            nearest: [0; 2],
         }
     }
 
@@ -122,11 +115,12 @@ impl<'a> BoxTest<'a> {
 
     /// All pairs.
     pub fn all(&self) -> Open {
-        Open { pairs: (0..self.distances.interference().pairs()).collect() }
+        let pairs = self.distances.interference().pairs.iter();
+        Open { pairs: pairs.flat_map(|pair| pair.shapes.iter().copied()).collect() }
     }
 
     /// Tests a box of poses in one working mode, for the pairs that a larger box left open, and writes those that this
-    /// one leaves open.
+    /// one leaves open. At most two sides have a width.
     pub fn over_box(
         &mut self,
         mode: Mode,
@@ -135,26 +129,47 @@ impl<'a> BoxTest<'a> {
         left: &mut Open,
     ) -> Clearance {
         self.find_places(mode, sides, open);
-        let interference = self.distances.interference();
         left.pairs.clear();
-        for &number in &open.pairs {
-            let [low, high] = self.bounds(&interference.pairs[number]);
-            if high < self.least - INACCURACY {
-                return Clearance::Blocked;
-            }
-            // A bound that is not a number leaves the pair open, too.
-            let apart = low >= self.least + INACCURACY;
-            if !apart {
-                left.pairs.push(number);
+        self.gaps.clear();
+        for &pair in &open.pairs {
+            // The first shape of a pair is a capsule.
+            let Some(gap) = self.gap(pair) else { continue };
+            match decided(&gap, Poses::All, self.least) {
+                Clearance::Clear => {}
+                Clearance::Blocked => return Clearance::Blocked,
+                Clearance::Open => {
+                    left.pairs.push(pair);
+                    self.gaps.push(gap);
+                }
             }
         }
         if left.pairs.is_empty() { Clearance::Clear } else { Clearance::Open }
     }
 
+    /// Tests one pose of the box that was tested last and left pairs open.
+    pub fn in_box(&mut self, pose: &[f64]) -> Clearance {
+        let mut at = [0.0; 2];
+        for (at, &(number, middle, half)) in at.iter_mut().zip(&self.wide) {
+            *at = (pose[number] - middle) / half;
+        }
+        let mut all = Clearance::Clear;
+        for number in 0..self.gaps.len() {
+            match decided(&self.gaps[number], Poses::At(at), self.least) {
+                Clearance::Clear => {}
+                Clearance::Open => all = Clearance::Open,
+                Clearance::Blocked => {
+                    self.gaps.swap(0, number);
+                    return Clearance::Blocked;
+                }
+            }
+        }
+        all
+    }
+
     /// Whether the pairs that were left open are far enough apart at one pose.
     pub fn at(&mut self, solution: &Solution, open: &Open) -> bool {
         self.distances.place(self.manipulator, solution);
-        let apart = |pair: usize| self.distances.are_apart(pair, self.least);
+        let apart = |pair: [usize; 2]| self.distances.are_apart(pair, self.least);
         if open.pairs.contains(&self.nearest) && !apart(self.nearest) {
             return false;
         }
@@ -167,64 +182,57 @@ impl<'a> BoxTest<'a> {
 
     /// Finds where the ends of the capsules of some pairs are.
     fn find_places(&mut self, mode: Mode, sides: &[Side], open: &Open) {
-        let interference = self.distances.interference();
+        self.wide.clear();
+        let wide = sides.iter().enumerate().filter(|(_, side)| side.half > 0.0);
+        self.wide.extend(wide.map(|(number, side)| (number, side.middle, side.half)));
         self.wanted.clear();
-        for &number in &open.pairs {
-            let shapes = interference.pairs[number].shapes.iter().flatten();
-            for place in shapes.flat_map(|&shape| self.ends[shape]) {
-                if let EndPlace::Moving(point) = place {
-                    self.marked[point] = true;
-                }
+        for place in open.pairs.iter().flatten().flat_map(|&shape| self.ends[shape]) {
+            if let EndPlace::Moving(point) = place {
+                self.marked[point] = true;
             }
         }
         let marked = self.marked.iter_mut().enumerate();
         self.wanted.extend(marked.filter_map(|(p, mark)| std::mem::take(mark).then_some(p)));
         self.asked.clear();
         self.asked.extend(self.wanted.iter().map(|&point| self.points[point]));
-        self.manipulator.places_over(mode, sides, &self.asked, &mut self.balls);
-        let unit = interference.unit;
-        for (&point, ball) in self.wanted.iter().zip(&self.balls) {
-            let centre = scaled(&ball.centre.coords, unit);
-            self.places[point] = ScaledBall { centre, radius: ball.radius / unit };
+        self.manipulator.places_over(mode, sides, &self.asked, &mut self.found);
+        let unit = self.distances.interference().unit;
+        for (&point, found) in self.wanted.iter().zip(&self.found) {
+            self.places[point] = PointOver::new(found.as_ref(), unit);
         }
     }
 
-    /// Certain bounds of the distance of a pair, in units of the mechanism's size.
-    fn bounds(&self, pair: &Pair) -> [f64; 2] {
-        let bounds = pair.shapes.iter().map(|&shapes| self.bounds_between(shapes));
-        bounds.fold([f64::INFINITY; 2], |all, one| [all[0].min(one[0]), all[1].min(one[1])])
+    /// What bounds the distance of a pair.
+    fn gap(&self, [one, other]: [usize; 2]) -> Option<Gap> {
+        let capsule = self.capsule(one)?;
+        Some(match &self.distances.interference().shapes[other] {
+            Shape::Capsule { .. } => Gap::of_capsules(&capsule, &self.capsule(other)?),
+            Shape::HalfSpace { normal, offset } => Gap::to_half_space(&capsule, *normal, *offset),
+            &Shape::Box { pose, half } => Gap::Box { capsule, pose, half },
+        })
     }
 
-    fn bounds_between(&self, [one, other]: [usize; 2]) -> [f64; 2] {
-        let shapes = &self.distances.interference().shapes;
-        let Some((capsule, r)) = self.capsule(one) else { return [f64::INFINITY; 2] };
-        let (distance, s) = match &shapes[other] {
-            Shape::Capsule { .. } => match self.capsule(other) {
-                Some((other, s)) if r.is_finite() && s.is_finite() => {
-                    (capsule.distance_to_capsule(&other), s)
-                }
-                Some(_) | None => return [f64::NEG_INFINITY, f64::INFINITY],
-            },
-            _ if !r.is_finite() => return [f64::NEG_INFINITY, f64::INFINITY],
-            Shape::Box { pose, half } => (capsule.distance_to_box(pose, *half), 0.0),
-            Shape::HalfSpace { normal, offset } => {
-                (capsule.distance_to_half_space(*normal, *offset), 0.0)
-            }
-        };
-        [distance - r - s, distance + r + s]
-    }
-
-    /// The capsule between the centres, and how far its points may be from there.
-    fn capsule(&self, number: usize) -> Option<(Capsule, f64)> {
+    /// A capsule over the last box.
+    fn capsule(&self, number: usize) -> Option<CapsuleOver> {
         let Shape::Capsule { radius, .. } = self.distances.interference().shapes[number] else {
             return None;
         };
-        let balls = self.ends[number].map(|end| match end {
-            EndPlace::AtRest(centre) => ScaledBall { centre, radius: 0.0 },
+        let ends = self.ends[number].map(|end| match end {
+            EndPlace::AtRest(centre) => PointOver::at_rest(centre),
             EndPlace::Moving(point) => self.places[point],
         });
-        let off = balls[0].radius.max(balls[1].radius);
-        Some((Capsule { ends: balls.map(|ball| ball.centre), radius }, off))
+        Some(CapsuleOver { ends, radius })
+    }
+}
+
+/// What certain bounds tell. A bound that is not a number tells nothing.
+fn decided(gap: &Gap, poses: Poses, least: f64) -> Clearance {
+    if gap.least(poses) >= least + INACCURACY {
+        Clearance::Clear
+    } else if gap.most(poses) < least - INACCURACY {
+        Clearance::Blocked
+    } else {
+        Clearance::Open
     }
 }
 

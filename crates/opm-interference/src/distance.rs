@@ -25,11 +25,16 @@ impl Capsule {
 
     /// The distance of the two axes.
     fn axes_apart(&self, other: &Self) -> f64 {
+        let [p, q] = self.nearest_points(other);
+        let point = |ends: &[Vector; 2], at: [f64; 2]| ends[0] * at[0] + ends[1] * at[1];
+        (point(&self.ends, p) - point(&other.ends, q)).length()
+    }
+
+    /// The points of the two axes that are nearest to each other, as weights of the ends.
+    pub fn nearest_points(&self, other: &Self) -> [[f64; 2]; 2] {
         let ([a, b], [c, d]) = (&self.ends, &other.ends);
         let (first, second) = closest_points_segment_segment_with_locations_nD((a, b), (c, d));
-        let point = |ends: &[Vector; 2], at: [f64; 2]| ends[0] * at[0] + ends[1] * at[1];
-        let first = point(&self.ends, first.barycentric_coordinates());
-        (first - point(&other.ends, second.barycentric_coordinates())).length()
+        [first.barycentric_coordinates(), second.barycentric_coordinates()]
     }
 
     /// At most the distance from another capsule: that of the balls around them.

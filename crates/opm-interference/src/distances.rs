@@ -118,9 +118,9 @@ impl<'a> Distances<'a> {
         })
     }
 
-    /// Whether a pair is at least this far apart, in units of the mechanism's size.
-    pub(crate) fn are_apart(&self, pair: usize, least: f64) -> bool {
-        self.scaled_below(pair, least) >= least
+    /// Whether two shapes of a pair are at least this far apart, in units of the mechanism's size.
+    pub(crate) fn are_apart(&self, [one, other]: [usize; 2], least: f64) -> bool {
+        self.between(one, other, least) >= least
     }
 
     /// The distance of a pair, in units of the mechanism's size, if it is below `most`; else some number that is not.

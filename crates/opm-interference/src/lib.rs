@@ -34,6 +34,7 @@
 mod boxes;
 mod distance;
 mod distances;
+mod gap;
 pub mod member;
 mod motion;
 pub mod neighbours;

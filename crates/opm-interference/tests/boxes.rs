@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use opm_core::Manipulator;
-use opm_core::enclosure::{BodyPoint, MovingBody, Side};
+use opm_core::enclosure::{Affine, BodyPoint, MovingBody, Side};
 use opm_core::manipulator::Mode;
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::mechanism::joint::Quantity;
@@ -42,6 +42,16 @@ fn pose_in(sides: &[Side], rng: &mut Rng) -> Vec<f64> {
     sides.iter().map(at).collect()
 }
 
+/// Where a pose is in a box: for each side with a width, from -1 to 1.
+fn place_in(sides: &[Side], pose: &[f64]) -> [f64; 2] {
+    let wide = sides.iter().zip(pose).filter(|(side, _)| side.half > 0.0);
+    let mut at = [0.0; 2];
+    for (at, (side, x)) in at.iter_mut().zip(wide) {
+        *at = (x - side.middle) / side.half;
+    }
+    at
+}
+
 fn random_mode(manipulator: &Manipulator, rng: &mut Rng) -> Mode {
     let modes: Vec<Mode> = manipulator.modes().collect();
     modes[rng.usize(0..modes.len())]
@@ -49,7 +59,7 @@ fn random_mode(manipulator: &Manipulator, rng: &mut Rng) -> Mode {
 
 /// The joints' centres in every body, which the skeleton places from the joint values.
 #[test]
-fn balls_contain_the_points_of_the_bodies() {
+fn places_are_linear_to_within_their_errors() {
     let mut rng = Rng::with_seed(11);
     for manipulator in manipulators() {
         let name = manipulator.mechanism().name.clone();
@@ -69,12 +79,12 @@ fn balls_contain_the_points_of_the_bodies() {
                 points.push(BodyPoint { body, home: seat.centre + of.origin.coords });
             }
         }
-        let (mut solution, mut balls) = (manipulator.solution(), Vec::new());
+        let (mut solution, mut found) = (manipulator.solution(), Vec::new());
         let (mut reached, mut tight) = (0, 0);
         for _ in 0..300 {
             let sides = random_box(&manipulator, size, &mut rng);
             let mode = random_mode(&manipulator, &mut rng);
-            manipulator.places_over(mode, &sides, &points, &mut balls);
+            manipulator.places_over(mode, &sides, &points, &mut found);
             for _ in 0..6 {
                 let pose = pose_in(&sides, &mut rng);
                 let Ok(Some(solution)) = manipulator.inverse(&pose, mode, &mut solution) else {
@@ -85,22 +95,30 @@ fn balls_contain_the_points_of_the_bodies() {
                 let joints = solution.joints();
                 let at = Configuration { joints, imaginary: &[], platform };
                 let placed = skeleton.place_in_base(&at).unwrap();
-                for ((body, centre), ball) in local.iter().zip(&balls) {
-                    let found = placed[*body] * centre;
-                    let off = (found - ball.centre).norm() - ball.radius;
-                    assert!(off <= ROUNDING * size, "{name}, body {body}: outside by {off} m");
+                let at = place_in(&sides, &pose);
+                for ((body, centre), found) in local.iter().zip(&found) {
+                    let Some(found) = found else { continue };
+                    let placed = placed[*body] * centre;
+                    for (x, place) in found.iter().zip(placed.iter()) {
+                        let linear = x.centre + x.slope[0] * at[0] + x.slope[1] * at[1];
+                        let off = (place - linear).abs() - x.total_error();
+                        assert!(off <= ROUNDING * size, "{name}, body {body}: off by {off} m");
+                    }
                 }
             }
-            tight += usize::from(balls.iter().all(|ball| ball.radius < 0.5 * size));
+            let is_tight =
+                |place: &[Affine<2>; 3]| place.iter().all(|x| x.total_error() < 0.1 * size);
+            tight += usize::from(found.iter().all(|place| place.as_ref().is_some_and(is_tight)));
         }
         assert!(reached > 50 && tight > 50, "{name}: {reached} poses, {tight} boxes");
     }
 }
 
-/// Boxes that are clear or blocked are so at each pose that is reached, and single poses agree with distances.
+/// Boxes that are clear or blocked are so at each pose that is reached, and so are poses that bounds in the box decide; single
+/// poses agree with distances.
 #[test]
 fn boxes_decide_as_the_distances_do() {
-    let mut rng = Rng::with_seed(5);
+    let (mut rng, mut in_box) = (Rng::with_seed(5), 0);
     for manipulator in manipulators() {
         let name = manipulator.mechanism().name.clone();
         let interference = Interference::new(manipulator.mechanism());
@@ -109,12 +127,20 @@ fn boxes_decide_as_the_distances_do() {
         let size = Skeleton::new(manipulator.mechanism(), None).size();
         let mut solution = manipulator.solution();
         let mut decided = 0;
-        for _ in 0..200 {
-            let least = at_home.distance * 2.0 * rng.f64();
-            let mut test = BoxTest::new(&manipulator, &interference, least);
-            let (all, mut open) = (test.all(), Default::default());
+        for _ in 0..400 {
             let sides = random_box(&manipulator, size, &mut rng);
             let mode = random_mode(&manipulator, &mut rng);
+            // Often next to a distance that occurs in the box, so that it has poses of both kinds.
+            let pose = pose_in(&sides, &mut rng);
+            let least = match manipulator.inverse(&pose, mode, &mut solution) {
+                Ok(Some(solution)) if rng.bool() => {
+                    distances.place(&manipulator, solution);
+                    distances.nearest().unwrap().distance.max(0.0) + 1e-9 * size
+                }
+                _ => at_home.distance * 2.0 * rng.f64(),
+            };
+            let mut test = BoxTest::new(&manipulator, &interference, least);
+            let (all, mut open) = (test.all(), Default::default());
             let verdict = test.over_box(mode, &sides, &all, &mut open);
             for _ in 0..5 {
                 let pose = pose_in(&sides, &mut rng);
@@ -130,8 +156,17 @@ fn boxes_decide_as_the_distances_do() {
                     Clearance::Open => assert_eq!(test.at(solution, &open), clear, "{name}"),
                 }
                 decided += usize::from(verdict != Clearance::Open);
+                if verdict == Clearance::Open {
+                    match test.in_box(&pose) {
+                        Clearance::Clear => assert!(clear, "{name}: not clear in a box"),
+                        Clearance::Blocked => assert!(!clear, "{name}: not blocked in a box"),
+                        Clearance::Open => continue,
+                    }
+                    in_box += 1;
+                }
             }
         }
         assert!(decided > 20, "{name}: {decided}");
     }
+    assert!(in_box > 1000, "{in_box} poses decided by bounds in an open box");
 }

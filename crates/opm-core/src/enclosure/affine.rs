@@ -23,6 +23,10 @@ pub const WIDE: f64 = 1.2;
 /// The largest `(1 - cos θ)/2` for which a rotation vector is bounded: beyond it, θ is too near to π.
 const NEAR_HALF_TURN: f64 = 0.999;
 
+/// The largest distance from a point, as a share of that point's distance from the origin, at which a logarithm is nearly
+/// linear.
+const NEAR: f64 = 0.3;
+
 /// The largest second derivative of the arctangent, `3√3/8`.
 const ARCTANGENT_BEND: f64 = 0.65;
 
@@ -416,6 +420,13 @@ impl<const N: usize> Plane<N> {
         let unknown = || Affine::unknown(angle, std::f64::consts::TAU, &self.spread());
         if length == 0.0 || !length.is_finite() {
             return unknown();
+        }
+        // Of `log(1 + z)`, the imaginary part: `|log(1 + z) - z| <= |z|²/2 / (1 - |z|)`.
+        let z = self * (middle.conj() / (length * length)) - Complex::ONE;
+        let size = z.re.furthest().hypot(z.im.furthest());
+        if size < NEAR {
+            let bound = 0.5 * size * size / (1.0 - size);
+            return z.im + angle + Affine::unknown(0.0, bound, &z.spread());
         }
         let ahead = self * (middle.conj() / length);
         if ahead.re.low() > 0.0 { (ahead.im * ahead.re.recip()).atan() + angle } else { unknown() }

@@ -2,6 +2,7 @@
 //! and the joints' displacements where it does.
 
 use super::affine::{Affine, Plane, WIDE};
+use super::opening;
 use super::planar::{self, Joint};
 use super::share::Share;
 use super::target::{Enclosed, Rotation, Target, dot};
@@ -9,10 +10,6 @@ use crate::chain::cylindrical::CoaxialJoint;
 use crate::chain::spherical::{Ball, SphericalChain};
 use crate::chain::{Branch, Chain, REACH_TOLERANCE};
 use nalgebra::{Complex, Vector3};
-
-/// Nearer to the boundary of reach than this fraction, the second derivative of an angle of a triangle is too
-/// large for a useful bound.
-const NEAR_BOUNDARY: f64 = 1e-3;
 
 /// The end of a range without an end.
 const INFINITE: f64 = f64::INFINITY;
@@ -122,50 +119,13 @@ impl Arcs {
         [cosine, (-cosine.square() + 1.0).sqrt()]
     }
 
-    /// The angle at `a₁` between the planes of `a₂` and of `w`: `cos ψ = (cos a₂₃ - z cos a₁₂) / (sin a₁₂
-    /// √(1 - z²))`. It depends on one number, so that its second derivative can be bounded; `None` where
-    /// the bounds are wide, near the boundary of reach and the poles.
-    fn opening<const N: usize>(&self, z: Affine<N>) -> Option<Affine<N>> {
-        let [c12, c23] = self.cosines;
-        let (middle, half) = (c12 * c23, self.sines[0] * self.sines[1]);
-        let ends = [z.low(), z.high()];
-        // Concave, with their largest values in the middle.
-        let square = |z: f64| (1.0 - z) * (1.0 + z);
-        let gram = |z: f64| (half - (z - middle)) * (half + (z - middle));
-        let range = |f: &dyn Fn(f64) -> f64, top: f64| {
-            let [a, b] = ends.map(f);
-            [a.min(b), f(top.clamp(ends[0], ends[1]))]
-        };
-        let (squares, grams) = (range(&square, 0.0), range(&gram, middle));
-        if !(squares[0] > NEAR_BOUNDARY && grams[0] > NEAR_BOUNDARY * half * half) {
-            return None;
-        }
-        let times = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
-            let all = [a * c, a * d, b * c, b * d];
-            [all.into_iter().fold(INFINITE, f64::min), all.into_iter().fold(-INFINITE, f64::max)]
-        };
-        let over = |[least, most]: [f64; 2]| [1.0 / most, 1.0 / least];
-        let numerator = |z: f64| c12 - c23 * z;
-        let [p, q] = ends.map(numerator);
-        let numerators = [p.min(q), p.max(q)];
-        // ψ' = n / (s √g) and ψ'' = (-cos a₂₃ + 2 n z/s + n (z - m)/g) / (s √g).
-        let first = times(times(numerators, ends), over(squares)).map(|x| 2.0 * x);
-        let second = times(times(numerators, ends.map(|z| z - middle)), over(grams));
-        let sum = [0, 1].map(|i| first[i] + second[i] - c23);
-        let weight = over([0, 1].map(|i| squares[i] * grams[i].sqrt()));
-        let root = gram(z.centre).sqrt();
-        let value = root.atan2(c23 - c12 * z.centre);
-        let slope = numerator(z.centre) / (square(z.centre) * root);
-        Some(z.bent([value, slope], times(sum, weight)))
-    }
-
     /// The first joint's rotation, with `w = R a₃`: `(A + iB)(d - i√(A² + B² - d²)) / (A² + B²)`, as the sum of
     /// two angles where they are known.
     fn first<const N: usize>(&self, w: &[Affine<N>; 3], branch: Branch) -> Enclosed<N> {
         let z = dot(&self.first, w);
         let [x, y] = self.second_on_first;
         let azimuth = Plane { re: dot(&x, w), im: dot(&y, w) };
-        if let Some(opening) = self.opening(z) {
+        if let Some(opening) = opening::spherical(z, self.cosines, self.sines) {
             let angle = azimuth.argument() - opening * branch.sign();
             if angle.radius() <= WIDE {
                 return Enclosed::Angle(angle);
@@ -211,36 +171,4 @@ fn ball<const N: usize>(ball: &Ball, r: &Rotation<N>) -> [Enclosed<N>; 3] {
         let row = ball.axes.row(i).transpose();
         Enclosed::Value(dot(&row, &sine) * 0.5 * ratio)
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(50_000))]
-
-        /// The angle at the base of a spherical triangle with two sides given, over a range of the third.
-        #[test]
-        fn openings_hold(
-            arcs in [0.1..3.0_f64, 0.1..3.0_f64],
-            share in -0.99..0.99_f64,
-            half in prop_oneof![Just(1e-3), Just(1e-2), Just(0.1), Just(0.5)],
-            at in prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0_f64],
-        ) {
-            let [a, b] = arcs;
-            let axis = |angle: f64| Vector3::new(angle.sin(), 0.0, angle.cos());
-            let arcs = Arcs::of(axis(0.0), axis(a), axis(a + b));
-            // Where the triangle closes.
-            let middle = a.cos() * b.cos() + share * a.sin() * b.sin();
-            let z = Affine::<1>::coordinate(middle, half * (1.0 - share.abs()), 0);
-            if let Some(opening) = arcs.opening(z) {
-                let to = (z.centre + z.slope[0] * at).acos();
-                let angle = ((b.cos() - a.cos() * to.cos()) / (a.sin() * to.sin())).acos();
-                let off = (opening.centre + opening.slope[0] * at - angle).abs();
-                prop_assert!(off <= opening.total_error() + 1e-12, "{off} {opening:?}");
-            }
-        }
-    }
 }

@@ -1,4 +1,4 @@
-//! Where points of the bodies are over a box of poses: balls that certainly contain them.
+//! Where points of the bodies are over a box of poses: linear functions of the pose, with certain bounds of their errors.
 //!
 //! The displacements of the joints over the box ([`super::chain`]) and those of the sections ([`target`]) move the points.
 //! A link of the lower section is moved by the joints before it, or by the displacement of the whole section and the
@@ -49,19 +49,6 @@ impl MovingBody {
     }
 }
 
-/// A ball.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
-    /// The centre in base coordinates, metres.
-    pub centre: Point3<f64>,
-    /// The radius, metres; infinite, or as large, where nothing is known.
-    pub radius: f64,
-}
-
-impl Ball {
-    const ANYWHERE: Self = Self { centre: Point3::new(0.0, 0.0, 0.0), radius: f64::INFINITY };
-}
-
 /// A point that some joint coordinates of a leg move, where it is at home.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarriedPoint {
@@ -74,8 +61,18 @@ pub struct CarriedPoint {
     pub home: Point3<f64>,
 }
 
-/// A point over a box, in base coordinates.
-type Place<const N: usize> = [Affine<N>; 3];
+/// A point over a box, in base coordinates, metres.
+pub type Place<const N: usize> = [Affine<N>; 3];
+
+/// A point at home.
+fn at_home<const N: usize>(point: &Point3<f64>) -> Place<N> {
+    [point.x, point.y, point.z].map(Affine::constant)
+}
+
+/// The place, if anything is known of it: an unbounded error may have become NaN.
+fn known<const N: usize>(place: Place<N>) -> Option<Place<N>> {
+    place.iter().all(|x| x.radius().is_finite()).then_some(place)
+}
 
 impl Manipulator {
     /// Whether [`Manipulator::places_over`] knows anything of this mechanism. It does not where coordinates of the pose
@@ -95,9 +92,9 @@ impl Manipulator {
             })
     }
 
-    /// Balls that contain points of the bodies at every pose of a box that one working mode reaches, in the order of the
-    /// points. The box has a side for every task coordinate; no coordinate is replaced by its cosine or sine, and at most
-    /// two have a width.
+    /// Where points of the bodies are at every pose of a box that one working mode reaches, as functions of the sides that have
+    /// a width, in the order of these; `None` where nothing is known. The box has a side for every task coordinate; no
+    /// coordinate is replaced by its cosine or sine, and at most two have a width.
     ///
     /// # Panics
     /// If the number of sides is another, or more than two of them have a width.
@@ -107,17 +104,17 @@ impl Manipulator {
         mode: Mode,
         sides: &[Side],
         points: &[BodyPoint],
-        out: &mut Vec<Ball>,
+        out: &mut Vec<Option<Place<2>>>,
     ) {
         out.clear();
         assert_eq!(sides.len(), self.task().coordinates.len(), "a side for every coordinate");
         if !self.encloses_places() {
-            out.resize(points.len(), Ball::ANYWHERE);
+            out.resize(points.len(), None);
             return;
         }
         let asked = |leg: usize| points.iter().any(|point| point.body.leg() == Some(leg));
         let places = Places::<2>::new(self, mode, sides, asked);
-        out.extend(points.iter().map(|point| places.ball(point)));
+        out.extend(points.iter().map(|point| places.of(point)));
     }
 
     /// Where points of the links are at every pose of a box that one working mode reaches, as functions of the sides that have
@@ -132,7 +129,7 @@ impl Manipulator {
         mode: Mode,
         sides: &[Side],
         points: &[CarriedPoint],
-    ) -> Vec<Option<[Affine<N>; 3]>> {
+    ) -> Vec<Option<Place<N>>> {
         assert_eq!(sides.len(), self.task().coordinates.len(), "a side for every coordinate");
         if !self.encloses_places() {
             return vec![None; points.len()];
@@ -140,10 +137,7 @@ impl Manipulator {
         let asked = |leg: usize| points.iter().any(|point| point.leg == leg);
         let places = Places::<N>::new(self, mode, sides, asked);
         let place = |point: &CarriedPoint| {
-            let home = point.home.coords;
-            let home: Place<N> = [home.x, home.y, home.z].map(Affine::constant);
-            let place = places.behind(point.leg, point.coordinates, home)?;
-            place.iter().all(|x| x.radius().is_finite()).then_some(place)
+            known(places.behind(point.leg, point.coordinates, at_home(&point.home))?)
         };
         points.iter().map(place).collect()
     }
@@ -212,19 +206,13 @@ impl<'a, const N: usize> Places<'a, N> {
         Self { manipulator, lower: v, upper: b.target, rise, legs }
     }
 
-    fn ball(&self, point: &BodyPoint) -> Ball {
-        let home = point.home.coords;
-        let home: Place<N> = [home.x, home.y, home.z].map(Affine::constant);
+    fn of(&self, point: &BodyPoint) -> Option<Place<N>> {
+        let place = at_home(&point.home);
         let place = match point.body {
-            MovingBody::Platform => Some(self.on_platform(home)),
-            MovingBody::Link { leg, joints } => self.on_link(leg, joints, home),
+            MovingBody::Platform => self.on_platform(place),
+            MovingBody::Link { leg, joints } => self.on_link(leg, joints, place)?,
         };
-        let Some(place) = place else { return Ball::ANYWHERE };
-        let radius = place.map(|x| x.radius());
-        let radius = Vector3::from(radius).norm();
-        // An unbounded error may have become NaN.
-        let radius = if radius.is_finite() { radius } else { f64::INFINITY };
-        Ball { centre: Point3::from(place.map(|x| x.centre)), radius }
+        known(place)
     }
 
     fn on_platform(&self, point: Place<N>) -> Place<N> {

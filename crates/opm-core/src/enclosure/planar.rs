@@ -2,7 +2,8 @@
 //!
 //! The joints' places at home are constant or, in a leg whose lift leans, functions of the height over the box.
 
-use super::affine::{Affine, Plane};
+use super::affine::{Affine, Plane, WIDE};
+use super::opening;
 use super::share::Share;
 use super::target::{Enclosed, PlanarTarget};
 use crate::chain::planar::PlanarJoint;
@@ -288,10 +289,17 @@ pub fn displacements<Z: Vector<N>, const N: usize>(
             let cosine = arm.cosine(&wrist);
             let sine = (-cosine.square() + 1.0).sqrt() * branch.sign();
             let second = arm.straighten.times(Plane { re: cosine, im: sine });
-            let straight = arm.first.over_box() + arm.second.times(second);
-            let first = wrist * straight.conj();
+            let (first, turn) = match arm.swing(&wrist, branch) {
+                Some(angle) => (angle.unit_vector(), Enclosed::Angle(angle)),
+                None => {
+                    let straight = arm.first.over_box() + arm.second.times(second);
+                    let first = wrist * straight.conj();
+                    (first, Enclosed::Direction(first))
+                }
+            };
             let third = g.rotation * (first * second).conj();
-            [turned(r1, first), turned(r2, second), turned(r3, third)]
+            let turn = if r1 { turn.inverse() } else { turn };
+            [turn, turned(r2, second), turned(r3, third)]
         }
         [
             Prismatic { along },
@@ -397,6 +405,17 @@ impl<Z: Vector<N>, const N: usize> Arm<Z, N> {
             }
             _ => false,
         }
+    }
+
+    /// The angle by which the first link turns, from the directions of the wrist and of the link and the angle between
+    /// them; `None` where that is not known well.
+    fn swing(&self, wrist: &Plane<N>, branch: Branch) -> Option<Affine<N>> {
+        let [re, im] = self.first.parts().map(Length::constant);
+        let home = Complex::new(re?, im?).arg();
+        let squares = [self.first, self.second].map(|link| link.norm_sqr().constant());
+        let opening = opening::planar(wrist.norm_sqr(), [squares[0]?, squares[1]?])?;
+        let angle = wrist.argument() - opening * branch.sign() - home;
+        (angle.radius() <= WIDE).then_some(angle)
     }
 
     fn cosine(&self, wrist: &Plane<N>) -> Affine<N> {

@@ -1,8 +1,8 @@
 //! Poses at which all bodies keep a clearance, tile by tile.
 //!
 //! A tile is what is left of some rows of a sheet. It is halved until bounds over a box of it tell that all of its poses
-//! keep the clearance, or none; the pairs that a box leaves open are those that its halves are tested for. The poses of a
-//! small box are decided one by one, for the pairs that are open.
+//! keep the clearance, or none; the pairs that a box leaves open are those that its halves are tested for. In a small box,
+//! bounds at each pose follow from those over the box. Only the poses that these leave open are solved.
 
 use super::Sweep;
 use super::asked::AskedRows;
@@ -12,8 +12,11 @@ use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_interference::{BoxTest, Clearance, Open};
 use std::ops::Range;
 
-/// A box of as many poses or fewer is not bounded: it takes longer than to decide them.
-const FEW: u32 = 24;
+/// A box of as many poses or fewer is not bounded: it takes longer than to solve them.
+const FEW: usize = 12;
+
+/// In a box of as many poses or fewer, each of them is tested before the box is halved.
+const MANY: usize = 64;
 
 /// The least share by which boxes are wider than their poses are apart, for rounding.
 const ROUNDING: f64 = 1e-15;
@@ -25,10 +28,9 @@ pub struct ClearPoses<'a> {
     test: BoxTest<'a>,
     all: Open,
     solution: Solution,
-    /// What may be left of the present tile, row by row: for each pose whether it is clear.
+    /// The poses of the present tile, row by row: whether each is left and not decided, and whether it is clear.
+    open: Vec<bool>,
     clear: Vec<bool>,
-    /// For each row, how many poses are left before each place in it, and at its end.
-    before: Vec<u32>,
     sides: Vec<Side>,
     pose: Vec<f64>,
     /// Lists that are not in use.
@@ -58,8 +60,8 @@ impl<'a> ClearPoses<'a> {
             all: test.all(),
             test,
             solution: manipulator.solution(),
+            open: Vec::new(),
             clear: Vec::new(),
-            before: Vec::new(),
             sides: Vec::new(),
             pose: vec![0.0; coordinates.len()],
             spare: Vec::new(),
@@ -82,19 +84,12 @@ impl<'a> ClearPoses<'a> {
             return;
         }
         let width = asked.first().len();
-        self.clear.clear();
-        self.clear.resize(rows * width, false);
-        for (row, from, to) in asked.pieces() {
-            self.clear[row * width + from..row * width + to].fill(true);
+        for flags in [&mut self.open, &mut self.clear] {
+            flags.clear();
+            flags.resize(rows * width, false);
         }
-        self.before.clear();
-        for row in self.clear.chunks(width) {
-            let mut count = 0;
-            for &left in row {
-                self.before.push(count);
-                count += u32::from(left);
-            }
-            self.before.push(count);
+        for (row, from, to) in asked.pieces() {
+            self.open[row * width + from..row * width + to].fill(true);
         }
         self.pose[1..].copy_from_slice(others);
         self.sides.clear();
@@ -114,33 +109,25 @@ impl<'a> ClearPoses<'a> {
         asked.keep(&self.clear);
     }
 
-    /// Decides the poses that are left of a part of a tile, for the pairs that are open.
+    /// Decides the open poses of a part of a tile, for the pairs that are open.
     fn decide(&mut self, tile: &Tile<'_>, rows: Range<usize>, poses: Range<usize>, open: &Open) {
         let width = tile.first.len();
-        let left = |row: usize| {
-            let row = &self.before[row * (width + 1)..];
-            row[poses.end] - row[poses.start]
-        };
-        let count: u32 = rows.clone().map(left).sum();
+        let of_rows = rows.clone().map(|row| &self.open[row * width..][poses.clone()]);
+        let count = of_rows.flatten().filter(|&&open| open).count();
         if count == 0 {
             return;
         }
         if count <= FEW || !self.test.takes_boxes() {
-            for row in rows {
-                self.decide_each(tile, row, poses.clone(), open);
-            }
+            self.decide_each(tile, (&rows, &poses), |this| this.solve(open));
             return;
         }
         let halves = self.bound(tile, &rows, &poses);
         let mut next = self.spare.pop().unwrap_or_default();
         match self.test.over_box(self.mode, &self.sides, open, &mut next) {
-            Clearance::Clear => {}
-            Clearance::Blocked => {
-                for row in rows {
-                    self.clear[row * width..][poses.clone()].fill(false);
-                }
-            }
             Clearance::Open => {
+                if count <= MANY {
+                    self.decide_each(tile, (&rows, &poses), |this| this.test.in_box(&this.pose));
+                }
                 let middle = |range: &Range<usize>| range.start + range.len() / 2;
                 let along = rows.len() < 2 || (poses.len() > 1 && halves[0] >= halves[1]);
                 if along {
@@ -153,6 +140,7 @@ impl<'a> ClearPoses<'a> {
                     self.decide(tile, at..rows.end, poses, &next);
                 }
             }
+            decided => self.decide_each(tile, (&rows, &poses), |_| decided),
         }
         self.spare.push(next);
     }
@@ -176,24 +164,36 @@ impl<'a> ClearPoses<'a> {
         [along, across]
     }
 
-    /// Decides the poses that are left of a part of a row, one by one.
-    fn decide_each(&mut self, tile: &Tile<'_>, row: usize, poses: Range<usize>, open: &Open) {
+    /// Decides the open poses of a part of a tile, one by one.
+    fn decide_each(
+        &mut self,
+        tile: &Tile<'_>,
+        (rows, poses): (&Range<usize>, &Range<usize>),
+        mut test: impl FnMut(&mut Self) -> Clearance,
+    ) {
         let width = tile.first.len();
-        if let Some(&second) = tile.second.get(row) {
-            self.pose[1] = second;
-        }
-        for number in poses {
-            let place = row * width + number;
-            if !self.clear[place] {
-                continue;
+        for row in rows.clone() {
+            if let Some(&second) = tile.second.get(row) {
+                self.pose[1] = second;
             }
-            self.pose[0] = tile.first[number];
-            let found = self.manipulator.inverse(&self.pose, self.mode, &mut self.solution);
+            for number in poses.clone() {
+                let place = row * width + number;
+                if self.open[place] {
+                    self.pose[0] = tile.first[number];
+                    let tested = test(self);
+                    self.open[place] = tested == Clearance::Open;
+                    self.clear[place] = tested == Clearance::Clear;
+                }
+            }
+        }
+    }
+
+    /// Decides the present pose by its distances.
+    fn solve(&mut self, open: &Open) -> Clearance {
+        match self.manipulator.inverse(&self.pose, self.mode, &mut self.solution) {
+            Ok(Some(found)) if self.test.at(found, open) => Clearance::Clear,
             // A pose on the boundary of reach may be out of it for the one and not the other.
-            self.clear[place] = match found {
-                Ok(Some(found)) => self.test.at(found, open),
-                Ok(None) | Err(_) => false,
-            };
+            Ok(_) | Err(_) => Clearance::Blocked,
         }
     }
 }
