@@ -8,7 +8,8 @@ use opm_core::mechanism::{Obstacle, ObstacleShape, file};
 use opm_core::skeleton::Skeleton;
 use opm_interference::{Distances, Interference};
 use opm_workspace::{
-    Axis, ClearanceError, ClearanceLimit, Count, Grid, Modes, PoseLimit, Progress, Run, Sweep,
+    Axis, ClearanceError, ClearanceLimit, Count, Grid, Modes, PoseLimit, Progress, Run, Shard,
+    Sweep,
 };
 
 /// A mechanism with thin rods, and obstacles of every kind around it.
@@ -80,7 +81,7 @@ fn points(sweep: &Sweep<'_>, grid: &Grid) -> Vec<u64> {
     all
 }
 
-/// Grids about home: fine in the first two coordinates, and with few places but several orientations.
+/// Grids about home: fine in the first two coordinates, and with few places but several orientations, or many of them.
 fn grids(manipulator: &Manipulator) -> Vec<Grid> {
     let size = manipulator.characteristic_length();
     let axes = |counts: &dyn Fn(usize) -> u64| {
@@ -98,6 +99,7 @@ fn grids(manipulator: &Manipulator) -> Vec<Grid> {
     vec![
         axes(&|number| [29, 23, 1, 2, 1, 1][number]),
         axes(&|number| if number < lower { 1 } else { 4 }),
+        axes(&|number| [1, 1, 13, 1, 11, 2][number]),
     ]
 }
 
@@ -135,6 +137,25 @@ fn counts_are_those_of_a_distance_at_every_pose() {
         }
     }
     assert!(mechanisms >= 15 && clear > 2000 && near > 2000, "{mechanisms}, {clear}, {near}");
+}
+
+/// Orientations at one place, more than a block has, so that blocks end within rows of tiles.
+#[test]
+fn tiles_of_orientations_may_be_cut() {
+    let manipulator = with_obstacles(examples::find("plano-spherical-5dof").unwrap().text);
+    let interference = Interference::new(manipulator.mechanism());
+    let axes = [("zeta", 41), ("xi", 31), ("psi", 29)];
+    let axes = axes.map(|(name, count)| Axis::new(name, 0.05, 0.5, count));
+    let grid = Grid::new(&manipulator, axes.to_vec()).unwrap();
+    let sweep = Sweep::new(&manipulator, &grid, Modes::One(manipulator.home_mode()));
+    assert!(sweep.pieces() > 1 && sweep.clone().shard(Shard::new(1, 2).unwrap()).poses() % 41 > 0);
+    let limit = ClearanceLimit { interference: &interference, least: 0.002 };
+    let (expected, numbers) = plain(&manipulator, &grid, limit);
+    let swept = sweep.with_clearance(limit).unwrap();
+    let found = swept.count(&Progress::default()).unwrap();
+    assert_eq!((found.poses, found.reachable), (grid.poses(), expected.reachable));
+    assert_eq!(points(&swept, &grid), numbers);
+    assert!(0 < expected.reachable && expected.reachable < grid.poses());
 }
 
 #[test]

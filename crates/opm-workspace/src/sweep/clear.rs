@@ -1,6 +1,7 @@
 //! Poses at which all bodies keep a clearance, tile by tile.
 //!
-//! A tile is what is left of some rows of a sheet. It is halved until bounds over a box of it tell that all of its poses
+//! A tile is what is left of some rows of a sheet, or, where slices have few poses, of the first two coordinates that vary. It
+//! is halved until bounds over a box of it tell that all of its poses
 //! keep the clearance, or none; the pairs that a box leaves open are those that its halves are tested for. In a small box,
 //! bounds at each pose follow from those over the box. Only the poses that these leave open are solved.
 
@@ -9,6 +10,7 @@ use super::asked::AskedRows;
 use crate::clearance::ClearanceLimit;
 use opm_core::enclosure::Side;
 use opm_core::manipulator::{Manipulator, Mode, Solution};
+use opm_core::{Quantity, TaskCoordinate};
 use opm_interference::{BoxTest, Clearance, Open};
 use std::ops::Range;
 
@@ -35,25 +37,27 @@ pub struct ClearPoses<'a> {
     pose: Vec<f64>,
     /// Lists that are not in use.
     spare: Vec<Open>,
-    /// For each of the two coordinates of a tile, how much a unit of it counts, metres.
-    weights: [f64; 2],
+    /// For each coordinate, how much a unit of it counts, metres.
+    weights: Vec<f64>,
 }
 
-/// The rows of a tile.
-struct Tile<'t> {
-    /// The first coordinates, and the second ones of all rows.
-    first: &'t [f64],
-    second: &'t [f64],
+/// The poses of a tile: they differ in two coordinates.
+#[derive(Clone, Copy)]
+pub struct Tile<'t> {
+    /// The numbers of these coordinates.
+    pub axes: [usize; 2],
+    /// The values of the first one along every row.
+    pub first: &'t [f64],
+    /// The value of the second one in each row; none, if there is one row and all poses share it.
+    pub second: &'t [f64],
 }
 
 impl<'a> ClearPoses<'a> {
     pub fn new(manipulator: &'a Manipulator, limit: ClearanceLimit<'a>, mode: Mode) -> Self {
         let test = BoxTest::new(manipulator, limit.interference, limit.least);
         let coordinates = manipulator.task_coordinates();
-        let weight = |number: usize| {
-            let length = coordinates.get(number).is_some_and(|c| c.quantity.unit() == "m");
-            if length { 1.0 } else { manipulator.characteristic_length() }
-        };
+        let angle = manipulator.characteristic_length();
+        let weight = |c: &TaskCoordinate| if c.quantity == Quantity::Length { 1.0 } else { angle };
         Self {
             manipulator,
             mode,
@@ -65,7 +69,7 @@ impl<'a> ClearPoses<'a> {
             sides: Vec::new(),
             pose: vec![0.0; coordinates.len()],
             spare: Vec::new(),
-            weights: [weight(0), weight(1)],
+            weights: coordinates.iter().map(weight).collect(),
         }
     }
 
@@ -84,29 +88,48 @@ impl<'a> ClearPoses<'a> {
             return;
         }
         let width = asked.first().len();
-        for flags in [&mut self.open, &mut self.clear] {
-            flags.clear();
-            flags.resize(rows * width, false);
-        }
+        self.begin(rows * width);
         for (row, from, to) in asked.pieces() {
             self.open[row * width + from..row * width + to].fill(true);
         }
         self.pose[1..].copy_from_slice(others);
+        let first = asked.first();
+        if sweep.grid.lower() > 1 {
+            self.decide_all(&Tile { axes: [0, 1], first, second: asked.second() }, 0..rows);
+        } else {
+            // The rows of a sheet with one row.
+            let tile = Tile { axes: [0, 1], first, second: &[] };
+            (0..rows).for_each(|row| self.decide_all(&tile, row..row + 1));
+        }
+        asked.keep(&self.clear);
+    }
+
+    /// Leaves those poses of a tile that keep the clearance. `pose` is any of them, and `left` has an answer for each, row by
+    /// row.
+    pub fn retain_tile(&mut self, tile: &Tile<'_>, pose: &[f64], left: &mut [bool]) {
+        self.begin(left.len());
+        self.open.copy_from_slice(left);
+        self.pose.copy_from_slice(pose);
+        self.decide_all(tile, 0..left.len() / tile.first.len());
+        left.copy_from_slice(&self.clear);
+    }
+
+    /// Begins a tile of some poses, of which none is left.
+    fn begin(&mut self, poses: usize) {
+        for flags in [&mut self.open, &mut self.clear] {
+            flags.clear();
+            flags.resize(poses, false);
+        }
+    }
+
+    /// Decides the open poses of some rows of a tile, for all pairs. The present pose has its other coordinates.
+    fn decide_all(&mut self, tile: &Tile<'_>, rows: Range<usize>) {
         self.sides.clear();
         let side = |&middle: &f64| Side { middle, half: 0.0, half_turn: None };
         self.sides.extend(self.pose.iter().map(side));
-        let planar = sweep.grid.lower() > 1;
-        let second = if planar { asked.second() } else { &[] };
-        let tile = Tile { first: asked.first(), second };
         let all = std::mem::take(&mut self.all);
-        if planar {
-            self.decide(&tile, 0..rows, 0..width, &all);
-        } else {
-            // The rows of a sheet with one row.
-            (0..rows).for_each(|row| self.decide(&tile, row..row + 1, 0..width, &all));
-        }
+        self.decide(tile, rows, 0..tile.first.len(), &all);
         self.all = all;
-        asked.keep(&self.clear);
     }
 
     /// Decides the open poses of a part of a tile, for the pairs that are open.
@@ -156,9 +179,9 @@ impl<'a> ClearPoses<'a> {
             self.sides[number] = Side { middle, half, half_turn: None };
             half * self.weights[number]
         };
-        let along = set(0, &tile.first[poses.clone()]);
+        let along = set(tile.axes[0], &tile.first[poses.clone()]);
         let across = match tile.second.get(rows.clone()) {
-            Some(second) if !second.is_empty() => set(1, second),
+            Some(second) if !second.is_empty() => set(tile.axes[1], second),
             _ => 0.0,
         };
         [along, across]
@@ -174,12 +197,12 @@ impl<'a> ClearPoses<'a> {
         let width = tile.first.len();
         for row in rows.clone() {
             if let Some(&second) = tile.second.get(row) {
-                self.pose[1] = second;
+                self.pose[tile.axes[1]] = second;
             }
             for number in poses.clone() {
                 let place = row * width + number;
                 if self.open[place] {
-                    self.pose[0] = tile.first[number];
+                    self.pose[tile.axes[0]] = tile.first[number];
                     let tested = test(self);
                     self.open[place] = tested == Clearance::Open;
                     self.clear[place] = tested == Clearance::Clear;

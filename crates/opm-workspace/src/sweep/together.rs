@@ -1,9 +1,9 @@
 //! Slices of few poses: poses of many slices are decided together.
 
-use super::clear::ClearPoses;
+use super::clear::{ClearPoses, Tile};
 use super::runs::{self, Run};
 use super::worker::{Ranges, Visitor};
-use super::{Count, Hits, Sweep};
+use super::{BLOCK, Count, Hits, Modes, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::Sections;
 use opm_core::manipulator::{Batch, Manipulator};
@@ -16,19 +16,64 @@ const FEW: u64 = 8;
 /// A thread's working memory for poses of several slices.
 pub struct Together<'a> {
     ranges: Ranges,
-    batch: Batch,
-    /// Decides by the limit on the condition number, if there is one.
-    limited: Option<Conditioned<'a>>,
+    reach: Reach<'a>,
     /// Decides by the clearance, if there is one.
     clear: Option<Box<ClearPoses<'a>>>,
+    /// The first two coordinates that vary, if there are so many.
+    varying: [usize; 2],
+    /// Their values in a tile.
+    values: [Vec<f64>; 2],
     /// The numbers of the present pose's coordinates, and their values.
     digits: Vec<u64>,
     pose: Vec<f64>,
     /// Poses that are decided together, one after the other.
     poses: Vec<f64>,
-    reached: [bool; Manipulator::DECIDED],
+    reached: Vec<bool>,
+    /// Those of them that are left.
+    kept: Vec<f64>,
     runs: Vec<Run>,
     first: Vec<f64>,
+}
+
+/// Decides which poses are in reach, and within the limit if there is one.
+struct Reach<'a> {
+    manipulator: &'a Manipulator,
+    modes: Modes,
+    batch: Batch,
+    limited: Option<Conditioned<'a>>,
+}
+
+impl Reach<'_> {
+    /// Decides some poses, and gives the ranges of imaginary joints in those that are reached, if these are `wanted`.
+    fn decide(
+        &mut self,
+        poses: &[f64],
+        reached: &mut [bool],
+        wanted: bool,
+        mut used: impl FnMut(usize, [f64; 2]),
+    ) {
+        let width = self.manipulator.task_coordinates().len();
+        let poses = poses.chunks(Manipulator::DECIDED * width);
+        for (poses, reached) in poses.zip(reached.chunks_mut(Manipulator::DECIDED)) {
+            let mut take = |imaginary: usize, range: [f64; 2]| {
+                if wanted {
+                    used(imaginary, range);
+                }
+            };
+            let Some(conditioned) = &mut self.limited else {
+                let (mode, batch) = (self.modes.one(), &mut self.batch);
+                self.manipulator.decide_many(poses, mode, batch, reached, take);
+                continue;
+            };
+            let mut conditions = [0.0; Manipulator::DECIDED];
+            let conditions = &mut conditions[..reached.len()];
+            let used: Option<&mut dyn FnMut(usize, [f64; 2])> =
+                if wanted { Some(&mut take) } else { None };
+            conditioned.decide(poses, self.modes, conditions, used);
+            let admitted = conditions.iter().map(|condition| !condition.is_nan());
+            reached.iter_mut().zip(admitted).for_each(|(to, admitted)| *to = admitted);
+        }
+    }
 }
 
 impl<'a> Sweep<'a> {
@@ -50,15 +95,24 @@ impl<'a> Together<'a> {
     pub fn new(sweep: &Sweep<'a>, ranges: Ranges) -> Self {
         let axes = sweep.grid.axes().len();
         let limited = |limit| Conditioned::new(sweep.manipulator, limit);
+        let mut varying = sweep.grid.axes().iter().enumerate().filter(|(_, axis)| axis.count > 1);
+        let mut next = || varying.next().map_or(0, |(number, _)| number);
         Self {
             ranges,
-            batch: sweep.manipulator.batch(),
-            limited: sweep.limit.clone().map(limited),
+            reach: Reach {
+                manipulator: sweep.manipulator,
+                modes: sweep.modes,
+                batch: sweep.manipulator.batch(),
+                limited: sweep.limit.clone().map(limited),
+            },
             clear: sweep.clear_poses(),
+            varying: [next(), next()],
+            values: [Vec::new(), Vec::new()],
             digits: vec![0; axes],
             pose: vec![0.0; axes],
             poses: Vec::new(),
-            reached: [false; Manipulator::DECIDED],
+            reached: Vec::new(),
+            kept: Vec::new(),
             runs: Vec::new(),
             first: Vec::new(),
         }
@@ -73,11 +127,10 @@ impl<'a> Together<'a> {
         hit: &mut Visitor<'_>,
     ) {
         let row = sweep.grid.row();
-        let at_once = Manipulator::DECIDED as u64 / row;
         self.go_to(sweep, rows.start * row);
         let mut next = rows.start;
         while next < rows.end {
-            let some = next..rows.end.min(next + at_once);
+            let some = next..next + self.at_once(sweep, next..rows.end);
             next = some.end;
             let count = (some.end - some.start) * row;
             self.poses.clear();
@@ -85,48 +138,79 @@ impl<'a> Together<'a> {
                 self.poses.extend_from_slice(&self.pose);
                 self.advance(sweep);
             }
-            let reached = &mut self.reached[..count as usize];
-            // With a clearance, imaginary joints are taken where it is kept.
-            let any = self.clear.is_none();
+            self.reached.clear();
+            self.reached.resize(count as usize, false);
+            let wanted = self.ranges == Ranges::Wanted;
             let mut used = |imaginary: usize, range: [f64; 2]| {
-                range.into_iter().filter(|_| any).for_each(|end| found.widen(imaginary, end));
+                range.into_iter().for_each(|end| found.widen(imaginary, end));
             };
-            match &mut self.limited {
-                Some(conditioned) => {
-                    let mut conditions = [0.0; Manipulator::DECIDED];
-                    let conditions = &mut conditions[..reached.len()];
-                    let used: Option<&mut dyn FnMut(usize, [f64; 2])> =
-                        if self.ranges == Ranges::Wanted { Some(&mut used) } else { None };
-                    conditioned.decide(&self.poses, sweep.modes, conditions, used);
-                    let admitted = conditions.iter().map(|condition| !condition.is_nan());
-                    reached.iter_mut().zip(admitted).for_each(|(to, admitted)| *to = admitted);
-                }
-                None => {
-                    let (mode, batch) = (sweep.modes.one(), &mut self.batch);
-                    sweep.manipulator.decide_many(&self.poses, mode, batch, reached, used);
-                }
-            }
-            if let Some(clear) = &mut self.clear {
-                let poses = self.poses.chunks(self.pose.len());
-                for (reached, pose) in
-                    reached.iter_mut().zip(poses).filter(|(reached, _)| **reached)
-                {
-                    match clear.at(pose) {
-                        Some(imaginary) if self.ranges == Ranges::Wanted => {
-                            let values = imaginary.iter().enumerate();
-                            values.for_each(|(number, &value)| found.widen(number, value));
-                        }
-                        Some(_) => {}
-                        None => *reached = false,
-                    }
+            let Self { reach, poses, reached, .. } = self;
+            if self.clear.is_none() {
+                reach.decide(poses, reached, wanted, used);
+            } else {
+                reach.decide(poses, reached, false, &mut used);
+                self.retain_clear(sweep);
+                if wanted {
+                    // Imaginary joints are taken where the clearance is kept.
+                    let Self { reach, kept, reached, .. } = self;
+                    let left = reached.iter().filter(|&&reached| reached).count();
+                    reach.decide(kept, &mut vec![false; left], true, used);
                 }
             }
             found.poses += count;
-            found.reachable += reached.iter().filter(|&&reached| reached).count() as u64;
+            found.reachable += self.reached.iter().filter(|&&reached| reached).count() as u64;
             if let Some(hit) = hit {
                 self.hand_over(sweep, some, hit);
             }
         }
+    }
+
+    /// The number of the first of some rows that are decided together: as many as make a tile, if there is a clearance.
+    fn at_once(&self, sweep: &Sweep<'_>, rows: Range<u64>) -> u64 {
+        let of_row = sweep.grid.row();
+        let count = rows.end - rows.start;
+        if self.clear.is_none() {
+            return count.min(Manipulator::DECIDED as u64 / of_row);
+        }
+        let [along, across] = self.counts(sweep);
+        let (pose, tile) = (rows.start * of_row, along * across);
+        if pose % along > 0 {
+            // Up to the end of a row of the tile.
+            return count.min((along - pose % along) / of_row);
+        }
+        // Up to the end of the tile, in whole rows of it.
+        let most = (tile - pose % tile).min(count * of_row).min(BLOCK.max(along));
+        let whole = most - most % along;
+        if whole > 0 { whole / of_row } else { count }
+    }
+
+    /// How many values the first two coordinates have that vary.
+    fn counts(&self, sweep: &Sweep<'_>) -> [u64; 2] {
+        let axes = sweep.grid.axes();
+        let [along, across] = self.varying;
+        [axes[along].count, if across > along { axes[across].count } else { 1 }]
+    }
+
+    /// Leaves those of the reached poses that keep the clearance.
+    fn retain_clear(&mut self, sweep: &Sweep<'_>) {
+        let Self { clear: Some(clear), poses, reached, kept, values, varying, .. } = self else {
+            return;
+        };
+        let width = sweep.grid.axes().len();
+        let along = sweep.grid.axes()[varying[0]].count as usize;
+        let columns = along.min(reached.len());
+        let [first, second] = values;
+        first.clear();
+        first.extend(poses.chunks(width).take(columns).map(|pose| pose[varying[0]]));
+        second.clear();
+        second.extend(poses.chunks(columns * width).map(|row| row[varying[1]]));
+        if second.len() < 2 {
+            second.clear();
+        }
+        clear.retain_tile(&Tile { axes: *varying, first, second }, &poses[..width], reached);
+        kept.clear();
+        let left = poses.chunks(width).zip(reached).filter(|(_, left)| **left);
+        left.for_each(|(pose, _)| kept.extend_from_slice(pose));
     }
 
     /// Hands over the reached poses of some rows.
