@@ -208,6 +208,7 @@ fn flag(option: RequestOption) -> &'static str {
         RequestOption::Wrench => "--wrench",
         RequestOption::Gravity => "--gravity",
         RequestOption::Stiffness => "--link-stiffness",
+        RequestOption::JointStiffness => "--joint-stiffness",
         RequestOption::Explain => "--explain",
         RequestOption::Inscribed => "--inscribed",
         other => other.name(),

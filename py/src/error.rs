@@ -68,6 +68,7 @@ fn argument(option: RequestOption) -> &'static str {
         RequestOption::Wrench => "wrench",
         RequestOption::Gravity => "gravity",
         RequestOption::Stiffness => "link_stiffness",
+        RequestOption::JointStiffness => "joint_stiffness",
         RequestOption::Explain => "rejections",
         RequestOption::Inscribed => "inscribed",
         other => other.name(),

@@ -167,7 +167,10 @@ fn wrong_input_gets_one_message() {
         (&["--wrench", "1,2,3,4,5,6", "--frame", "tool"], "platform"),
         (&["--link-stiffness", "1e6"], "1 number in \"1e6\", expected 2: KT,KR"),
         (&["--link-stiffness", "1e6,-1"], "KR is -1.0, expected a number above 0"),
-        (&["--link-stiffness", "1,1", "--joint-stiffness", "Q=1"], "no actuated joint \"Q\""),
+        (
+            &["--link-stiffness", "1,1", "--joint-stiffness", "Q=1"],
+            "--joint-stiffness: no actuated joint \"Q\"",
+        ),
         (&["--gravity", "0,0"], "2 numbers in \"0,0\", expected 3: X,Y,Z"),
         (&["--density", "7800"], "--gravity"),
         (&["--gravity", "0,0,-9.81", "--density", "0"], "--density: 0, expected a number from"),

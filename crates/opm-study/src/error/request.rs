@@ -42,6 +42,8 @@ pub enum RequestOption {
     Gravity,
     /// The stiffness of links and actuators.
     Stiffness,
+    /// The stiffness of single actuators.
+    JointStiffness,
     /// What rejects poses.
     Explain,
     /// The largest disc, ball or box.
@@ -67,6 +69,7 @@ impl RequestOption {
             Self::Wrench => "load",
             Self::Gravity => "gravity",
             Self::Stiffness => "springs",
+            Self::JointStiffness => "springs of joints",
             Self::Explain => "explain",
             Self::Inscribed => "inscribed",
         }
@@ -346,6 +349,7 @@ impl RequestError {
             | Self::Index(_)
             | Self::SectionIndex { .. } => RequestOption::Limit,
             Self::Length(_) | Self::UnusedLength => RequestOption::Length,
+            Self::Springs(SpringError::Unknown { .. }) => RequestOption::JointStiffness,
             Self::Springs(_) | Self::UnusedSprings => RequestOption::Stiffness,
             Self::UnusedLoad { option }
             | Self::ColumnIndex { option, .. }
