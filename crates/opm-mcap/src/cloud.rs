@@ -362,13 +362,17 @@ impl CloudEncoder {
 
     /// The range of x, y and z of the points; `None` without any.
     pub fn bounds(&self) -> Option<[[f64; 2]; 3]> {
-        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        // Four numbers fit into a vector. What follows z has a range, too, which is of no use.
+        let (mut low, mut high) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
         for point in self.buffer[self.head_room..].chunks_exact(self.packer.stride) {
-            for ([low, high], bytes) in bounds.iter_mut().zip(point.as_chunks().0) {
-                let value = f64::from(f32::from_le_bytes(*bytes));
-                (*low, *high) = (low.min(value), high.max(value));
+            let Some((bytes, _)) = point.split_first_chunk::<16>() else { break };
+            for (i, bytes) in bytes.as_chunks().0.iter().enumerate() {
+                let value = f32::from_le_bytes(*bytes);
+                low[i] = if value < low[i] { value } else { low[i] };
+                high[i] = if value > high[i] { value } else { high[i] };
             }
         }
+        let bounds = [0, 1, 2].map(|i| [low[i], high[i]].map(f64::from));
         (self.len() > 0).then_some(bounds)
     }
 

@@ -225,7 +225,15 @@ pub struct Portion {
 /// page, which takes a third as long as everything else.
 pub struct Packing {
     packer: Packer,
-    buffers: Mutex<Vec<Vec<u8>>>,
+    buffers: Mutex<Buffers>,
+}
+
+/// Buffers that are free.
+#[derive(Default)]
+struct Buffers {
+    free: Vec<Vec<u8>>,
+    /// The most bytes that were packed into one: a new one gets room for as many, so that it does not grow step by step.
+    most: usize,
 }
 
 impl Packing {
@@ -237,14 +245,17 @@ impl Packing {
     /// An empty buffer.
     fn buffer(&self) -> Vec<u8> {
         let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
-        buffers.pop().unwrap_or_default()
+        let most = buffers.most;
+        buffers.free.pop().unwrap_or_else(|| Vec::with_capacity(most))
     }
 
     /// Takes back the buffer of points that have been written.
     pub fn reuse(&self, portion: Portion) {
         let mut buffer = portion.packed;
+        let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        buffers.most = buffers.most.max(buffer.len());
         buffer.clear();
-        self.buffers.lock().unwrap_or_else(PoisonError::into_inner).push(buffer);
+        buffers.free.push(buffer);
     }
 }
 
