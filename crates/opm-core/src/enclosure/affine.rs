@@ -421,11 +421,13 @@ impl<const N: usize> Plane<N> {
         if length == 0.0 || !length.is_finite() {
             return unknown();
         }
-        // Of `log(1 + z)`, the imaginary part: `|log(1 + z) - z| <= |z|²/2 / (1 - |z|)`.
+        // Of `log(1 + z)`, the imaginary part: `|log(1 + z) - z + z²/2| <= |z|³/3 / (1 - |z|)`, and that of `z²/2` is the
+        // product of both components.
         let z = self * (middle.conj() / (length * length)) - Complex::ONE;
-        let size = z.re.furthest().hypot(z.im.furthest());
+        let [re, im] = [z.re.furthest(), z.im.furthest()];
+        let size = re.hypot(im);
         if size < NEAR {
-            let bound = 0.5 * size * size / (1.0 - size);
+            let bound = re * im + size.powi(3) / (3.0 * (1.0 - size));
             return z.im + angle + Affine::unknown(0.0, bound, &z.spread());
         }
         let ahead = self * (middle.conj() / length);
