@@ -1,9 +1,9 @@
 //! Poses at which all bodies keep a clearance, tile by tile.
 //!
 //! A tile is what is left of some rows of a sheet, or, where slices have few poses, of the first two coordinates that vary. It
-//! is halved until bounds over a box of it tell that all of its poses
-//! keep the clearance, or none; the pairs that a box leaves open are those that its halves are tested for. In a small box,
-//! bounds at each pose follow from those over the box. Only the poses that these leave open are solved.
+//! is halved until bounds over a box of it tell that all of its poses keep the clearance, or none; the pairs that a box leaves
+//! open are those that its halves are tested for. In a small box, bounds at each pose follow from those over the box. Only the
+//! poses that these leave open are solved.
 
 use super::Sweep;
 use super::asked::AskedRows;
