@@ -140,7 +140,7 @@ def test_drawn_mechanisms_are_within_the_worst_case(accuracy):
         (["-o", "out.csv"], "--output: is for --poses and --grid"),
         (["--samples", "0"], "--samples"),
         (["--grid", "q=1"], "no such task coordinate"),
-        (["--over", "q=1"], "no task coordinate q, did you mean"),
+        (["--over", "q=1"], "no task coordinate q, expected one of x, y"),
         (["--over", "x=1mm:-1mm"], "x"),
         (["--over", "x=0:1mm", "--over", "x=0:2mm"], "x is given twice"),
         (["--over", "x=0:1mm", "--gap", "0"], "--gap: 0, expected a positive share"),
