@@ -53,8 +53,7 @@ fn main() {
     table_of_mechanisms(&pools);
 }
 
-/// Every shipped mechanism with a workspace, but those of which a coordinate of the pose follows from others, on the grid
-/// that is fitted to it; and orientations at one place of the first one, each a slice of its own.
+/// Every shipped mechanism with a workspace, on the grid that is fitted to it; and orientations at one place of the first one, each a slice of its own.
 fn table_of_mechanisms(pools: &[ThreadPool; 2]) {
     println!(
         "| fitted grid | poses | poses a row | million a second, one thread | two threads for one |"
@@ -62,9 +61,6 @@ fn table_of_mechanisms(pools: &[ThreadPool; 2]) {
     println!("|---|---:|---:|---:|---:|");
     for name in EXAMPLES.iter().map(|example| example.name) {
         let Ok(manipulator) = Manipulator::example(name) else { continue };
-        if !manipulator.dependent_coordinates().is_empty() {
-            continue;
-        }
         let modes = Modes::One(manipulator.home_mode());
         let fitted = default_grid(&manipulator, modes, &Progress::default());
         row_of_mechanism(name, &manipulator, &fitted.expect("not cancelled").0, pools);

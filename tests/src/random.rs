@@ -271,6 +271,9 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
     (mechanism, decomposition)
 }
 
+/// How many joints a constraining leg lacks in its lower and in its upper section.
+pub const LACKS: [[usize; 2]; 5] = [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
+
 /// A random mechanism of a pair of subspaces whose first leg lacks so many further joints in its lower and in its
 /// upper section. With `repeated`, a second leg has the same joints. `None` if the leg that was drawn has too few
 /// joints, or some with several freedoms. A joint that carries a height is kept, as a slider along its direction.

@@ -4,7 +4,7 @@
 use fastrand::Rng;
 use opm_core::manipulator::{BatchError, BatchOutput, Manipulator, Mode, PoseError};
 use opm_core::mechanism::{examples, file};
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{LACKS, Options, PAIRS, constrained, mechanism};
 
 const OPTIONS: Options = Options { limited: 0.3, balls: true };
 
@@ -98,6 +98,63 @@ fn many_poses_are_solved_as_one_is() {
         println!("{pair:?}: {reached} in reach, {outside} of them beyond limits, {beyond} not");
         assert!(reached > 500 && outside > 50, "{pair:?}: {reached} in reach, {outside} outside");
     }
+}
+
+/// Some mode, and two poses that are next to each other as numbers, of which that mode reaches one.
+fn edge(rng: &mut Rng, manipulator: &Manipulator, mode: Mode) -> Option<[Vec<f64>; 2]> {
+    let mut buffer = manipulator.solution();
+    let mut reached =
+        |pose: &[f64]| manipulator.inverse(pose, mode, &mut buffer).unwrap().is_some();
+    let home = manipulator.home_pose();
+    let beyond: Vec<f64> = home.iter().map(|home| home + 4.0 * (rng.f64() - 0.5)).collect();
+    let at = |share: f64| -> Vec<f64> {
+        home.iter().zip(&beyond).map(|(home, beyond)| home + share * (beyond - home)).collect()
+    };
+    let (mut inner, mut outer) = (0.0, 1.0);
+    if !reached(&at(inner)) || reached(&at(outer)) {
+        return None;
+    }
+    loop {
+        let middle = 0.5 * (inner + outer);
+        if middle <= inner || middle >= outer {
+            return Some([at(inner), at(outer)]);
+        }
+        if reached(&at(middle)) { inner = middle } else { outer = middle }
+    }
+}
+
+/// Legs with few freedoms tie coordinates together; further ones repeat their constraints, or have them met at home alone.
+/// Some poses are on the edge of reach, where two solutions for the dependent coordinates meet.
+#[test]
+fn poses_with_dependent_coordinates_are_solved_as_one_is() {
+    let mut rng = Rng::with_seed(5);
+    let mut edges = 0;
+    for pair in PAIRS {
+        let mut tally = Tally::default();
+        for (round, lacks) in (0..60).zip(LACKS.into_iter().cycle()) {
+            let repeated = round % 4 == 3;
+            let drawn = constrained(&mut rng, pair, lacks, repeated, OPTIONS);
+            let Some((mechanism, decomposition)) = drawn else { continue };
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let count = [1, 63, 64, 65, 150][rng.usize(..5)];
+            let mut poses = poses(&mut rng, &manipulator, count);
+            let signs: String =
+                (0..manipulator.choices()).map(|_| if rng.bool() { '+' } else { '-' }).collect();
+            let some = manipulator.parse_mode(&signs).unwrap();
+            for mode in [manipulator.home_mode(), some] {
+                for _ in 0..5 {
+                    let found = edge(&mut rng, &manipulator, mode);
+                    edges += usize::from(found.is_some());
+                    poses.extend(found.into_iter().flatten());
+                }
+                check(&manipulator, &poses, mode, &mut tally);
+            }
+        }
+        let Tally { reached, beyond, outside } = tally;
+        println!("{pair:?}: {reached} in reach, {outside} of them beyond limits, {beyond} not");
+        assert!(reached + beyond == 0 || reached > 100, "{pair:?}: {reached} in reach");
+    }
+    assert!(edges > 500, "{edges}");
 }
 
 /// Every working mode of the shipped mechanisms.

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::velocity::ConditionQuery;
-use opm_tests::random::{Options, PAIRS, mechanism};
+use opm_tests::random::{LACKS, Options, PAIRS, constrained, mechanism};
 use opm_workspace::{Conditioned, Modes, PoseLimit};
 
 /// What is found of one pose: the condition number in the first admitted mode, and the ranges of the imaginary joints over
@@ -172,6 +172,31 @@ fn random_mechanisms() {
         admitted > 3_000 && refused > 3_000 && singular > 100,
         "{admitted} {refused} {singular}"
     );
+}
+
+/// Where coordinates depend on others, what is decided together are the poses out of reach.
+#[test]
+fn constrained_mechanisms() {
+    let mut rng = Rng::with_seed(33);
+    let mut compared = Compared::default();
+    for (round, lacks) in (0..10).zip(LACKS.into_iter().cycle()) {
+        for pair in PAIRS {
+            let options = Options { limited: 0.2, balls: round % 3 != 0 };
+            let drawn = constrained(&mut rng, pair, lacks, round % 4 == 3, options);
+            let Some((mechanism, decomposition)) = drawn else { continue };
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let poses = poses(&mut rng, &manipulator, 70);
+            let limit = limits(&mut rng, &manipulator);
+            for mode in [None, Some(manipulator.home_mode())] {
+                if mode.is_some() || manipulator.choices() <= 5 {
+                    compare(&manipulator, &poses, mode, limit.clone(), &mut compared);
+                }
+            }
+        }
+    }
+    let Compared { poses, refused, together, .. } = compared;
+    println!("{poses} poses, {together} together");
+    assert!(refused > 3_000, "{refused}");
 }
 
 #[test]

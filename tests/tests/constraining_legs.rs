@@ -12,16 +12,13 @@ use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::mechanism::{Mechanism, OrientationCoordinates};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::differences::derivatives;
-use opm_tests::random::{Kind, Options, PAIRS, constrained};
+use opm_tests::random::{Kind, LACKS, Options, PAIRS, constrained};
 use opm_tests::structured::gap;
 use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
 use std::f64::consts::{PI, TAU};
 
 /// The bound on closure, as a share of the size of the mechanism and of its joint values: rounding.
 const CLOSURE: f64 = 1e-11;
-
-/// The freedoms that the leg lacks in its lower and in its upper section.
-const LACKS: [[usize; 2]; 5] = [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
 
 fn options(round: usize) -> Options {
     Options { limited: 0.0, balls: round % 2 == 1 }
@@ -383,6 +380,67 @@ fn sweeps_agree_with_the_inverse() {
     }
     println!("{reached} of {poses} poses");
     assert!(reached > poses / 20);
+}
+
+/// The same counts on long rows and on many of them, which poses of one inverse kinematics each are compared with: limits on
+/// all joints, all modes, and angles of several revolutions.
+#[test]
+fn large_sweeps_agree_with_the_inverse() {
+    let mut rng = Rng::with_seed(146);
+    let (mut poses, mut reached, mut partly) = (0, 0, 0);
+    for round in 0.. {
+        if poses > 4_000_000 {
+            break;
+        }
+        let (pair, lacks) = (PAIRS[round % PAIRS.len()], LACKS[rng.usize(..LACKS.len())]);
+        let options = Options { limited: [0.0, 0.3, 1.0][rng.usize(..3)], balls: rng.bool() };
+        let repeated = rng.u8(..4) == 0;
+        let Some((mechanism, decomposition)) =
+            constrained(&mut rng, pair, lacks, repeated, options)
+        else {
+            continue;
+        };
+        let m = compiled(mechanism, decomposition, round).unwrap();
+        let counts = match rng.u8(..3) {
+            0 => [1, 1, 40, 40],
+            1 => [3000, 3, 2, 1],
+            _ => [70, 30, 3, 3],
+        };
+        let counts = counts.into_iter().chain(std::iter::repeat(1));
+        let axes = m.task_coordinates().iter().zip(counts).map(|(c, count)| {
+            let most = if rng.u8(..6) == 0 { 7.0 } else { 1.5 };
+            let (below, above) = (rng.f64() * most, rng.f64() * most);
+            match count {
+                1 => Axis::fixed(c.name, c.home + 0.1 * (above - below)),
+                _ => Axis::new(c.name, c.home - below, c.home + above, count),
+            }
+        });
+        let grid = Grid::new(&m, axes.collect()).unwrap();
+        let (mut all, mut solution) = (m.all_modes(), m.solution());
+        for modes in [Modes::Any, Modes::One(m.home_mode())] {
+            let within = |number: &u64| {
+                let pose = grid.pose(*number);
+                match modes {
+                    Modes::One(mode) => {
+                        let found = m.inverse(&pose, mode, &mut solution).unwrap();
+                        found.is_some_and(Solution::within_limits)
+                    }
+                    Modes::Any => {
+                        let found = m.inverse_all(&pose, &mut all).unwrap();
+                        found.is_some_and(|all| m.within_limits_in_any(all, |_, _| {}))
+                    }
+                }
+            };
+            let expected = (0..grid.poses()).filter(within).count() as u64;
+            let found = Sweep::new(&m, &grid, modes).count(&Progress::default()).unwrap();
+            assert_eq!(found.reachable, expected, "round {round}: {pair:?} {lacks:?} {modes:?}");
+            poses += grid.poses();
+            reached += expected;
+            partly += u32::from(expected > 0 && expected < grid.poses());
+        }
+    }
+    println!("{reached} of {poses} poses; {partly} grids in part");
+    assert!(partly > 50, "{partly}");
 }
 
 /// Home is home: joints and platform stay where the file puts them, and the platform's place there is located. In

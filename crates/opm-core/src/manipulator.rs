@@ -70,6 +70,7 @@ pub(crate) use closure::ClosureBuffer;
 pub(crate) use inverse::LowerValues;
 use leg::CompileContext;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
+pub(crate) use mode::Choices;
 use mode::ModeLayout;
 use nalgebra::Isometry3;
 use plan::Plan;
@@ -220,6 +221,12 @@ impl Manipulator {
     /// together ([`Solution::dependent`] has their values); none in most mechanisms.
     pub fn dependent_coordinates(&self) -> &[TaskCoordinate] {
         &self.dependent_coordinates
+    }
+
+    /// The number among all task coordinates of one of those that a pose consists of.
+    #[inline]
+    fn number_among_all(&self, coordinate: usize) -> usize {
+        self.dependent.as_ref().map_or(coordinate, |dependent| dependent.independent[coordinate])
     }
 
     /// How many of the coordinates of a pose are the lower section's; they come first.
@@ -484,7 +491,7 @@ impl Compiled {
         }
         let names: Vec<&str> = mechanism.legs.iter().map(|leg| leg.name.as_str()).collect();
         let mut dependent = Dependent::new(&task, &legs, &names, decomposition.mobility, length)?;
-        let choices: Vec<usize> = dependent.iter().flat_map(Dependent::choices).collect();
+        let choices: Vec<usize> = dependent.iter().flat_map(Dependent::choosing_legs).collect();
         let modes = ModeLayout::new(&legs, &choices);
         if let Some(dependent) = &mut dependent {
             dependent.set_bits(&task, &modes, &legs);

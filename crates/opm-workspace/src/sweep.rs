@@ -3,7 +3,8 @@
 //! The poses that share the upper section's coordinates are a slice. The upper section is solved once in
 //! a slice, and leaves each leg one or several branches, each a set of poses. Where all of them are
 //! regions of the plane, whole rows are clipped to them ([`clip`]). Other branches are asked for in pieces
-//! of rows, between the places where their feasibility changes ([`asked`]).
+//! of rows, between the places where their feasibility changes ([`asked`]). Where slices have few poses, or tell little of
+//! them, poses are decided one after the other ([`together`]).
 
 mod asked;
 mod clear;
@@ -410,8 +411,9 @@ impl<'a> Sweep<'a> {
         let along = self.grid.row();
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
-        if self.takes_slices_together() {
-            worker.together(next..end, count, &mut hit);
+        if self.takes_poses_together() {
+            let poses = self.poses_before(block)..self.poses_before(block + 1);
+            worker.together(poses, count, &mut hit);
             return;
         }
         while next < end {

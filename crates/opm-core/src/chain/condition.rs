@@ -144,6 +144,7 @@ impl Condition {
     ///
     /// It is a polynomial of degree one in the components of the displacement, but for a circle: that is of
     /// degree two in a translation.
+    #[inline(always)]
     pub fn value(&self, g: &Displacement) -> f64 {
         match self {
             Self::Circle { point, centre, radius } => {

@@ -23,6 +23,17 @@ pub enum Equation {
     Periodic([f64; 2], f64),
 }
 
+/// The zero of a function, as far as straight-line arithmetic finds it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AttemptedZero {
+    /// The zero. It is valid only where `holds` is true.
+    pub at: f64,
+    /// Whether there is a zero, and the function is not the same everywhere.
+    pub holds: bool,
+    /// Whether there is certainly no zero. Where neither `holds` nor `beyond` is true, [`Equation::zero`] decides.
+    pub beyond: bool,
+}
+
 /// The values of `t` in which zeros are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
@@ -91,36 +102,64 @@ impl Equation {
     /// # Panics
     /// If the function has a period other than 2π.
     pub(crate) fn zero(&self, sign: f64, unit: f64) -> Result<Option<f64>, f64> {
+        let AttemptedZero { at, holds, .. } = self.attempt_zero(sign, unit);
+        if holds {
+            return Ok(Some(at));
+        }
         let constant =
             |c0: f64| if c0.abs() <= REACH_TOLERANCE * unit { Ok(None) } else { Err(c0) };
         match *self {
             Self::Harmonic([c0, c1, c2]) => {
-                let amplitude = c1.hypot(c2);
+                let amplitude = amplitude(c1, c2);
                 if amplitude <= VERGE * unit {
                     return constant(c0);
                 }
-                if c0.abs() > amplitude + REACH_TOLERANCE * unit {
-                    return Err(c0 - amplitude.copysign(c0));
-                }
-                // c₀ + r cos(t - phase) rises before its crest.
-                let phase = c2.atan2(c1);
-                let height = ((amplitude - c0) * (amplitude + c0)).max(0.0).sqrt();
-                Ok(Some(phase - sign * height.atan2(-c0)))
-            }
-            Self::Polynomial([c0, c1, c2]) if c2.abs() <= VERGE * c1.abs().max(unit) => {
-                if c1.abs() <= VERGE * unit { constant(c0) } else { Ok(Some(-c0 / c1)) }
+                Err(c0 - amplitude.copysign(c0))
             }
             Self::Polynomial([c0, c1, c2]) => {
-                // The slope at a zero is the root of this, with the sign of the branch.
-                let square = c1 * c1 - 4.0 * c2 * c0;
-                if square < -REACH_TOLERANCE * unit * unit {
-                    return Err(c0 - 0.25 * c1 * c1 / c2);
+                if is_linear([c0, c1, c2], unit) {
+                    return constant(c0);
                 }
-                Ok(Some((sign * square.max(0.0).sqrt() - c1) / (2.0 * c2)))
+                Err(c0 - 0.25 * c1 * c1 / c2)
             }
             Self::Periodic(..) => {
                 panic!("a function with a period of its own has more than two zeros")
             }
+        }
+    }
+
+    /// The general case of [`Equation::zero`]. There are no branches: a loop over many functions is vectorised.
+    #[inline(always)]
+    pub(crate) fn attempt_zero(&self, sign: f64, unit: f64) -> AttemptedZero {
+        match *self {
+            Self::Harmonic([c0, c1, c2]) => {
+                let amplitude = amplitude(c1, c2);
+                // c₀ + r cos(t - phase) rises before its crest.
+                let height = ((amplitude - c0) * (amplitude + c0)).max(0.0).sqrt();
+                let at = atan2(c2, c1) - sign * atan2(height, -c0);
+                let varies = amplitude > VERGE * unit;
+                let most = amplitude + REACH_TOLERANCE * unit;
+                AttemptedZero {
+                    at,
+                    holds: varies & (c0.abs() <= most),
+                    beyond: varies & (c0.abs() > most),
+                }
+            }
+            Self::Polynomial([c0, c1, c2]) => {
+                let linear = is_linear([c0, c1, c2], unit);
+                // The slope at a zero is the root of this, with the sign of the branch.
+                let square = c1 * c1 - 4.0 * c2 * c0;
+                let least = -REACH_TOLERANCE * unit * unit;
+                let of_square = (sign * square.max(0.0).sqrt() - c1) / (2.0 * c2);
+                let at = if linear { -c0 / c1 } else { of_square };
+                let varies = c1.abs() > VERGE * unit;
+                AttemptedZero {
+                    at,
+                    holds: (linear & varies) | (!linear & (square >= least)),
+                    beyond: !linear & (square < least),
+                }
+            }
+            Self::Periodic(..) => AttemptedZero { at: f64::NAN, holds: false, beyond: false },
         }
     }
 
@@ -229,6 +268,18 @@ impl Equation {
             }
         }
     }
+}
+
+/// The amplitude of a harmonic function, without protection from overflow.
+#[inline(always)]
+fn amplitude(c1: f64, c2: f64) -> f64 {
+    (c1 * c1 + c2 * c2).sqrt()
+}
+
+/// Whether a polynomial has the degree one at most, where values are in the unit `unit`.
+#[inline(always)]
+fn is_linear([_, c1, c2]: [f64; 3], unit: f64) -> bool {
+    c2.abs() <= VERGE * c1.abs().max(unit)
 }
 
 /// The intervals of [`Equation::near_zeros`] of `c₀ + c₁ t`.

@@ -8,7 +8,7 @@
 //! is like any other.
 
 use super::ChainJoint;
-use super::condition::dot;
+use super::condition::{dot, length};
 use crate::group::{
     Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
     linear, quarter, rotation_about,
@@ -56,11 +56,8 @@ impl PartialChain {
     pub fn inverse(&self, target: &Displacement) -> [JointDisplacement; 3] {
         let mut found = [JointDisplacement::Value(0.0); 3];
         match self.free() {
-            (Some(a), Some(b)) => {
-                let [p, q] = self.two(&self.screws[a], &self.screws[b], target);
-                (found[a], found[b]) = (p, q);
-            }
-            (Some(a), None) => found[a] = self.one(&self.screws[a], target),
+            (Some(a), Some(b)) => [found[a], found[b]] = self.two([a, b], target),
+            (Some(a), None) => found[a] = self.one(a, target),
             (None, _) => {}
         }
         found
@@ -84,8 +81,10 @@ impl PartialChain {
         unit.iter().product()
     }
 
-    /// The displacement of one joint: `exp(s q) = g`.
-    fn one(&self, s: &LocalTwist, g: &Displacement) -> JointDisplacement {
+    /// The displacement of the only joint that moves: `exp(s q) = g`.
+    #[inline(always)]
+    pub fn one(&self, joint: usize, g: &Displacement) -> JointDisplacement {
+        let s = &self.screws[joint];
         match g {
             Displacement::Identity(_) => JointDisplacement::Value(0.0),
             Displacement::Planar(g) if s.x != 0.0 => turned(s, g.rotation),
@@ -98,7 +97,7 @@ impl PartialChain {
                     r[(1, 0)] - r[(0, 1)],
                 );
                 let (cos, sin) = (r.trace() - 1.0, s.dot(&axial));
-                JointDisplacement::Direction(Complex::new(cos, sin) / cos.hypot(sin))
+                JointDisplacement::Direction(normalised(Complex::new(cos, sin)))
             }
             Displacement::Cylindrical(g) if s.x == 0.0 => JointDisplacement::Value(g.advance / s.y),
             Displacement::Cylindrical(g) if s.y == 0.0 => {
@@ -111,8 +110,10 @@ impl PartialChain {
         }
     }
 
-    /// The displacements of two joints of a subspace of three dimensions: `exp(s p) exp(t q) = g`.
-    fn two(&self, s: &LocalTwist, t: &LocalTwist, g: &Displacement) -> [JointDisplacement; 2] {
+    /// The displacements of the two joints that move, in a subspace of three dimensions: `exp(s p) exp(t q) = g`.
+    #[inline(always)]
+    pub fn two(&self, joints: [usize; 2], g: &Displacement) -> [JointDisplacement; 2] {
+        let [s, t] = joints.map(|joint| &self.screws[joint]);
         match g {
             Displacement::Planar(g) => planar(s, t, g),
             Displacement::Spherical(r) => spherical(s, t, r),
@@ -126,6 +127,7 @@ impl PartialChain {
     }
 }
 
+#[inline(always)]
 fn planar(s: &LocalTwist, t: &LocalTwist, g: &PlanarDisplacement) -> [JointDisplacement; 2] {
     let pivot = |s: &LocalTwist| quarter(linear(s)) * s.x;
     let slide = |s: &LocalTwist, z: Complex<f64>| JointDisplacement::Value(dot(linear(s), z));
@@ -133,8 +135,7 @@ fn planar(s: &LocalTwist, t: &LocalTwist, g: &PlanarDisplacement) -> [JointDispl
         (true, true) => {
             // The first joint moves the second one's axis.
             let (x, y) = (pivot(s), pivot(t));
-            let first = (g.apply(y) - x) * (y - x).conj();
-            let first = first / first.norm();
+            let first = normalised((g.apply(y) - x) * (y - x).conj());
             [turned(s, first), turned(t, g.rotation * first.conj())]
         }
         (false, true) => {
@@ -173,11 +174,17 @@ fn about(axis: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> Complex
     let across = |v: &Vector3<f64>| v - axis * axis.dot(v);
     let (from, to) = (across(from), across(to));
     let z = Complex::new(from.dot(&to), axis.dot(&from.cross(&to)));
-    let length = z.norm();
-    if length > 0.0 { z / length } else { Complex::new(1.0, 0.0) }
+    if z.norm_sqr() > 0.0 { normalised(z) } else { Complex::new(1.0, 0.0) }
+}
+
+/// The unit vector in the direction of `z`.
+#[inline(always)]
+fn normalised(z: Complex<f64>) -> Complex<f64> {
+    z / length(z)
 }
 
 /// The displacement of a revolute joint in a plane, for a rotation counter-clockwise in the plane's frame.
+#[inline(always)]
 fn turned(s: &LocalTwist, rotation: Complex<f64>) -> JointDisplacement {
     JointDisplacement::Direction(if s.x < 0.0 { rotation.conj() } else { rotation })
 }

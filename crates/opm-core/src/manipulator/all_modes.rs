@@ -3,6 +3,7 @@
 use super::angles::Angles;
 use super::inverse::{AngleOf, Revolutions};
 use super::leg::{CompiledLeg, LegSolution};
+use super::mode::Choices;
 use super::pose::PoseError;
 use super::solution::{Solution, SolvedPose, Unreachable};
 use super::{Dependent, Manipulator, Mode};
@@ -73,21 +74,19 @@ impl Manipulator {
         for (number, completion) in buffer.completions.iter_mut().enumerate() {
             let Completion { solved, missed, legs } = completion;
             legs.iter_mut().for_each(|leg| leg.outcomes = [None; 4]);
-            // The choices that the dependent coordinates are computed with.
-            let (mut mask, mut chosen) = (Mode::default(), Mode::default());
+            let wanted =
+                self.dependent.as_ref().map_or_else(Choices::default, |d| d.choices(number));
             *missed = None;
             match &self.dependent {
                 None => solved.pose.copy_from_slice(pose),
                 Some(dependent) => {
-                    (mask, chosen) = (dependent.mask(), dependent.mode(number));
                     let all = &mut solved.pose;
-                    *missed = dependent.complete_from_home(self, chosen, pose, all).err();
+                    *missed = dependent.complete_from_home(self, wanted.chosen, pose, all).err();
                 }
             }
             if missed.is_some() {
                 continue;
             }
-            let wanted = Choices { mask, chosen };
             self.arch.dispatch(SolveChoices { manipulator: self, completion, wanted });
         }
         Ok(buffer.reached().then_some(buffer))
@@ -214,13 +213,6 @@ impl LegModes {
     }
 }
 
-/// The modes in which some choices are these.
-#[derive(Clone, Copy)]
-struct Choices {
-    mask: Mode,
-    chosen: Mode,
-}
-
 /// Solves every leg at the pose of a completion, for all of its choices that are wanted, with the instructions of the
 /// processor at hand.
 struct SolveChoices<'a> {
@@ -234,21 +226,17 @@ impl WithSimd for SolveChoices<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, completion, wanted: Choices { mask, chosen } } = self;
+        let Self { manipulator, completion, wanted } = self;
         let Manipulator { task, modes, .. } = manipulator;
         let Completion { solved, legs, .. } = completion;
         (solved.v, solved.b) = task.sections(&solved.pose);
         let rise = task.rise(&solved.pose);
         for (number, (leg, found)) in manipulator.legs.iter().zip(legs).enumerate() {
-            let own = modes.leg_modes(number).fold(0, |own, mode| own | mode.0);
             let pose = [&solved.v, &solved.b];
             let missed = |(section, deficit)| Unreachable { leg: number, section, deficit };
             // On both branches of the section that is solved second, the other one is the same.
             let mut of_first = [None; 2];
-            for (part, mode) in modes.leg_modes(number).enumerate() {
-                if (mode.0 ^ chosen.0) & mask.0 & own != 0 {
-                    continue;
-                }
+            for (part, mode) in modes.chosen_leg_modes(wanted, number) {
                 let branches = modes.branches(mode, number);
                 let first = &mut of_first[branches.of(leg.split_section) as usize];
                 // Closures would not be inlined, and would not have the processor's instructions.

@@ -12,6 +12,7 @@ mod rows;
 pub(crate) mod section;
 
 use super::all_modes::AllModes;
+use super::dependent::Complete;
 use super::leg::{CompiledLeg, LegBranches};
 use super::pose::{LARGEST, PoseError};
 use super::solution::Solution;
@@ -120,7 +121,7 @@ pub(crate) struct Block {
     pub upper: Found,
     /// The displacements along the intersection motion of the leg that was solved last.
     pub tau: DisplacementColumns,
-    shifted: Displacements,
+    pub shifted: Displacements,
     /// One column for every joint coordinate.
     joints: Vec<Column>,
     imaginary: Vec<Column>,
@@ -206,7 +207,7 @@ impl Manipulator {
         }
         out.check(count, widths)?;
         if !self.decides_many() {
-            // Each pose has to be completed first, or has chains or legs' heights of its own.
+            // Each pose has chains or legs' heights of its own.
             for (row, pose) in poses.chunks(width).enumerate() {
                 self.inverse_one(pose, mode, &mut batch.solution, row, out)
                     .map_err(|error| BatchError::Pose { row, error })?;
@@ -216,7 +217,7 @@ impl Manipulator {
         for (number, poses) in poses.chunks(LANES * width).enumerate() {
             let first = number * LANES;
             let rows = poses.len() / width;
-            batch.block.take(poses, width);
+            batch.block.take(self, poses);
             let refused =
                 |(row, error): (usize, PoseError)| BatchError::Pose { row: first + row, error };
             self.check(poses, &batch.block).map_err(refused)?;
@@ -227,6 +228,7 @@ impl Manipulator {
                 within_limits: &mut out.within_limits[first..][..rows],
             };
             let (block, out) = (&mut *batch.block, &mut block_output);
+            self.complete_block(mode, batch.arch, block);
             batch.arch.dispatch(Solve { manipulator: self, mode, block, out });
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];
@@ -235,6 +237,13 @@ impl Manipulator {
             }
         }
         Ok(())
+    }
+
+    /// Finds the dependent coordinates of the poses of a block in a mode.
+    fn complete_block(&self, mode: Mode, arch: Arch, block: &mut Block) {
+        if let Some(dependent) = &self.dependent {
+            arch.dispatch(Complete { manipulator: self, dependent, mode, block });
+        }
     }
 
     /// Returns an error for the first pose that is not valid.
@@ -304,8 +313,10 @@ impl WithSimd for Solve<'_, '_> {
 
 impl Block {
     /// Copies poses into the block, and fills its remaining lanes with the last one.
-    pub fn take(&mut self, poses: &[f64], width: usize) {
-        for (number, column) in self.pose.iter_mut().enumerate() {
+    pub fn take(&mut self, manipulator: &Manipulator, poses: &[f64]) {
+        let width = manipulator.task_coordinates().len();
+        for number in 0..width {
+            let column = &mut self.pose[manipulator.number_among_all(number)];
             let mut last = 0.0;
             for (to, pose) in column.iter_mut().zip(poses.chunks_exact(width)) {
                 last = pose[number];
@@ -313,7 +324,32 @@ impl Block {
             }
             column[poses.len() / width..].fill(last);
         }
+        self.begin(manipulator);
+    }
+
+    /// Begins with the poses of the block: nothing is known of them, but that angles of many revolutions are not solved
+    /// together.
+    #[inline(always)]
+    pub fn begin(&mut self, manipulator: &Manipulator) {
         self.upper_lanes = LANES;
+        self.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+        self.leave_large(manipulator);
+    }
+
+    /// Marks the poses with angles of many revolutions.
+    #[inline(always)]
+    fn leave_large(&mut self, manipulator: &Manipulator) {
+        let Self { pose, status, .. } = self;
+        for (coordinate, column) in manipulator.task.coordinates.iter().zip(&*pose) {
+            if coordinate.quantity == Quantity::Angle {
+                for (open, &value) in status.open.iter_mut().zip(column) {
+                    let from_home = value - coordinate.home;
+                    // Of tilt and torsion, the difference of two is an angle.
+                    let large = value.abs().max(from_home.abs()) > 0.5 * MOST_REDUCED;
+                    *open |= u64::from(large);
+                }
+            }
+        }
     }
 
     /// Finds out whether all poses have the coordinates of the upper section in common.
@@ -359,20 +395,11 @@ impl Block {
     /// Computes `v` and `b` of every pose.
     #[inline(always)]
     pub fn displace(&mut self, manipulator: &Manipulator) {
-        let task = &manipulator.task;
-        let Self { pose, status, .. } = self;
-        *status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
-        for (coordinate, column) in task.coordinates.iter().zip(&*pose) {
-            if coordinate.quantity == Quantity::Angle {
-                for (open, &value) in status.open.iter_mut().zip(column) {
-                    let from_home = value - coordinate.home;
-                    // Of tilt and torsion, the difference of two is an angle.
-                    let large = value.abs().max(from_home.abs()) > 0.5 * MOST_REDUCED;
-                    *open |= u64::from(large);
-                }
-            }
+        if manipulator.dependent.is_some() {
+            // Some of the angles were not known before.
+            self.leave_large(manipulator);
         }
-        self.compare_upper(task);
+        self.compare_upper(&manipulator.task);
         self.displace_section(manipulator, Section::Lower, LANES);
         self.displace_section(manipulator, Section::Upper, self.upper_lanes);
         if self.one_upper() {
@@ -382,7 +409,7 @@ impl Block {
 
     /// Computes the displacements of a section, of so many poses.
     #[inline(always)]
-    fn displace_section(&mut self, manipulator: &Manipulator, section: Section, lanes: usize) {
+    pub fn displace_section(&mut self, manipulator: &Manipulator, section: Section, lanes: usize) {
         let task = &manipulator.task;
         let Self { pose, v, b, .. } = self;
         let (at, home) = columns_of(task, section, pose);
@@ -406,8 +433,9 @@ impl Block {
                 Section::Lower => (&leg.lower, branches.lower, &mut *lower, &*v),
                 Section::Upper => (&leg.upper, branches.upper, &mut *upper, &*b),
             };
-            let target = if is_first { target } else { &*shifted };
-            section::solve(&of_section.chain, branch, target, found, lanes);
+            // Without an intersection motion, neither section moves the other one's target.
+            let target = if is_first || task.shared().is_none() { target } else { &*shifted };
+            section::solve(of_section, branch, target, found, lanes);
             if lanes < LANES {
                 found.repeat();
             }
@@ -418,6 +446,7 @@ impl Block {
                     None => tau.clear(),
                 }
                 match section {
+                    _ if task.shared().is_none() => {}
                     Section::Lower => {
                         let step = Step { motion: task.upper_intersection, side: Side::Before };
                         section::shift(step, b, tau, shifted, LANES);
@@ -524,12 +553,18 @@ impl Status {
     /// Records a chain's result. It is ignored for poses to which an earlier chain's general case did not
     /// apply.
     #[inline(always)]
-    fn note(&mut self, found: &Found) {
+    pub fn note(&mut self, found: &Found) {
         for lane in 0..LANES {
-            let valid = self.open[lane] ^ 1;
-            self.beyond[lane] |= found.beyond[lane] & valid;
-            self.open[lane] |= (found.holds[lane] | found.beyond[lane]) ^ 1;
+            self.note_lane(lane, found.holds[lane], found.beyond[lane]);
         }
+    }
+
+    /// Records a closed form's result for one pose.
+    #[inline(always)]
+    pub fn note_lane(&mut self, lane: usize, holds: u64, beyond: u64) {
+        let valid = self.open[lane] ^ 1;
+        self.beyond[lane] |= beyond & valid;
+        self.open[lane] |= (holds | beyond) ^ 1;
     }
 }
 

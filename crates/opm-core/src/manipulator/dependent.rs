@@ -19,17 +19,20 @@
 mod complete;
 mod constraint;
 pub(super) mod form;
+mod many;
 pub(super) mod one_joint;
 mod zeros;
 
 use super::Mode;
 use super::leg::{CompiledLeg, Section};
-use super::mode::ModeLayout;
+use super::mode::{Choices, ModeLayout};
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task};
 use constraint::{Constraint, constraints, follows, order, target_of};
+pub(super) use many::Complete;
 use one_joint::OneJoint;
+use zeros::Function;
 
 /// The coordinate that follows from a condition is the first, in the order of preference, in which the
 /// condition has at least this share of its largest slope at home.
@@ -113,7 +116,7 @@ enum Closed {
     /// They keep their values at home: the leg's section can only move along the intersection motion.
     Constant { leg: usize, section: Section, coordinates: Vec<usize> },
     /// One coordinate follows from a condition.
-    Condition { constraint: Constraint, coordinate: usize, quantity: Quantity },
+    Condition { constraint: Constraint, coordinate: usize, function: Function },
     /// They follow from the one joint that moves.
     Joint(OneJoint),
 }
@@ -169,7 +172,7 @@ impl Dependent {
     }
 
     /// For each two-valued choice of the steps, the leg that it belongs to.
-    pub fn choices(&self) -> impl Iterator<Item = usize> + '_ {
+    pub fn choosing_legs(&self) -> impl Iterator<Item = usize> + '_ {
         self.steps.iter().filter(|step| step.solution.has_choice()).map(|step| step.solution.leg())
     }
 
@@ -213,9 +216,9 @@ impl Dependent {
         bits.fold(0, |number, (i, bit)| number | ((mode.0 >> bit & 1) as usize) << i)
     }
 
-    /// All choices on which the dependent coordinates depend, as the minus signs of a mode.
-    pub fn mask(&self) -> Mode {
-        self.mode(self.combinations() - 1)
+    /// All choices on which the dependent coordinates depend, in one of these combinations.
+    pub fn choices(&self, combination: usize) -> Choices {
+        Choices { given: self.mode(self.combinations() - 1), chosen: self.mode(combination) }
     }
 
     /// The modes with every combination of the steps' own choices, and plus for all others.
@@ -291,8 +294,9 @@ fn closed(
                 };
                 let target = |pose: &[f64]| target_of(task, &legs[leg], section, tau, pose);
                 let mut pose = home.clone();
-                let function = constraint.function(task, target, coordinate, &mut pose, size);
-                (function.slope() * unit).abs() / constraint.unit(size)
+                let function = constraint.function(task, coordinate, size);
+                let values = constraint.values(function.places(), coordinate, &mut pose, target);
+                (function.slope(values) * unit).abs() / constraint.unit(size)
             };
             // In the azimuth, a condition is no harmonic function.
             let mut preferred = coordinates;
@@ -304,8 +308,8 @@ fn closed(
                 return None;
             }
             let coordinate = preferred.into_iter().find(|i| slope(i) >= STEEP * steepest)?;
-            let quantity = task.coordinates[coordinate].quantity;
-            Some(Closed::Condition { constraint, coordinate, quantity })
+            let function = constraint.function(task, coordinate, size);
+            Some(Closed::Condition { constraint, coordinate, function })
         }
         _ => OneJoint::new(task, leg, section, first.map(|joint| compiled.screws[joint]))
             .map(Closed::Joint),
@@ -365,7 +369,7 @@ impl Closed {
     fn has_choice(&self) -> bool {
         match self {
             Self::Constant { .. } => false,
-            Self::Condition { constraint, quantity, .. } => constraint.has_choice(*quantity),
+            Self::Condition { constraint, function, .. } => constraint.has_choice(function),
             Self::Joint(joint) => joint.has_choice(),
         }
     }

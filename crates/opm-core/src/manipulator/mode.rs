@@ -60,6 +60,22 @@ impl Mode {
     }
 }
 
+/// The modes in which some choices are given.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Choices {
+    /// The given choices, as the minus signs of a mode.
+    pub given: Mode,
+    /// A mode in which they are as they are given.
+    pub chosen: Mode,
+}
+
+impl Choices {
+    /// All choices.
+    pub fn of(mode: Mode) -> Self {
+        Self { given: Mode(u64::MAX), chosen: mode }
+    }
+}
+
 /// The choices of each leg, and their bits in a [`Mode`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ModeLayout {
@@ -166,6 +182,18 @@ impl ModeLayout {
         (0..1u64 << len).map(move |combination| {
             Mode((0..len).fold(0, |mode, i| mode | (combination >> i & 1) << bits[i]))
         })
+    }
+
+    /// Those of [`ModeLayout::leg_modes`] in which the leg's choices are as they are given, with their numbers.
+    #[inline(always)]
+    pub fn chosen_leg_modes(
+        &self,
+        Choices { given, chosen }: Choices,
+        leg: usize,
+    ) -> impl Iterator<Item = (usize, Mode)> + use<> {
+        let own = self.legs[leg].sections().fold(0, |own, bit| own | 1 << bit);
+        let differ = move |mode: Mode| (mode.0 ^ chosen.0) & given.0 & own;
+        self.leg_modes(leg).enumerate().filter(move |&(_, mode)| differ(mode) == 0)
     }
 
     /// The mode with these branches of one leg, and plus for everything else.

@@ -189,12 +189,14 @@ pub(crate) fn sinc(x: f64) -> f64 {
 
 /// The number of full revolutions to subtract from an angle to bring it to within π of zero. It is zero for
 /// an angle of exactly ±π, which stays as it is.
+#[inline(always)]
 pub(crate) fn whole_turns(angle: f64) -> f64 {
     let revolutions = angle / TAU;
     if revolutions.abs() <= 0.5 { 0.0 } else { revolutions.round() }
 }
 
 /// The angle plus full revolutions, within π of `reference`.
+#[inline(always)]
 pub(crate) fn near(angle: f64, reference: f64) -> f64 {
     angle - TAU * whole_turns(angle - reference)
 }

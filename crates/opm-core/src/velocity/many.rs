@@ -13,7 +13,7 @@ use super::weighted::{Metric, Weighted};
 use crate::chain::Chain;
 use crate::manipulator::batch::Batch;
 use crate::manipulator::batch::lanes::{Column, LANES, Mask};
-use crate::manipulator::{LARGEST, Manipulator, Mode};
+use crate::manipulator::{Choices, LARGEST, Manipulator, Mode};
 use leg::{BranchRows, LegRows};
 use platform::PlatformColumns;
 use pulp::{Simd, WithSimd};
@@ -88,7 +88,7 @@ impl Manipulator {
         ConditionBatch {
             batch: self.batch(),
             work: Box::new(Work {
-                applies: self.decides_many() && !drives_ball,
+                applies: self.decides_many() && self.dependent.is_none() && !drives_ball,
                 leg: LegRows::new(self, &basis),
                 basis,
                 platform: PlatformColumns::new(freedoms),
@@ -123,10 +123,13 @@ impl Manipulator {
     ) -> u64 {
         let count = conditions.len();
         let ConditionBatch { batch, work } = batch;
-        if count == 0 || !work.applies {
+        if !work.applies {
+            return self.leave_reached(poses, query.mode, batch, conditions);
+        }
+        if count == 0 {
             return u64::MAX;
         }
-        batch.block.take(poses, self.task_coordinates().len());
+        batch.block.take(self, poses);
         let arch = batch.arch;
         arch.dispatch(Conditions { manipulator: self, query, count, batch, work });
         conditions.copy_from_slice(&work.conditions[..count]);
@@ -136,6 +139,28 @@ impl Manipulator {
             }
         }
         work.open.iter().rev().fold(0, |bits, open| bits << 1 | open)
+    }
+}
+
+impl Manipulator {
+    /// Finds the poses that are out of reach, which have no condition number. Returns a bit for each pose, set for the other
+    /// ones.
+    fn leave_reached(
+        &self,
+        poses: &[f64],
+        mode: Option<Mode>,
+        batch: &mut Batch,
+        conditions: &mut [f64],
+    ) -> u64 {
+        let fits = |value: &f64| value.abs() <= LARGEST;
+        if !(self.decides_many() && poses.iter().all(fits)) {
+            return u64::MAX;
+        }
+        let mut reached = [false; LANES];
+        let reached = &mut reached[..conditions.len()];
+        self.decide_many(poses, mode, batch, reached, |_, _| {});
+        conditions.fill(f64::NAN);
+        reached.iter().rev().fold(0, |bits, &reached| bits << 1 | u64::from(reached))
     }
 }
 
@@ -176,6 +201,7 @@ impl Conditions<'_> {
     #[inline(always)]
     fn solve(&mut self) -> bool {
         let Self { manipulator, query, batch, work, .. } = self;
+        let choices = query.mode.map_or_else(Choices::default, Choices::of);
         let block = &mut *batch.block;
         block.displace(manipulator);
         block.lift(manipulator);
@@ -192,7 +218,7 @@ impl Conditions<'_> {
         let mut all = true;
         for number in 0..manipulator.legs.len() {
             let mut found = 0;
-            for branches in manipulator.branches_of(query.mode, number) {
+            for branches in manipulator.branches_of(choices, number) {
                 let mut reaches = block.reach(manipulator, number, branches, &mut work.open);
                 for lane in 0..LANES {
                     reaches[lane] &= lifted[lane];

@@ -73,13 +73,6 @@ impl<'a> ClearPoses<'a> {
         }
     }
 
-    /// Whether a pose is in reach, and keeps the clearance. Gives the values of its imaginary joints then.
-    pub fn at(&mut self, pose: &[f64]) -> Option<&[f64]> {
-        let Self { manipulator, mode, test, all, solution, .. } = self;
-        let found = manipulator.inverse(pose, *mode, solution).ok()??;
-        test.at(found, all).then_some(found.imaginary())
-    }
-
     /// Leaves those poses of the rows that keep the clearance. `others` are the coordinates of the sheet's poses behind the
     /// first one.
     pub fn retain(&mut self, sweep: &Sweep<'_>, asked: &mut AskedRows, others: &[f64]) {

@@ -115,9 +115,6 @@ pub enum SheetKind {
     Bounds,
     /// Some leg has several branches, or one without regions: branches are decided one by one.
     Branches,
-    /// Some task coordinates follow from those of the grid, or heights of legs from imaginary joints: poses are decided one
-    /// by one.
-    Single,
 }
 
 impl SheetKind {
@@ -266,12 +263,6 @@ impl<'a> Sheet<'a> {
         let first = lower.saturating_sub(1);
         fill(&sweep.grid.axes()[lower..], slice, &mut self.others[first..]);
         self.open = true;
-        if !sweep.manipulator.dependent_coordinates().is_empty()
-            || sweep.manipulator.shares_height()
-        {
-            self.kind = SheetKind::Single;
-            return;
-        }
         let task = sweep.manipulator.task();
         let whole = sweep.grid.sections() != Sections::Lower;
         if whole && !self.rise_to(task.rise_in(Section::Upper, &self.others[first..])) {
@@ -317,9 +308,6 @@ impl<'a> Sheet<'a> {
         if axes.len() > 2 {
             fill(&axes[2..], self.number, &mut first[2..axes.len()]);
             self.others[1..axes.len() - 1].copy_from_slice(&first[2..axes.len()]);
-        }
-        if self.kind == SheetKind::Single {
-            return;
         }
         let task = sweep.manipulator.task();
         if !self.rise_to(task.rise_in(Section::Lower, &first[..axes.len()])) {

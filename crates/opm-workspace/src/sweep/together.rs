@@ -1,9 +1,10 @@
-//! Slices of few poses: poses of many slices are decided together.
+//! Poses that are decided one after the other, blocks of them together, whatever their rows and slices: where slices have few
+//! poses, and where regions do not tell what legs reach in a slice.
 
 use super::clear::{ClearPoses, Tile};
 use super::runs::{self, Run};
 use super::worker::{Ranges, Visitor};
-use super::{BLOCK, Count, Hits, Modes, Sweep};
+use super::{BLOCK, Count, Hits, Modes, SEGMENT, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::Sections;
 use opm_core::manipulator::{Batch, Manipulator};
@@ -13,7 +14,7 @@ use std::ops::Range;
 /// slice ready, and to find the ends of what its rows reach.
 const FEW: u64 = 8;
 
-/// A thread's working memory for poses of several slices.
+/// A thread's working memory for poses that are decided together.
 pub struct Together<'a> {
     ranges: Ranges,
     reach: Reach<'a>,
@@ -83,11 +84,13 @@ impl<'a> Sweep<'a> {
         Some(Box::new(ClearPoses::new(self.manipulator, limit, mode)))
     }
 
-    /// Whether poses of several slices are decided together.
-    pub(super) fn takes_slices_together(&self) -> bool {
-        self.grid.sections() == Sections::Whole
-            && self.manipulator.decides_many()
-            && self.side * self.sheets <= FEW / self.grid.row().max(1)
+    /// Whether poses are decided together, whatever their slices. They are where some task coordinates follow from those of
+    /// the grid, or heights of legs from imaginary joints.
+    pub(super) fn takes_poses_together(&self) -> bool {
+        let manipulator = self.manipulator;
+        let tied = !manipulator.dependent_coordinates().is_empty() || manipulator.shares_height();
+        let few = self.side * self.sheets <= FEW / self.grid.row().max(1);
+        self.grid.sections() == Sections::Whole && (tied || few && manipulator.decides_many())
     }
 }
 
@@ -118,26 +121,21 @@ impl<'a> Together<'a> {
         }
     }
 
-    /// Decides all poses of some rows.
+    /// Decides poses with these numbers, of whole segments of rows.
     pub fn decide(
         &mut self,
         sweep: &Sweep<'_>,
-        rows: Range<u64>,
+        numbers: Range<u64>,
         found: &mut Count,
         hit: &mut Visitor<'_>,
     ) {
-        let row = sweep.grid.row();
-        self.go_to(sweep, rows.start * row);
-        let mut next = rows.start;
-        while next < rows.end {
-            let some = next..next + self.at_once(sweep, next..rows.end);
+        self.go_to(sweep, numbers.start);
+        let mut next = numbers.start;
+        while next < numbers.end {
+            let count = self.at_once(sweep, next..numbers.end);
+            let some = next..next + count;
             next = some.end;
-            let count = (some.end - some.start) * row;
-            self.poses.clear();
-            for _ in 0..count {
-                self.poses.extend_from_slice(&self.pose);
-                self.advance(sweep);
-            }
+            self.take(sweep, count);
             self.reached.clear();
             self.reached.resize(count as usize, false);
             let wanted = self.ranges == Ranges::Wanted;
@@ -160,28 +158,31 @@ impl<'a> Together<'a> {
             found.poses += count;
             found.reachable += self.reached.iter().filter(|&&reached| reached).count() as u64;
             if let Some(hit) = hit {
-                self.hand_over(sweep, some, hit);
+                self.hand_over(sweep, some.start, hit);
             }
         }
     }
 
-    /// The number of the first of some rows that are decided together: as many as make a tile, if there is a clearance.
-    fn at_once(&self, sweep: &Sweep<'_>, rows: Range<u64>) -> u64 {
-        let of_row = sweep.grid.row();
-        let count = rows.end - rows.start;
+    /// The number of the first of some poses that are decided together: those of some rows or of a segment of one; as many
+    /// as make a tile, if there is a clearance.
+    fn at_once(&self, sweep: &Sweep<'_>, numbers: Range<u64>) -> u64 {
+        let count = numbers.end - numbers.start;
         if self.clear.is_none() {
-            return count.min(Manipulator::DECIDED as u64 / of_row);
+            let of_row = sweep.grid.row();
+            let most = SEGMENT - SEGMENT % of_row;
+            let rest = of_row - numbers.start % of_row;
+            return count.min(if most > 0 { most } else { rest.min(SEGMENT) });
         }
         let [along, across] = self.counts(sweep);
-        let (pose, tile) = (rows.start * of_row, along * across);
+        let (pose, tile) = (numbers.start, along * across);
         if pose % along > 0 {
             // Up to the end of a row of the tile.
-            return count.min((along - pose % along) / of_row);
+            return count.min(along - pose % along);
         }
         // Up to the end of the tile, in whole rows of it.
-        let most = (tile - pose % tile).min(count * of_row).min(BLOCK.max(along));
+        let most = (tile - pose % tile).min(count).min(BLOCK.max(along));
         let whole = most - most % along;
-        if whole > 0 { whole / of_row } else { count }
+        if whole > 0 { whole } else { count }
     }
 
     /// How many values the first two coordinates have that vary.
@@ -213,15 +214,18 @@ impl<'a> Together<'a> {
         left.for_each(|(pose, _)| kept.extend_from_slice(pose));
     }
 
-    /// Hands over the reached poses of some rows.
-    fn hand_over(&mut self, sweep: &Sweep<'_>, rows: Range<u64>, hit: &mut dyn FnMut(&Hits<'_>)) {
-        let (width, count) = (self.pose.len(), sweep.grid.row() as usize);
+    /// Hands over the reached poses, row by row. They begin with the pose that has this number.
+    fn hand_over(&mut self, sweep: &Sweep<'_>, first: u64, hit: &mut dyn FnMut(&Hits<'_>)) {
+        let (width, of_row) = (self.pose.len(), sweep.grid.row());
+        let (row, from) = (first / of_row, first % of_row);
+        // The poses are those of whole rows, or of a part of one.
+        let count = (of_row - from) as usize;
         let of_rows = self.reached.chunks(count).zip(self.poses.chunks(count * width));
-        for (row, (reached, poses)) in rows.zip(of_rows) {
+        for (row, (reached, poses)) in (row..).zip(of_rows) {
             self.runs.clear();
             self.first.clear();
             for (number, pose) in poses.chunks(width).enumerate().filter(|(i, _)| reached[*i]) {
-                runs::push(&mut self.runs, number as u64);
+                runs::push(&mut self.runs, from + number as u64);
                 self.first.push(pose[0]);
             }
             if !self.runs.is_empty() {
@@ -243,23 +247,42 @@ impl<'a> Together<'a> {
         }
     }
 
-    /// Goes to the next pose of the grid, and after the last one to the first.
-    fn advance(&mut self, sweep: &Sweep<'_>) {
-        for ((axis, digit), value) in
-            sweep.grid.axes().iter().zip(&mut self.digits).zip(&mut self.pose)
-        {
-            if axis.count == 1 {
-                continue;
+    /// Takes some poses from the present one on, and goes on to the next.
+    fn take(&mut self, sweep: &Sweep<'_>, count: u64) {
+        let (width, along) = (self.pose.len(), self.varying[0]);
+        let axis = &sweep.grid.axes()[along];
+        self.poses.resize(count as usize * width, 0.0);
+        let mut rest = &mut self.poses[..];
+        while !rest.is_empty() {
+            let first = self.digits[along];
+            let last = axis.count.min(first + (rest.len() / width) as u64);
+            let (poses, others) = rest.split_at_mut((last - first) as usize * width);
+            rest = others;
+            for (number, &value) in self.pose.iter().enumerate() {
+                poses[number..].iter_mut().step_by(width).for_each(|to| *to = value);
             }
-            *digit += 1;
-            let carries = *digit == axis.count;
-            if carries {
-                *digit = 0;
+            for (to, digit) in poses[along..].iter_mut().step_by(width).zip(first..last) {
+                *to = axis.value(digit);
             }
-            *value = axis.value(*digit);
-            if !carries {
-                break;
-            }
+            advance(sweep, last - first, &mut self.digits, &mut self.pose, along);
         }
+    }
+}
+
+/// Goes on by so many values of coordinate number `along`, up to its last one at most, and from there to the first pose with
+/// the next value of the following coordinate.
+fn advance(sweep: &Sweep<'_>, by: u64, digits: &mut [u64], pose: &mut [f64], along: usize) {
+    let mut by = by;
+    for (number, axis) in sweep.grid.axes().iter().enumerate().skip(along) {
+        digits[number] += by;
+        let carries = digits[number] == axis.count;
+        if carries {
+            digits[number] = 0;
+        }
+        pose[number] = axis.value(digits[number]);
+        if !carries {
+            break;
+        }
+        by = 1;
     }
 }

@@ -9,9 +9,8 @@ use super::row::Row;
 use super::runs::{self, Run};
 use super::sheet::{Sheet, SheetKind, SliceBranch};
 use super::together::Together;
-use super::{Count, Hits, Modes, Sweep};
+use super::{Count, Hits, Sweep};
 use crate::grid::{Axis, Sections};
-use opm_core::manipulator::{AllModes, Solution};
 use pulp::Arch;
 use std::ops::Range;
 
@@ -38,7 +37,6 @@ pub struct Worker<'a> {
     hits: HitPoses,
     limit: Option<LimitedRows<'a>>,
     clear: Option<Box<ClearPoses<'a>>>,
-    one: OnePose,
     together: Option<Together<'a>>,
     /// The angles of imaginary joints over the poses that this thread found.
     known: KnownRanges,
@@ -69,13 +67,6 @@ struct HitPoses {
     values: Vec<f64>,
     /// The first coordinates of the reachable ones.
     hits: Vec<f64>,
-}
-
-/// A pose that is decided by itself, and buffers for its solutions.
-struct OnePose {
-    pose: Vec<f64>,
-    all: AllModes,
-    solution: Solution,
 }
 
 impl Clipping {
@@ -184,7 +175,6 @@ fn in_doubt(clipped: &[ClippedRows], kind: SheetKind, i: usize) -> bool {
 impl<'a> Worker<'a> {
     pub fn new(sweep: &'a Sweep<'a>, ranges: Ranges) -> Self {
         let manipulator = sweep.manipulator;
-        let pose = || vec![0.0; sweep.grid.axes().len()];
         Self {
             sweep,
             ranges,
@@ -196,21 +186,16 @@ impl<'a> Worker<'a> {
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },
             limit: sweep.limit.clone().map(|limit| LimitedRows::new(manipulator, limit)),
             clear: sweep.clear_poses(),
-            one: OnePose {
-                pose: pose(),
-                all: manipulator.all_modes(),
-                solution: manipulator.solution(),
-            },
             together: None,
             known: KnownRanges::new(manipulator.legs()),
         }
     }
 
-    /// Decides all poses of some rows, where slices have few of them.
-    pub fn together(&mut self, rows: Range<u64>, found: &mut Count, hit: &mut Visitor<'_>) {
+    /// Decides poses with these numbers, of whole segments of rows, without regard to sheets.
+    pub fn together(&mut self, poses: Range<u64>, found: &mut Count, hit: &mut Visitor<'_>) {
         let (sweep, ranges) = (self.sweep, self.ranges);
         let together = self.together.get_or_insert_with(|| Together::new(sweep, ranges));
-        together.decide(sweep, rows, found, hit);
+        together.decide(sweep, poses, found, hit);
     }
 
     /// Takes the one pose of a slice of the upper section alone, which closes.
@@ -237,12 +222,6 @@ impl<'a> Worker<'a> {
         let sweep = self.sweep;
         if sweep.grid.sections() == Sections::Upper {
             self.take_slice(found, hit);
-            return;
-        }
-        if self.sheet.kind == SheetKind::Single {
-            for number in numbers {
-                found.reachable += self.decide_poses(number, window, found, hit);
-            }
             return;
         }
         self.clipping.clip(&self.sheet, &numbers, window);
@@ -373,63 +352,6 @@ impl<'a> Worker<'a> {
             let (slice, row) = (self.sheet.slice(), self.sheet.first_row + number);
             hit(&Hits { slice, row, runs: &self.row.reached, first, others: &self.sheet.others });
         }
-    }
-
-    /// Decides the poses of row `number` of the sheet one by one. Returns how many of them are reachable.
-    fn decide_poses(
-        &mut self,
-        number: u64,
-        window: Run,
-        found: &mut Count,
-        hit: &mut Visitor<'_>,
-    ) -> u64 {
-        let axes = self.sweep.grid.axes();
-        self.go_to_row(number);
-        self.row.take(std::iter::once(window));
-        if let Some(clear) = &mut self.clear {
-            let pose = &mut self.one.pose;
-            pose[1..].copy_from_slice(&self.sheet.others);
-            self.row.retain(|number| {
-                pose[0] = axes[0].value(number);
-                clear.at(pose).is_some()
-            });
-        }
-        let count = if let Some(limit) = &mut self.limit {
-            limit.begin(self.ranges == Ranges::Wanted);
-            let left = self.row.reached.iter().copied();
-            limit.add(self.sweep, left, &self.sheet.others, found);
-            limit.decide(self.sweep, found);
-            self.row.retain(|_| limit.next())
-        } else {
-            let (manipulator, ranges) = (self.sweep.manipulator, self.ranges == Ranges::Wanted);
-            let modes = self.sweep.modes;
-            let OnePose { pose, all, solution } = &mut self.one;
-            pose[1..].copy_from_slice(&self.sheet.others);
-            self.row.retain(|number| {
-                pose[0] = axes[0].value(number);
-                let mut used = |imaginary: usize, value: f64| {
-                    if ranges {
-                        found.widen(imaginary, value);
-                    }
-                };
-                match modes {
-                    Modes::One(mode) => match manipulator.inverse(pose, mode, solution) {
-                        Ok(Some(solution)) if solution.within_limits() => {
-                            let values = solution.imaginary().iter().enumerate();
-                            values.for_each(|(imaginary, &value)| used(imaginary, value));
-                            true
-                        }
-                        Ok(_) | Err(_) => false,
-                    },
-                    Modes::Any => match manipulator.inverse_all(pose, all) {
-                        Ok(Some(all)) => manipulator.within_limits_in_any(all, used),
-                        Ok(None) | Err(_) => false,
-                    },
-                }
-            })
-        };
-        self.hand_over(number, window, hit);
-        count
     }
 
     /// Holds the reachable poses of the rows that were asked for against the limit, if there is one, and takes the imaginary

@@ -3,7 +3,7 @@
 
 use super::lanes::{Column, LANES, Mask};
 use super::{Batch, Block, Status, section};
-use crate::manipulator::{CompiledLeg, LegBranches, Manipulator, Mode};
+use crate::manipulator::{Choices, CompiledLeg, Dependent, LegBranches, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use pulp::{Simd, WithSimd};
 
@@ -35,23 +35,34 @@ impl Decided {
 }
 
 impl Manipulator {
-    /// Whether [`Manipulator::decide_many`] can be used: chains are the same at all poses, and no coordinate depends on
-    /// others.
+    /// Whether many poses are solved together: chains are the same at all poses.
     #[doc(hidden)]
     pub fn decides_many(&self) -> bool {
-        self.dependent.is_none() && self.lifts_straight() && !self.shares_height()
+        self.lifts_straight() && !self.shares_height()
     }
 
-    /// The branches of a leg in a mode, or (`None`) in any, all-plus first.
+    /// The branches of a leg in the modes with some choices, all-plus first.
     #[inline(always)]
     pub(crate) fn branches_of(
         &self,
-        mode: Option<Mode>,
+        choices: Choices,
         leg: usize,
     ) -> impl Iterator<Item = LegBranches> {
-        let one = mode.map(|mode| self.modes.branches(mode, leg));
-        let each = self.modes.leg_modes(leg).take(if one.is_some() { 0 } else { 4 });
-        one.into_iter().chain(each.map(move |mode| self.modes.branches(mode, leg)))
+        let modes = self.modes.chosen_leg_modes(choices, leg);
+        modes.map(move |(_, mode)| self.modes.branches(mode, leg))
+    }
+
+    /// The choices with which poses have one set of dependent coordinates: those of a mode, or (`None`) each combination.
+    fn completions(&self, mode: Option<Mode>) -> impl Iterator<Item = Choices> {
+        let each = self.dependent.as_ref().filter(|_| mode.is_none());
+        let one = match (mode, each) {
+            (Some(mode), _) => Some(Choices::of(mode)),
+            (None, None) => Some(Choices::default()),
+            (None, Some(_)) => None,
+        };
+        let combinations = each.map_or(0, Dependent::combinations);
+        let each = (0..combinations).filter_map(move |i| Some(each?.choices(i)));
+        one.into_iter().chain(each)
     }
 
     /// Finds which of some poses, row after row, are in reach within all limits, in one working mode or (`None`) in any:
@@ -69,28 +80,36 @@ impl Manipulator {
         reached: &mut [bool],
         mut used: impl FnMut(usize, [f64; 2]),
     ) {
-        let width = self.task_coordinates().len();
+        let (width, rows) = (self.task_coordinates().len(), reached.len());
         let Batch { arch, block, solution, all, .. } = batch;
-        block.take(poses, width);
-        arch.dispatch(Decide { manipulator: self, mode, block });
-        let Decided { missed, open, imaginary } = &block.decided;
-        for (lane, reached) in reached.iter_mut().enumerate() {
-            *reached = missed[lane] | open[lane] == 0;
+        let together = self.decides_many();
+        let mut alone = [u64::from(!together); LANES];
+        reached.fill(false);
+        if together {
+            block.take(self, poses);
         }
-        let rows = reached.len();
-        for OfBranch { number, reaches, values } in imaginary {
-            let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-            for lane in 0..rows {
-                let counts = reaches[lane] != 0 && missed[lane] | open[lane] == 0;
-                let value = values[lane];
-                range[0] = if counts { range[0].min(value) } else { range[0] };
-                range[1] = if counts { range[1].max(value) } else { range[1] };
+        for choices in self.completions(mode).take_while(|_| together) {
+            self.complete_block(choices.chosen, *arch, block);
+            arch.dispatch(Decide { manipulator: self, choices, block });
+            let Decided { missed, open, imaginary } = &block.decided;
+            for (lane, reached) in reached.iter_mut().enumerate() {
+                *reached |= missed[lane] | open[lane] == 0;
+                alone[lane] |= open[lane] & !missed[lane];
             }
-            if range[0] <= range[1] {
-                used(*number, range);
+            for OfBranch { number, reaches, values } in imaginary {
+                let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+                for lane in 0..rows {
+                    let counts = reaches[lane] != 0 && missed[lane] | open[lane] == 0;
+                    let value = values[lane];
+                    range[0] = if counts { range[0].min(value) } else { range[0] };
+                    range[1] = if counts { range[1].max(value) } else { range[1] };
+                }
+                if range[0] <= range[1] {
+                    used(*number, range);
+                }
             }
         }
-        for lane in (0..rows).filter(|&lane| open[lane] & !missed[lane] & 1 == 1) {
+        for lane in (0..rows).filter(|&lane| alone[lane] & 1 == 1) {
             let pose = &poses[lane * width..][..width];
             let mut each = |number: usize, value: f64| used(number, [value; 2]);
             reached[lane] = match mode {
@@ -118,7 +137,7 @@ impl Manipulator {
 /// Decides a block with the instructions of the processor at hand.
 struct Decide<'a> {
     manipulator: &'a Manipulator,
-    mode: Option<Mode>,
+    choices: Choices,
     block: &'a mut Block,
 }
 
@@ -127,19 +146,19 @@ impl WithSimd for Decide<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, mode, block } = self;
+        let Self { manipulator, choices, block } = self;
         block.displace(manipulator);
         block.lift(manipulator);
-        let Status { open, within_limits, .. } = &block.status;
+        let Status { beyond, open, within_limits } = &block.status;
         block.decided.open = *open;
-        for (missed, within) in block.decided.missed.iter_mut().zip(within_limits) {
-            *missed = within ^ 1;
+        for (lane, missed) in block.decided.missed.iter_mut().enumerate() {
+            *missed = beyond[lane] | (within_limits[lane] ^ 1);
         }
         let mut number = 0;
         for (leg, compiled) in manipulator.legs.iter().enumerate() {
             let mut reached = [0; LANES];
             let mut open = [0; LANES];
-            for branches in manipulator.branches_of(mode, leg) {
+            for branches in manipulator.branches_of(choices, leg) {
                 let reaches = block.reach(manipulator, leg, branches, &mut open);
                 for lane in 0..LANES {
                     reached[lane] |= reaches[lane];

@@ -126,6 +126,12 @@ impl DisplacementColumns {
         repeat(&mut self.columns);
     }
 
+    /// The displacement of pose number `lane`.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> JointDisplacement {
+        if self.are_directions { self.direction(lane) } else { self.value(lane) }
+    }
+
     /// The displacement of pose number `lane`, which must be a direction.
     #[inline(always)]
     pub fn direction(&self, lane: usize) -> JointDisplacement {

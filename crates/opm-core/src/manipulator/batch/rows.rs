@@ -130,7 +130,7 @@ impl WithSimd for Reach<'_> {
                 block.aim(manipulator, branch, Shared::AllButTwo, lanes);
                 let Block { shifted, lower, status, .. } = block;
                 let branch = branch.branches.lower;
-                section::solve(&leg.lower.chain, branch, shifted, lower, lanes);
+                section::solve_chain(&leg.lower.chain, branch, shifted, lower, lanes);
                 status.note(lower);
             }
         }

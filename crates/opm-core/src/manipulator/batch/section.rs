@@ -4,21 +4,23 @@
 use super::lanes::{Column, DisplacementColumns, Displacements, LANES, Lane, Mask};
 use crate::chain::cylindrical::WithRevolute;
 use crate::chain::limits::Limits;
+use crate::chain::partial::PartialChain;
 use crate::chain::planar::PlanarChain;
 use crate::chain::{Attempt, Branch, Chain, ClosedForm};
 use crate::group::{
-    Cylindrical, CylindricalMotion, Displacement, IntersectionMotion, JointDisplacement,
-    MotionType, Planar, PlanarMotion, SpatialMotion, Spherical, SphericalMotion, Subgroup,
-    SubspaceKind, TranslationalMotion, TranslationalPlane, TranslationalSpace,
+    Cylindrical, CylindricalDisplacement, CylindricalMotion, Displacement, IntersectionMotion,
+    JointDisplacement, MotionType, Planar, PlanarDisplacement, PlanarMotion, SpatialMotion,
+    Spherical, SphericalMotion, Subgroup, SubspaceKind, TranslationalMotion, TranslationalPlane,
+    TranslationalSpace,
 };
-use crate::manipulator::ImaginaryJoint;
+use crate::manipulator::{CompiledSection, ImaginaryJoint};
 use crate::mechanism::OrientationCoordinates;
 use crate::mechanism::leg::Section;
 use crate::numeric::angle::sin_cos_reduced;
 use crate::task::{
     Form, SectionValues, Task, lower_angles, lower_displacement, upper_angles, upper_displacement,
 };
-use nalgebra::Matrix3;
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// Half a block. Where angles are computed, two halves at a time load the constants once.
 const HALF: usize = LANES / 2;
@@ -176,9 +178,25 @@ impl Displacement {
     }
 }
 
-/// The joints' displacements that move the outer link of `chain` by `targets`.
+/// The joints' displacements that move the outer link of a section by `targets`, as [`CompiledSection::inverse`] gives
+/// them.
 #[inline(always)]
 pub fn solve(
+    section: &CompiledSection,
+    branch: Branch,
+    targets: &Displacements,
+    found: &mut Found,
+    lanes: usize,
+) {
+    match &section.partial {
+        None => solve_chain(&section.chain, branch, targets, found, lanes),
+        Some(partial) => solve_partial(partial, &section.chain, targets, found, lanes),
+    }
+}
+
+/// The same for the chain of a section that does not constrain the platform.
+#[inline(always)]
+pub fn solve_chain(
     chain: &Chain,
     branch: Branch,
     targets: &Displacements,
@@ -203,6 +221,53 @@ pub fn solve(
             Some(_) => attempt(&WithRevolute::<1>(*chain), branch, targets, found, lanes),
             None => attempt(&WithRevolute::<2>(*chain), branch, targets, found, lanes),
         },
+    }
+}
+
+/// The same for a section that constrains the platform, at targets that satisfy its constraints.
+#[inline(always)]
+fn solve_partial(
+    partial: &PartialChain,
+    chain: &Chain,
+    targets: &Displacements,
+    found: &mut Found,
+    lanes: usize,
+) {
+    (found.holds, found.beyond) = ([1; LANES], [0; LANES]);
+    let to = &mut found.displacements;
+    // Locked joints do not move.
+    to.iter_mut().for_each(DisplacementColumns::clear);
+    macro_rules! each {
+        ($variant:ident, $displacement:ty) => {{
+            let target =
+                |lane: usize| Displacement::$variant(<$displacement as Lane>::load(targets, lane));
+            // The variants of the displacements depend on the joints alone.
+            for (to, first) in to.iter_mut().zip(partial.inverse(&target(0))) {
+                to.are_directions = matches!(first, JointDisplacement::Direction(_));
+            }
+            match partial.free() {
+                (Some(a), Some(b)) => {
+                    for lane in 0..lanes.min(LANES) {
+                        let [p, q] = partial.two([a, b], &target(lane));
+                        to[a].set(lane, p);
+                        to[b].set(lane, q);
+                    }
+                }
+                (Some(a), None) => {
+                    for lane in 0..lanes.min(LANES) {
+                        to[a].set(lane, partial.one(a, &target(lane)));
+                    }
+                }
+                (None, _) => {}
+            }
+        }};
+    }
+    match chain {
+        Chain::Planar(_) => each!(Planar, PlanarDisplacement),
+        Chain::Spherical(_) | Chain::Ball(_) => each!(Spherical, Matrix3<f64>),
+        Chain::Cylindrical(_) => each!(Cylindrical, CylindricalDisplacement),
+        Chain::Translational(_) => each!(Translational, Complex<f64>),
+        Chain::Rigid | Chain::Spatial(_) => each!(Spatial, Vector3<f64>),
     }
 }
 

@@ -52,20 +52,23 @@ impl Dependent {
                         pose[coordinate] = manipulator.task().coordinates[coordinate].home;
                     }
                 }
-                Closed::Condition { constraint, coordinate, .. } => {
+                Closed::Condition { constraint, coordinate, function } => {
                     let tau = manipulator.tau_before(leg, section, pose, mode)?;
                     let task = manipulator.task();
                     let target =
                         |pose: &[f64]| target_of(task, &manipulator.legs[leg], section, tau, pose);
-                    let held = pose[*coordinate];
-                    let function = constraint.function(task, target, *coordinate, pose, self.size);
+                    let places = function.places();
+                    let values = constraint.values(places, *coordinate, pose, target);
                     pose[*coordinate] = function
-                        .zero(sign, held)
+                        .zero(values, sign, pose[*coordinate])
                         .map_err(|value| missed(constraint.condition.deficit(value)))?;
                 }
                 Closed::Joint(joint) => {
                     let tau = manipulator.tau_before(leg, section, pose, mode)?;
-                    joint.solve(manipulator, tau, sign, pose).map_err(missed)?;
+                    let mut at = [0.0; 3];
+                    at.iter_mut().zip(&joint.all).for_each(|(at, &i)| *at = pose[i]);
+                    let found = joint.solve(manipulator, tau, sign, at).map_err(missed)?;
+                    joint.all.iter().zip(found).for_each(|(&i, value)| pose[i] = value);
                 }
             }
         }

@@ -5,7 +5,7 @@ use crate::chain::condition::Condition;
 use crate::group::{Displacement, JointDisplacement, MotionType};
 use crate::manipulator::leg::{CompiledLeg, Section};
 use crate::numeric::Quantity;
-use crate::task::Task;
+use crate::task::{Task, TaskCoordinate};
 
 /// A condition on a section of a leg.
 #[derive(Clone, Copy, Debug)]
@@ -78,42 +78,45 @@ impl Constraint {
         }
     }
 
-    /// Whether two values of a coordinate satisfy the condition.
-    pub fn has_choice(&self, quantity: Quantity) -> bool {
+    /// Whether two values of a coordinate satisfy the condition, which depends on it by this function.
+    pub fn has_choice(&self, function: &Function) -> bool {
         match self.condition {
             Condition::Circle { .. } => true,
             Condition::Line { .. } | Condition::CarriedLine { .. } | Condition::Cone { .. } => {
-                quantity == Quantity::Angle
+                function.harmonic
             }
             // The opposite heading is no solution.
             Condition::Heading { .. } | Condition::Flat { .. } => false,
         }
     }
 
-    /// The value of the condition as a function of one coordinate, with the others as in `pose`. `target` gives
-    /// the displacement that the condition is on.
-    pub fn function(
-        &self,
-        task: &Task,
-        target: impl Fn(&[f64]) -> Displacement,
-        coordinate: usize,
-        pose: &mut [f64],
-        size: f64,
-    ) -> Function {
-        let held = pose[coordinate];
-        let mut value = |t: f64| {
-            pose[coordinate] = t;
-            self.condition.value(&target(pose))
-        };
-        let home = task.coordinates[coordinate].home;
+    /// How the condition's value depends on one coordinate.
+    pub fn function(&self, task: &Task, coordinate: usize, size: f64) -> Function {
+        let TaskCoordinate { home, quantity, .. } = task.coordinates[coordinate];
         // On a cylinder angles are counted, and the condition is linear in them.
         let counted = matches!(self.condition, Condition::Flat { .. });
-        let function = match task.coordinates[coordinate].quantity {
-            Quantity::Angle if !counted => Function::harmonic(home, self.unit(size), &mut value),
-            Quantity::Angle => Function::polynomial(home, 1.0, self.unit(size), &mut value),
-            Quantity::Length => Function::polynomial(home, size, self.unit(size), &mut value),
-        };
+        match quantity {
+            Quantity::Angle if !counted => Function::harmonic(home, self.unit(size)),
+            Quantity::Angle => Function::polynomial(home, 1.0, self.unit(size)),
+            Quantity::Length => Function::polynomial(home, size, self.unit(size)),
+        }
+    }
+
+    /// The values of the condition at some places of one coordinate, with the others as in `pose`. `target` gives the
+    /// displacement that the condition is on.
+    pub fn values(
+        &self,
+        places: [f64; 3],
+        coordinate: usize,
+        pose: &mut [f64],
+        target: impl Fn(&[f64]) -> Displacement,
+    ) -> [f64; 3] {
+        let held = pose[coordinate];
+        let values = places.map(|place| {
+            pose[coordinate] = place;
+            self.condition.value(&target(pose))
+        });
         pose[coordinate] = held;
-        function
+        values
     }
 }

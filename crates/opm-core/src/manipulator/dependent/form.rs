@@ -5,7 +5,6 @@ use super::one_joint::SectionMotion;
 use super::{Closed, Dependent};
 use crate::chain::condition::Condition;
 use crate::manipulator::leg::{CompiledLeg, Section};
-use crate::numeric::Quantity;
 use crate::task::Task;
 
 /// How coordinates follow from the others, because a leg constrains them.
@@ -69,26 +68,20 @@ impl Dependent {
             section: step.solution.section(),
             coordinates: step.solution.coordinates(),
             bit: step.bit,
-            kind: self.kind(&step.solution),
+            kind: Self::kind(&step.solution),
         };
         self.steps.iter().map(form).collect()
     }
 
-    fn kind(&self, solution: &Closed) -> StepKind {
+    fn kind(solution: &Closed) -> StepKind {
         match solution {
             Closed::Constant { .. } => StepKind::Constant,
-            Closed::Condition { constraint, quantity, .. } => {
-                let flat = matches!(constraint.condition, Condition::Flat { .. });
-                StepKind::Condition {
-                    condition: constraint.condition,
-                    harmonic: *quantity == Quantity::Angle && !flat,
-                    step: match quantity {
-                        Quantity::Angle => 1.0,
-                        Quantity::Length => self.size,
-                    },
-                    unit: constraint.unit(self.size),
-                }
-            }
+            Closed::Condition { constraint, function, .. } => StepKind::Condition {
+                condition: constraint.condition,
+                harmonic: function.harmonic,
+                step: function.step,
+                unit: function.unit,
+            },
             Closed::Joint(joint) => {
                 StepKind::Joint { motion: joint.motion, all: joint.all.clone() }
             }

@@ -8,12 +8,12 @@
 use crate::chain::{REACH_TOLERANCE, ReachDeficit};
 use crate::group::{
     Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
-    rotation_about,
+    linear, rotation_about,
 };
 use crate::manipulator::Manipulator;
 use crate::manipulator::leg::Section;
 use crate::numeric::Quantity;
-use crate::numeric::angle::{near, unit};
+use crate::numeric::angle::{atan2, near, unit};
 use crate::task::Task;
 use nalgebra::{Complex, Matrix3};
 use std::f64::consts::PI;
@@ -33,6 +33,8 @@ pub(super) struct OneJoint {
     pub coordinates: Vec<usize>,
     /// The numbers of the section's coordinates, but that of a height.
     pub(super) all: Vec<usize>,
+    /// What each of these is, if it is dependent.
+    follows: [Option<Quantity>; 3],
     pub(super) motion: SectionMotion,
 }
 
@@ -92,15 +94,31 @@ impl OneJoint {
                 Some(_),
             ) => return None,
         };
-        let given = given.map(|i| all[i]);
-        let coordinates = all.iter().copied().filter(|i| Some(*i) != given).collect();
-        Some(Self { leg, section, coordinates, all, motion })
+        let follows = (0..all.len()).filter(|i| Some(*i) != given);
+        Some(Self::of(task, leg, section, all.clone(), follows.collect(), motion))
     }
 
     /// A rotation about the third direction, and one about the axis `s`.
     pub fn last_angle(task: &Task, leg: usize, section: Section, s: LocalTwist) -> Self {
         let all: Vec<usize> = task.range(section).collect();
-        Self { leg, section, coordinates: vec![all[2]], all, motion: SectionMotion::LastAngle(s) }
+        Self::of(task, leg, section, all, vec![2], SectionMotion::LastAngle(s))
+    }
+
+    /// The motion of a section with coordinates of which these follow from it.
+    fn of(
+        task: &Task,
+        leg: usize,
+        section: Section,
+        all: Vec<usize>,
+        following: Vec<usize>,
+        motion: SectionMotion,
+    ) -> Self {
+        let mut follows = [None; 3];
+        for &i in &following {
+            follows[i] = Some(task.coordinates[all[i]].quantity);
+        }
+        let coordinates = following.into_iter().map(|i| all[i]).collect();
+        Self { leg, section, coordinates, all, follows, motion }
     }
 
     /// Whether two displacements of the joint belong to a value of the coordinate that tells it.
@@ -140,22 +158,23 @@ impl OneJoint {
         }
     }
 
-    /// Computes the dependent coordinates of a pose, where the leg's displacement along the intersection motion
-    /// is `tau` if that belongs to the other section.
+    /// The section's coordinates of a pose, dependent ones too, where the leg's displacement along the intersection motion
+    /// is `tau` if that belongs to the other section. Angles are those nearest to what `at` has, the section's coordinates.
     ///
     /// # Errors
     /// By how much the coordinate that tells the joint is out of its range.
+    #[inline(always)]
     pub fn solve(
         &self,
         manipulator: &Manipulator,
         tau: JointDisplacement,
         sign: f64,
-        pose: &mut [f64],
-    ) -> Result<(), ReachDeficit> {
+        mut at: [f64; 3],
+    ) -> Result<[f64; 3], ReachDeficit> {
         let task = manipulator.task();
         // Zero for a displacement along the intersection motion, for which there is no coordinate.
         let home = |i: usize| self.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
-        let from_home = |i: usize| pose[self.all[i]] - home(i);
+        let from_home = |i: usize| at[i] - home(i);
         // g = exp(I τ) · exp(s q) for b, and exp(s q) · exp(-I τ) for v.
         let subspace = subspace(task, self.section);
         let shifted = |motion: Displacement| {
@@ -172,7 +191,7 @@ impl OneJoint {
                 // The rotation about the third direction is that of the first Euler angle.
                 Displacement::Spherical(r) => {
                     let [zeta, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
-                    task.angles.of_euler([zeta + r[(1, 0)].atan2(r[(0, 0)]), xi, psi])
+                    task.angles.of_euler([zeta + atan2(r[(1, 0)], r[(0, 0)]), xi, psi])
                 }
                 other => of_displacement(&other, home),
             },
@@ -187,46 +206,48 @@ impl OneJoint {
                 )
             }
             SectionMotion::Slide(s, given) => {
-                let at = |q: f64| shifted(subspace.kind.exponential(&(s * q)));
-                let [start, end] = [0.0, 1.0].map(|q| of_displacement(&at(q), |_| 0.0)[given]);
-                let rate = end - start;
-                if rate.abs() < ALONG {
-                    return Err(ReachDeficit::length((from_home(given) - start).abs()));
+                // It moves along a straight line.
+                let (start, end) = (still(), shifted(slid(subspace.kind, s)));
+                let from_start = from_home(given) - length_of(&start, given);
+                let rate = |i: usize| length_of(&end, i) - length_of(&start, i);
+                if rate(given).abs() < ALONG {
+                    return Err(ReachDeficit::length(from_start.abs()));
                 }
-                of_displacement(&at((from_home(given) - start) / rate), home)
+                let q = from_start / rate(given);
+                let mut found = of_displacement(&start, home);
+                found[0] += q * rate(0);
+                found[1] += q * rate(1);
+                if subspace.kind == SubspaceKind::TranslationalSpace {
+                    found[2] += q * rate(2);
+                }
+                found
             }
             SectionMotion::Third => {
                 let [_, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
-                let angles = task.angles.of_euler([pose[self.all[0]], xi, psi]);
-                self.all.iter().zip(angles).for_each(|(&i, angle)| pose[i] = angle);
-                return Ok(());
+                return Ok(task.angles.of_euler([at[0], xi, psi]));
             }
             SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
-                let xi = pose[self.all[1]];
-                let mut found = angles(task, &s, xi, sign)?;
+                let mut found = angles(task, &s, at[1], sign)?;
                 found[0] += match still() {
-                    Displacement::Spherical(r) => r[(1, 0)].atan2(r[(0, 0)]),
+                    Displacement::Spherical(r) => atan2(r[(1, 0)], r[(0, 0)]),
                     _ => 0.0,
                 };
                 if let SectionMotion::LastAngle(_) = self.motion {
-                    found[0] = pose[self.all[0]];
+                    found[0] = at[0];
                 }
                 task.angles.of_euler(found)
             }
         };
-        for (&coordinate, value) in self.all.iter().zip(found) {
-            if !self.coordinates.contains(&coordinate) {
-                continue;
-            }
-            let c = &task.coordinates[coordinate];
-            pose[coordinate] = match c.quantity {
-                Quantity::Angle if subspace.kind != SubspaceKind::Cylindrical => {
-                    near(value, pose[coordinate])
+        for ((&follows, at), value) in self.follows.iter().zip(&mut at).zip(found) {
+            *at = match follows {
+                Some(Quantity::Angle) if subspace.kind != SubspaceKind::Cylindrical => {
+                    near(value, *at)
                 }
-                _ => value,
+                Some(_) => value,
+                None => *at,
             };
         }
-        Ok(())
+        Ok(at)
     }
 }
 
@@ -237,15 +258,39 @@ fn subspace(task: &Task, section: Section) -> &Subspace {
     }
 }
 
+/// The displacement by one unit along the screw of a slider: a translation of a plane, or of space.
+#[inline(always)]
+fn slid(kind: SubspaceKind, s: LocalTwist) -> Displacement {
+    match kind {
+        SubspaceKind::Planar => {
+            let (rotation, translation) = (Complex::new(1.0, 0.0), linear(&s));
+            Displacement::Planar(PlanarDisplacement { rotation, translation })
+        }
+        _ => kind.exponential(&s),
+    }
+}
+
+/// One of the lengths among the coordinates of a displacement that has a slider, from home.
+#[inline(always)]
+fn length_of(g: &Displacement, number: usize) -> f64 {
+    match g {
+        Displacement::Planar(g) if number == 0 => g.translation.re,
+        Displacement::Planar(g) => g.translation.im,
+        other => other.spatial()[number],
+    }
+}
+
 /// The coordinates of a displacement of a section that has all coordinates of its subspace. A rotation about a
 /// centre is one about the third direction.
+#[inline(always)]
 fn of_displacement(g: &Displacement, home: impl Fn(usize) -> f64) -> [f64; 3] {
     match g {
         Displacement::Identity(_) => [0.0; 3],
         Displacement::Planar(g) => {
-            [home(0) + g.translation.re, home(1) + g.translation.im, home(2) + g.rotation.arg()]
+            let angle = atan2(g.rotation.im, g.rotation.re);
+            [home(0) + g.translation.re, home(1) + g.translation.im, home(2) + angle]
         }
-        Displacement::Spherical(r) => [home(0) + r[(1, 0)].atan2(r[(0, 0)]), home(1), home(2)],
+        Displacement::Spherical(r) => [home(0) + atan2(r[(1, 0)], r[(0, 0)]), home(1), home(2)],
         Displacement::Cylindrical(g) => [home(0) + g.angle, home(1) + g.advance, 0.0],
         Displacement::Translational(t) => [home(0) + t.re, home(1) + t.im, 0.0],
         Displacement::Spatial(t) => [home(0) + t.x, home(1) + t.y, home(2) + t.z],
@@ -278,7 +323,7 @@ fn from_identity(s: &LocalTwist, xi: f64, sign: f64) -> Result<[f64; 3], ReachDe
     let sin = sign * sin;
     let column = [s.x * s.z * sin + s.y * cos, s.y * s.z * sin - s.x * cos];
     let row = [s.x * s.z * sin - s.y * cos, s.y * s.z * sin + s.x * cos];
-    Ok([(sign * column[1]).atan2(sign * column[0]), xi, (sign * row[1]).atan2(-sign * row[0])])
+    Ok([atan2(sign * column[1], sign * column[0]), xi, atan2(sign * row[1], -sign * row[0])])
 }
 
 /// The Euler angles of the rotation about `s` of the orientation `home` whose second angle is `xi`.
@@ -303,9 +348,9 @@ fn from_orientation(
     let turn = z * Complex::new(part, sign * upper * height);
     let r = rotation_about(s, turn / turn.norm()) * home;
     Ok([
-        (upper * r[(1, 2)]).atan2(upper * r[(0, 2)]),
+        atan2(upper * r[(1, 2)], upper * r[(0, 2)]),
         xi,
-        (upper * r[(2, 1)]).atan2(-upper * r[(2, 0)]),
+        atan2(upper * r[(2, 1)], -upper * r[(2, 0)]),
     ])
 }
 

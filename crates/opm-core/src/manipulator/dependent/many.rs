@@ -1,0 +1,223 @@
+//! The dependent coordinates of a block of poses: what [`Dependent::complete_from_home`] does for one pose, as loops over
+//! the block.
+
+use super::constraint::{Constraint, follows};
+use super::one_joint::OneJoint;
+use super::zeros::Function;
+use super::{Closed, Dependent, OBEYED};
+use crate::chain::condition::Condition;
+use crate::chain::equation::AttemptedZero;
+use crate::group::{
+    CylindricalDisplacement, Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind,
+};
+use crate::manipulator::batch::Block;
+use crate::manipulator::batch::lanes::{Column, LANES, Lane};
+use crate::manipulator::batch::section::{self, Side, Step};
+use crate::manipulator::{Manipulator, Mode, Section};
+use crate::numeric::Quantity;
+use nalgebra::{Complex, Matrix3, Vector3};
+use pulp::{Simd, WithSimd};
+
+/// Completes the poses of a block in a mode, with the instructions of the processor at hand. Poses that have no dependent
+/// coordinates are marked as out of reach.
+pub(in crate::manipulator) struct Complete<'a> {
+    pub manipulator: &'a Manipulator,
+    pub dependent: &'a Dependent,
+    pub mode: Mode,
+    pub block: &'a mut Block,
+}
+
+impl WithSimd for Complete<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, dependent, mode, block } = self;
+        for &coordinate in &dependent.coordinates {
+            block.pose[coordinate].fill(manipulator.home[coordinate]);
+        }
+        block.begin(manipulator);
+        let mut values = [[0.0; LANES]; 3];
+        for step in &dependent.steps {
+            let sign = step.sign(mode);
+            match &step.solution {
+                Closed::Constant { .. } => {}
+                Closed::Condition { constraint, coordinate, function } => {
+                    block.find_tau_before(manipulator, mode, constraint.leg, constraint.section);
+                    for (place, values) in function.places().into_iter().zip(&mut values) {
+                        block.pose[*coordinate].fill(place);
+                        block.demand(manipulator, constraint, values);
+                    }
+                    let home = manipulator.home[*coordinate];
+                    block.take_zeros(function, &values, sign, home, *coordinate);
+                }
+                Closed::Joint(joint) => {
+                    block.find_tau_before(manipulator, mode, joint.leg, joint.section);
+                    block.take_joint(manipulator, joint, sign);
+                }
+            }
+        }
+        for check in &dependent.checks {
+            block.find_tau_before(manipulator, mode, check.leg, check.section);
+            let [missed, ..] = &mut values;
+            block.demand(manipulator, check, missed);
+            for (lane, &missed) in missed.iter().enumerate() {
+                let deficit = check.condition.deficit(missed);
+                let unit = if deficit.quantity == Quantity::Length { dependent.size } else { 1.0 };
+                let obeyed = u64::from(deficit.excess <= OBEYED * unit);
+                block.status.note_lane(lane, obeyed, obeyed ^ 1);
+            }
+        }
+    }
+}
+
+impl Block {
+    /// Finds the displacements τ of a leg along the intersection motion, where they follow from the section other than this
+    /// one; zeros otherwise.
+    #[inline(always)]
+    fn find_tau_before(
+        &mut self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        number: usize,
+        section: Section,
+    ) {
+        let leg = &manipulator.legs[number];
+        let joint = leg.imaginary_joint().filter(|_| follows(&manipulator.task, leg, section));
+        let Some(joint) = joint else {
+            self.tau.clear();
+            return;
+        };
+        let bridge = leg.split_section;
+        self.displace_section(manipulator, bridge, LANES);
+        let branch = manipulator.branches(mode, number).of(bridge);
+        let Self { v, b, lower, tau, status, .. } = self;
+        let target = if bridge == Section::Lower { &*v } else { &*b };
+        section::solve(leg.section(bridge), branch, target, lower, LANES);
+        status.note(lower);
+        section::unwind(leg.unwinds, &lower.displacements[joint], tau);
+        if bridge == Section::Lower {
+            section::invert(tau);
+        }
+    }
+
+    /// Computes the values of a constraint's condition at the present poses.
+    #[inline(always)]
+    fn demand(&mut self, manipulator: &Manipulator, constraint: &Constraint, values: &mut Column) {
+        let Constraint { leg, section, condition } = constraint;
+        let task = &manipulator.task;
+        self.displace_section(manipulator, *section, LANES);
+        let Self { v, b, shifted, tau, .. } = self;
+        let (own, kind) = match section {
+            Section::Lower => (&*v, task.lower.kind),
+            Section::Upper => (&*b, task.upper.kind),
+        };
+        let mut targets = own;
+        if follows(task, &manipulator.legs[*leg], *section) {
+            match section {
+                Section::Lower => {
+                    let step = Step { motion: task.lower_intersection, side: Side::After };
+                    section::shift(step, own, tau, shifted, LANES);
+                }
+                Section::Upper => {
+                    let step = Step { motion: task.upper_intersection, side: Side::Before };
+                    section::invert(tau);
+                    section::shift(step, own, tau, shifted, LANES);
+                    section::invert(tau);
+                }
+            }
+            targets = shifted;
+        }
+        // With a constant kind of displacement and of condition, the loop has no branches.
+        macro_rules! each {
+            ($condition:expr, $variant:ident, $displacement:ty) => {{
+                let condition = $condition;
+                for lane in 0..LANES {
+                    let target = <$displacement>::load(targets, lane);
+                    values[lane] = condition.value(&Displacement::$variant(target));
+                }
+            }};
+        }
+        match *condition {
+            Condition::Circle { point, centre, radius } => {
+                each!(Condition::Circle { point, centre, radius }, Planar, PlanarDisplacement);
+            }
+            Condition::Line { point, normal, offset } => {
+                each!(Condition::Line { point, normal, offset }, Planar, PlanarDisplacement);
+            }
+            Condition::CarriedLine { point, normal, offset } => {
+                each!(Condition::CarriedLine { point, normal, offset }, Planar, PlanarDisplacement);
+            }
+            Condition::Heading { rotation } => {
+                each!(Condition::Heading { rotation }, Planar, PlanarDisplacement);
+            }
+            Condition::Cone { fixed, carried, cosine } => {
+                each!(Condition::Cone { fixed, carried, cosine }, Spherical, Matrix3<f64>);
+            }
+            Condition::Flat { normal, value } => {
+                let condition = Condition::Flat { normal, value };
+                match kind {
+                    SubspaceKind::Cylindrical => {
+                        each!(condition, Cylindrical, CylindricalDisplacement);
+                    }
+                    SubspaceKind::TranslationalPlane => {
+                        each!(condition, Translational, Complex<f64>);
+                    }
+                    SubspaceKind::Identity
+                    | SubspaceKind::Planar
+                    | SubspaceKind::Spherical
+                    | SubspaceKind::TranslationalSpace => each!(condition, Spatial, Vector3<f64>),
+                }
+            }
+        }
+    }
+
+    /// Takes the zeros of functions of a coordinate for its values: see [`Function::zero`].
+    #[inline(always)]
+    fn take_zeros(
+        &mut self,
+        function: &Function,
+        [first, second, third]: &[Column; 3],
+        sign: f64,
+        held: f64,
+        coordinate: usize,
+    ) {
+        let Self { pose, status, .. } = self;
+        let to = &mut pose[coordinate];
+        macro_rules! each {
+            ($harmonic:expr) => {{
+                let function = Function { harmonic: $harmonic, ..*function };
+                for lane in 0..LANES {
+                    let values = [first[lane], second[lane], third[lane]];
+                    let AttemptedZero { at, holds, beyond } =
+                        function.attempt_zero(values, sign, held);
+                    to[lane] = at;
+                    status.note_lane(lane, u64::from(holds), u64::from(beyond));
+                }
+            }};
+        }
+        if function.harmonic {
+            each!(true);
+        } else {
+            each!(false);
+        }
+    }
+
+    /// Takes the coordinates of a section with one joint.
+    #[inline(always)]
+    fn take_joint(&mut self, manipulator: &Manipulator, joint: &OneJoint, sign: f64) {
+        for lane in 0..LANES {
+            let mut at = [0.0; 3];
+            for (at, &coordinate) in at.iter_mut().zip(&joint.all) {
+                *at = self.pose[coordinate][lane];
+            }
+            let tau: JointDisplacement = self.tau.get(lane);
+            let found = joint.solve(manipulator, tau, sign, at);
+            let solved = u64::from(found.is_ok());
+            self.status.note_lane(lane, solved, solved ^ 1);
+            for (value, &coordinate) in found.unwrap_or(at).into_iter().zip(&joint.all) {
+                self.pose[coordinate][lane] = value;
+            }
+        }
+    }
+}
