@@ -2,8 +2,8 @@
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::DMatrix;
-use nalgebra_034::storage::Owned;
-use nalgebra_034::{DMatrix as Matrix, DVector as Vector, Dyn};
+use nalgebra_033::storage::Owned;
+use nalgebra_033::{DMatrix as Matrix, DVector as Vector, Dyn};
 use std::cell::RefCell;
 
 /// Residuals at a point, and their derivatives if they were asked for: a row for each residual.

@@ -1,8 +1,9 @@
 //! The fonts that come with the crate: outlines and widths, the same on every machine.
 
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::{DrawSettings, OutlinePen};
-use skrifa::{FontRef, GlyphId, MetadataProvider};
+use read_fonts::model::Font;
+use read_fonts::model::glyph::outline::{DrawMemory, DrawOptions, PathSink};
+use read_fonts::types::GlyphId;
+use std::sync::LazyLock;
 
 /// The font of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,8 +27,10 @@ pub enum Stroke {
     Close,
 }
 
-static REGULAR: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
-static BOLD: &[u8] = include_bytes!("../fonts/DejaVuSans-Bold.ttf");
+static REGULAR: LazyLock<Option<Font>> =
+    LazyLock::new(|| Font::new(include_bytes!("../fonts/DejaVuSans.ttf").as_slice(), 0));
+static BOLD: LazyLock<Option<Font>> =
+    LazyLock::new(|| Font::new(include_bytes!("../fonts/DejaVuSans-Bold.ttf").as_slice(), 0));
 
 /// The height of capitals above the baseline, as a share of the font's size.
 pub const CAPITALS: f64 = 0.73;
@@ -39,27 +42,22 @@ impl Face {
     /// The number of font units in the font's size, the same for both fonts.
     pub const UNITS: f64 = 2048.0;
 
-    /// Reads the directory of the font's tables, which takes no longer than finding a glyph.
-    fn font(self) -> Option<FontRef<'static>> {
-        let bytes = match self {
-            Self::Regular => REGULAR,
-            Self::Bold => BOLD,
-        };
-        FontRef::new(bytes).ok()
+    fn font(self) -> Option<&'static Font> {
+        match self {
+            Self::Regular => REGULAR.as_ref(),
+            Self::Bold => BOLD.as_ref(),
+        }
     }
 
     /// The number and the width of each character's glyph, in units of the font. A character that the font
     /// lacks has the first glyph, an empty box.
     fn metrics(self) -> impl Fn(char) -> (u16, f64) {
-        let font = self.font();
-        let tables = font.as_ref().map(|font| {
-            (font.charmap(), font.glyph_metrics(Size::unscaled(), LocationRef::default()))
-        });
+        let tables = self.font().map(|font| (font.charmap(), font.glyph_metrics()));
         move |character| {
             let Some((characters, widths)) = &tables else { return (0, 0.0) };
-            let glyph = characters.map(character).unwrap_or(GlyphId::NOTDEF);
+            let glyph = characters.map_unicode(character).unwrap_or(GlyphId::NOTDEF);
             let number = u16::try_from(glyph.to_u32()).unwrap_or(0);
-            (number, widths.advance_width(glyph).unwrap_or(0.0).into())
+            (number, widths.h_advance(glyph).into())
         }
     }
 
@@ -85,11 +83,9 @@ impl Face {
     /// The outline of a glyph; empty for a space.
     pub fn outline(self, glyph: u16) -> Vec<Stroke> {
         let mut outline = Outline(Vec::new());
-        let font = self.font();
-        if let Some(shape) = font.and_then(|font| font.outline_glyphs().get(glyph.into())) {
-            let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+        if let Some(shape) = self.font().and_then(|font| font.outline_glyphs().get(glyph.into())) {
             // What is drawn before a contour that is damaged is kept; the fonts here are whole.
-            let _ = shape.draw(settings, &mut outline);
+            let _ = shape.draw(&DrawOptions::new(), DrawMemory::Scratch, &mut outline);
         }
         outline.0
     }
@@ -133,7 +129,7 @@ impl Face {
 
 struct Outline(Vec<Stroke>);
 
-impl OutlinePen for Outline {
+impl PathSink for Outline {
     fn move_to(&mut self, x: f32, y: f32) {
         self.0.push(Stroke::Move([x, y]));
     }
@@ -164,10 +160,10 @@ mod tests {
     fn both_fonts_have_the_signs_that_figures_use() {
         for face in [Face::Regular, Face::Bold] {
             let font = face.font().expect("the font is whole");
-            let metrics = font.metrics(Size::unscaled(), LocationRef::default());
-            assert_eq!(f64::from(metrics.units_per_em), Face::UNITS);
+            assert_eq!(f64::from(font.units_per_em()), Face::UNITS);
             for c in "AZaz09−°²³⁻⁴·×…ζξψθφμ≤±→".chars() {
-                let glyph = font.charmap().map(c).unwrap_or_else(|| panic!("{face:?} lacks {c}"));
+                let glyph =
+                    font.charmap().map_unicode(c).unwrap_or_else(|| panic!("{face:?} lacks {c}"));
                 let number = u16::try_from(glyph.to_u32()).expect("few glyphs");
                 assert!(!face.outline(number).is_empty(), "{c}");
             }
