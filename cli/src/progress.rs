@@ -111,7 +111,8 @@ fn show<T>(
     bar.set_message(label);
     thread::scope(|scope| {
         let (finished, waiting) = mpsc::channel::<()>();
-        scope.spawn(move || {
+        // As one type, for which threads are compiled once.
+        let draw: Box<dyn FnOnce() + Send + '_> = Box::new(move || {
             // Nothing is sent. The other end is dropped when the work is done, even by a panic.
             while waiting.recv_timeout(TICK) == Err(mpsc::RecvTimeoutError::Timeout) {
                 bar.set_position(done());
@@ -119,6 +120,7 @@ fn show<T>(
             }
             bar.finish_and_clear();
         });
+        scope.spawn(draw);
         let result = work();
         drop(finished);
         result
