@@ -8,8 +8,8 @@ use crate::pose_table::{self, Totals};
 use crate::stream::{self, Stop, Stream, Streams};
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
 use opm_core::mechanism::file::FileUnits;
+use opm_mcap::csv;
 use std::fmt::Display;
-use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
@@ -27,9 +27,6 @@ struct RowContent {
     /// Whether they have every joint, and not the actuated ones alone.
     all_joints: bool,
 }
-
-/// Where rows are written.
-type Writer<'a> = csv::Writer<&'a mut dyn Write>;
 
 pub fn run(
     args: &IkArgs,
@@ -53,13 +50,13 @@ fn solve(
 ) -> Result<Totals, Stop> {
     let start = Instant::now();
     let mut columns = pose_table::columns(&mut stream, (loaded, manipulator))?;
-    let mut table = Rows::new((loaded, manipulator), wanted, columns.timed(), &mut stream.writer)?;
+    let mut table = Rows::new((loaded, manipulator), wanted, columns.timed(), &mut stream.rows)?;
     let mut values = pose_table::blank(manipulator);
     stream.each(&mut columns, &mut values, |stream, line, time, values| {
         table.time = time;
         let label = stream.label;
         let wrong = |error: &dyn Display| stream::at(label, line, error);
-        table.row(pose_table::split(manipulator, values), &mut stream.writer, &wrong)
+        table.row(pose_table::split(manipulator, values), &mut stream.rows, &wrong)
     })?;
     Ok(Totals::new(&stream, start, [table.reachable, table.within_limits]))
 }
@@ -89,7 +86,7 @@ impl<'a> Rows<'a> {
         (loaded, manipulator): (&Loaded, &'a Manipulator),
         wanted: RowContent,
         timed: bool,
-        writer: &mut Writer<'_>,
+        writer: &mut csv::Rows<'_>,
     ) -> Result<Self, Stop> {
         let coordinates = manipulator.coordinates();
         let joints = match wanted.all_joints {
@@ -103,7 +100,7 @@ impl<'a> Rows<'a> {
             .chain(manipulator.imaginary().iter().map(|joint| &*joint.name))
             .chain(joints.iter().map(|&i| &*coordinates[i].name))
             .collect();
-        writer.write_record(header)?;
+        writer.header(header)?;
         Ok(Self {
             manipulator,
             units: loaded.file.units,
@@ -125,7 +122,7 @@ impl<'a> Rows<'a> {
     fn row(
         &mut self,
         (pose, checks): (&[f64], Checks),
-        writer: &mut Writer<'_>,
+        writer: &mut csv::Rows<'_>,
         wrong: &dyn Fn(&dyn Display) -> Failure,
     ) -> Result<(), Stop> {
         let manipulator = self.manipulator;
@@ -210,15 +207,18 @@ impl<'a> Rows<'a> {
     /// Writes a row; `answers` are whether the pose is in reach, and within limits.
     fn write(
         &self,
-        writer: &mut Writer<'_>,
+        writer: &mut csv::Rows<'_>,
         pose: &[f64],
         answers: [bool; 2],
         mode: &str,
     ) -> Result<(), Stop> {
-        let [reachable, within_limits] = answers.map(u8::from);
-        let time = self.time.as_slice();
-        let row = (time, pose, &*self.dependent, reachable, within_limits, mode, &*self.cells);
-        Ok(writer.serialize(row)?)
+        writer.numbers(self.time.as_slice())?;
+        writer.numbers(pose)?;
+        writer.cells(&self.dependent)?;
+        answers.iter().try_for_each(|&answer| writer.answer(answer))?;
+        writer.text(mode)?;
+        writer.cells(&self.cells)?;
+        Ok(writer.end()?)
     }
 }
 

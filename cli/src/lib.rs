@@ -27,7 +27,6 @@ mod inspect;
 mod interference;
 mod layout;
 mod licenses;
-mod lines;
 mod linkage;
 mod load;
 mod measure;

@@ -14,6 +14,7 @@ use crate::unitless;
 use crate::workspace::{Work, threads};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::file::FileUnits;
+use opm_mcap::csv::Rows;
 use opm_workspace::{AspectPath, Aspects, NoPath, aspect_at, find_path};
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
@@ -56,7 +57,7 @@ pub fn run(args: &PathArgs, output: &Output) -> Result<(), Failure> {
         (Err(_), None) | (Ok(_), None) => return output.print(&answer.json(), answer.text()),
         (Ok(path), Some(_)) => path,
     };
-    let table = answer.table(path)?;
+    let table = answer.table(path).map_err(|error| Failure::work(error.to_string()))?;
     if printed {
         return print_with(|out| out.write_all(&table));
     }
@@ -140,15 +141,19 @@ struct Answer<'a> {
 
 impl Answer<'_> {
     /// The table of poses, as CSV.
-    fn table(&self, path: &AspectPath) -> Result<Vec<u8>, Failure> {
+    fn table(&self, path: &AspectPath) -> io::Result<Vec<u8>> {
         let names = self.manipulator.task_coordinates().iter().map(|c| c.name);
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let failed = |error: csv::Error| Failure::work(error.to_string());
-        writer.write_record(std::iter::once("t").chain(names)).map_err(failed)?;
-        for (time, pose) in path.times.iter().zip(&path.poses) {
-            writer.serialize((time, pose)).map_err(failed)?;
+        let mut text = Vec::new();
+        let mut rows = Rows::new(&mut text);
+        rows.header(std::iter::once("t").chain(names))?;
+        for (&time, pose) in path.times.iter().zip(&path.poses) {
+            rows.number(time)?;
+            rows.numbers(pose)?;
+            rows.end()?;
         }
-        writer.into_inner().map_err(|error| Failure::stdout(io::Error::other(error.to_string())))
+        rows.flush()?;
+        drop(rows);
+        Ok(text)
     }
 
     fn json(&self) -> Value {

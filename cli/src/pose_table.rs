@@ -27,7 +27,7 @@ impl Totals {
     /// Those of the poses that a stream has read since `start`.
     pub fn new(stream: &Stream<'_>, start: Instant, [reachable, within_limits]: [u64; 2]) -> Self {
         let seconds = start.elapsed().as_secs_f64().max(1e-9);
-        let poses = stream.rows.load(Ordering::Relaxed);
+        let poses = stream.number.load(Ordering::Relaxed);
         let poses_per_second = poses as f64 / seconds;
         Self { poses, reachable, within_limits, seconds, poses_per_second }
     }

@@ -2,16 +2,15 @@
 
 use crate::args::{Format, Output};
 use crate::failure::Failure;
-use crate::lines::{Line, Lines};
 use crate::load::{DASH, Loaded, STANDARD_INPUT};
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::plural;
 use crate::unitless::Plausible;
-use csv::{ErrorKind, WriterBuilder};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
+use opm_mcap::csv::{Line, Lines, Rows};
 use opm_mcap::{PartialFile, Sink};
 use opm_workspace::Progress;
 use std::fmt::Display;
@@ -19,9 +18,6 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Number of bytes that are written at a time.
-const BUFFER: usize = 1 << 16;
 
 /// Why a stream ends early.
 pub enum Stop {
@@ -35,12 +31,9 @@ impl From<Failure> for Stop {
     }
 }
 
-impl From<csv::Error> for Stop {
-    fn from(error: csv::Error) -> Self {
-        Self::Write(match error.into_kind() {
-            ErrorKind::Io(error) => error,
-            other => io::Error::other(format!("{other:?}")),
-        })
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Self {
+        Self::Write(error)
     }
 }
 
@@ -54,11 +47,11 @@ pub struct Streams<'a> {
 pub struct Stream<'a> {
     /// The name of the input in messages.
     pub label: &'a str,
-    pub lines: Lines<Box<dyn Read + Send>>,
-    pub writer: csv::Writer<&'a mut dyn Write>,
+    pub lines: Lines,
+    pub rows: Rows<'a>,
     output: &'a Output,
     /// The number of rows that were read.
-    pub rows: &'a AtomicU64,
+    pub number: &'a AtomicU64,
     progress: &'a Progress,
 }
 
@@ -84,9 +77,9 @@ impl Stream<'_> {
                 self.output.note(format_args!("{label}:{number}: {problem}"));
             });
             take(self, number, time, values)?;
-            self.rows.fetch_add(1, Ordering::Relaxed);
+            self.number.fetch_add(1, Ordering::Relaxed);
         }
-        self.writer.flush().map_err(Stop::Write)
+        self.rows.flush().map_err(Stop::Write)
     }
 
     /// What is in every column, by the header. `find` gives the number of a named value, or `None` for a column that is
@@ -147,7 +140,7 @@ pub fn run<T>(
         let problem = "the CSV takes standard output; give it a file with --output";
         return Err(Failure::flag("--format json", problem));
     }
-    let (label, reader): (_, Box<dyn Read + Send>) = if input == Path::new(DASH) {
+    let (label, reader): (_, Box<dyn Read>) = if input == Path::new(DASH) {
         if loaded.is_standard_input() {
             let problem = "standard input is the mechanism already, expected a file";
             return Err(Failure::flag("--poses", problem));
@@ -160,10 +153,10 @@ pub fn run<T>(
     };
     let progress = interruptible()?;
     let rows = AtomicU64::new(0);
-    let source = Source { label: &label, reader, output, rows: &rows, progress: &progress };
+    let source = Source { label: &label, reader, output, number: &rows, progress: &progress };
     let Some(path) = target else {
         // There is no progress bar, since the rows may go to the terminal.
-        return match solve(source.to(&mut io::stdout().lock())) {
+        return match solve(source.to(&mut io::stdout())) {
             Ok(_) => Ok(None),
             Err(Stop::Write(error)) => Err(Failure::stdout(error)),
             Err(Stop::Failure(failure)) => Err(failure),
@@ -197,18 +190,16 @@ pub fn run<T>(
 /// What a stream reads, without where it writes.
 struct Source<'a> {
     label: &'a str,
-    reader: Box<dyn Read + Send>,
+    reader: Box<dyn Read>,
     output: &'a Output,
-    rows: &'a AtomicU64,
+    number: &'a AtomicU64,
     progress: &'a Progress,
 }
 
 impl<'a> Source<'a> {
-    fn to(self, sink: &'a mut dyn Write) -> Stream<'a> {
-        let Self { label, reader, output, rows, progress } = self;
-        let writer =
-            WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(sink);
-        Stream { label, lines: Lines::new(reader), writer, output, rows, progress }
+    fn to(self, sink: &'a mut (dyn Write + Send)) -> Stream<'a> {
+        let Self { label, reader, output, number, progress } = self;
+        Stream { label, lines: Lines::new(reader), rows: Rows::new(sink), output, number, progress }
     }
 }
 
@@ -283,7 +274,7 @@ impl Columns<'_> {
             Column::Value(number) => self.values[number].name,
             Column::Other => "...",
         };
-        let given = line.fields().count();
+        let given = line.fields().len();
         if given != self.columns.len() {
             let names: Vec<_> = self.columns.iter().map(|&(column, _)| name(column)).collect();
             let given = plural(given as u64, "column");

@@ -14,6 +14,7 @@ use crate::unitless;
 use crate::workspace::threads;
 use opm_accuracy::Largest;
 use opm_core::Quantity;
+use opm_mcap::csv::Rows;
 use opm_mcap::{PartialFile, Sink};
 use opm_study::{AccuracyField, AccuracyRequest, AccuracyRow, StudyError};
 use opm_workspace::{Cancelled, Grid, Sections};
@@ -44,12 +45,9 @@ impl From<StudyError> for Stop {
     }
 }
 
-impl From<csv::Error> for Stop {
-    fn from(error: csv::Error) -> Self {
-        Self::Write(match error.into_kind() {
-            csv::ErrorKind::Io(error) => error,
-            other => io::Error::other(format!("{other:?}")),
-        })
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Self {
+        Self::Write(error)
     }
 }
 
@@ -126,13 +124,13 @@ impl Work<'_> {
 
     fn run(&self, sink: &mut (dyn Write + Send)) -> Result<AccuracyField, Stop> {
         let manipulator = self.setting.manipulator();
-        let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(sink);
+        let mut rows = Rows::new(sink);
         let errors = row::header(manipulator);
         let header = (manipulator.task_coordinates().iter().map(|c| c.name))
             .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
             .chain(["reachable", "within_limits", "mode"])
             .chain(errors.iter().map(String::as_str));
-        writer.write_record(header)?;
+        rows.header(header)?;
         let mode = manipulator.format_mode(self.setting.mode);
         let progress = interruptible().map_err(|error| Stop::Write(io::Error::other(error)))?;
         let pool =
@@ -140,15 +138,18 @@ impl Work<'_> {
         let job = || {
             pool.install(|| {
                 self.request.over(self.grid, &progress, |row: &AccuracyRow| -> Result<(), Stop> {
-                    let cells: Vec<_> = row::cells(&row.budget).collect();
-                    writer.serialize((&row.pose, &row.dependent, 1, 1, &mode, cells))?;
-                    Ok(())
+                    rows.numbers(&row.pose)?;
+                    rows.numbers(&row.dependent)?;
+                    [true; 2].iter().try_for_each(|&answer| rows.answer(answer))?;
+                    rows.text(&mode)?;
+                    rows.cells(&row::cells(&row.budget).collect::<Vec<_>>())?;
+                    Ok(rows.end()?)
                 })
             })
         };
         let field =
             watch(self.output, "solving", Some(self.grid.poses()), || progress.done(), job)?;
-        writer.flush().map_err(Stop::Write)?;
+        rows.flush()?;
         Ok(field)
     }
 }

@@ -36,7 +36,7 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> 
         .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
         .chain(["reachable", "within_limits", "mode"])
         .chain(errors.iter().map(String::as_str));
-    stream.writer.write_record(header)?;
+    stream.rows.header(header)?;
     let (mut at, mut values) = (manipulator.solution(), pose_table::blank(manipulator));
     let (mut reachable, mut within_limits) = (0, 0);
     let mode_text = manipulator.format_mode(mode);
@@ -58,8 +58,14 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> 
         }
         reachable += u64::from(reached);
         within_limits += u64::from(within);
-        let answers = (u8::from(reached), u8::from(within), &mode_text);
-        Ok(stream.writer.serialize((time.as_slice(), pose, dependent, answers, cells))?)
+        let rows = &mut stream.rows;
+        rows.numbers(time.as_slice())?;
+        rows.numbers(pose)?;
+        rows.cells(&dependent)?;
+        [reached, within].iter().try_for_each(|&answer| rows.answer(answer))?;
+        rows.text(&mode_text)?;
+        rows.cells(&cells)?;
+        Ok(rows.end()?)
     })?;
     Ok(Totals::new(&stream, start, [reachable, within_limits]))
 }

@@ -56,7 +56,7 @@ fn solve(
         .chain(loaded_with.then_some("balance"))
         .chain(efforts.iter().map(String::as_str))
         .chain(known.iter().map(|index| index.name()));
-    stream.writer.write_record(header)?;
+    stream.rows.header(header)?;
     let (mut at, mut values) = (manipulator.solution(), pose_table::blank(manipulator));
     let (mut reachable, mut within_limits, mut balanced) = (0, 0, 0);
     let mode_text = manipulator.format_mode(mode);
@@ -70,7 +70,7 @@ fn solve(
         let mut dependent = blank(manipulator.dependent_coordinates().len());
         let mut cells = blank(efforts.len());
         let mut numbers = blank(known.len());
-        let mut balance = String::new();
+        let mut balance = "";
         if reached {
             let verified = checks.verify(manipulator, at.dependent(), loaded.file.units);
             verified.map_err(|error| stream::at(label, line, error))?;
@@ -79,17 +79,25 @@ fn solve(
             let finite = |&value: &f64| value.is_finite().then_some(value);
             numbers = analyser.indices.values().iter().map(finite).collect();
             if let Some((_, found)) = &analyser.acting {
-                word(found.balance).clone_into(&mut balance);
+                balance = word(found.balance);
                 balanced += u64::from(found.balance == opm_analysis::Balance::Balanced);
                 cells = found.actuated.iter().chain(&found.imaginary).copied().collect();
             }
         }
         reachable += u64::from(reached);
         within_limits += u64::from(within);
-        let balance = if loaded_with { std::slice::from_ref(&balance) } else { &[] };
-        let answers = (u8::from(reached), u8::from(within), &mode_text);
-        let row = (time.as_slice(), pose, dependent, answers, balance, cells, numbers);
-        Ok(stream.writer.serialize(row)?)
+        let rows = &mut stream.rows;
+        rows.numbers(time.as_slice())?;
+        rows.numbers(pose)?;
+        rows.cells(&dependent)?;
+        [reached, within].iter().try_for_each(|&answer| rows.answer(answer))?;
+        rows.text(&mode_text)?;
+        if loaded_with {
+            rows.text(balance)?;
+        }
+        rows.cells(&cells)?;
+        rows.cells(&numbers)?;
+        Ok(rows.end()?)
     })?;
     let totals = Totals::new(&stream, start, [reachable, within_limits]);
     Ok(Summary { totals, balanced })

@@ -1,12 +1,12 @@
 //! Tables of measurements.
 
 use crate::failure::Failure;
-use crate::lines::Lines;
 use crate::load::{DASH, STANDARD_INPUT};
 use crate::stream::{at, other_columns};
 use opm_calibrate::{BasePoint, Column, Measurements};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
+use opm_mcap::csv::Lines;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;

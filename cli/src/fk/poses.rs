@@ -8,9 +8,9 @@ use crate::text::{count, short};
 use crate::unitless::Plausible;
 use opm_core::forward::{Assembly, NearError};
 use opm_core::manipulator::{Manipulator, Mode};
+use opm_mcap::csv::Rows;
 use opm_study::Tracker;
 use serde::Serialize;
-use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -109,7 +109,7 @@ impl Request<'_> {
                 format!("no column {}; the actuated joints are {listed}", missing.join(", "));
             return Err(stream::at(stream.label, columns.number, problem).into());
         }
-        stream.writer.write_record(self.header(columns.timed(), &joints))?;
+        stream.rows.header(self.header(columns.timed(), &joints))?;
 
         let seed = m.platform_pose(&self.seed);
         let seed = seed.map_err(|error| Failure::flag("--near", error))?;
@@ -135,17 +135,17 @@ impl Request<'_> {
             reachable += u64::from(!found.is_empty());
             within_limits += u64::from(found.iter().any(|assembly| assembly.within_limits));
             assemblies += found.len() as u64;
-            let row = stream.rows.load(Ordering::Relaxed) + 1;
+            let row = stream.number.load(Ordering::Relaxed) + 1;
             for (number, assembly) in found.iter().enumerate() {
-                self.write(&mut stream.writer, (row, number + 1), (time, joints), Some(assembly))?;
+                self.write(&mut stream.rows, (row, number + 1), (time, joints), Some(assembly))?;
             }
             if found.is_empty() {
-                self.write(&mut stream.writer, (row, 0), (time, joints), None)?;
+                self.write(&mut stream.rows, (row, 0), (time, joints), None)?;
             }
             Ok(())
         })?;
         let seconds = start.elapsed().as_secs_f64().max(1e-9);
-        let rows = stream.rows.load(Ordering::Relaxed);
+        let rows = stream.number.load(Ordering::Relaxed);
         let rows_per_second = rows as f64 / seconds;
         Ok(Summary { rows, reachable, within_limits, assemblies, seconds, rows_per_second })
     }
@@ -167,7 +167,7 @@ impl Request<'_> {
     /// Writes the row of an assembly. Where there is none, the cells of its pose are empty.
     fn write(
         &self,
-        writer: &mut csv::Writer<&mut dyn Write>,
+        rows: &mut Rows<'_>,
         (row, number): (u64, usize),
         (time, joints): (Option<f64>, &[f64]),
         assembly: Option<&Assembly>,
@@ -177,16 +177,14 @@ impl Request<'_> {
         let cells = |values: Option<&Vec<f64>>, count: usize| -> Vec<Option<f64>> {
             (0..count).map(|i| values.map(|values| values[i])).collect()
         };
-        let row = (
-            time.as_slice(),
-            numbers,
-            cells(assembly.map(|a| &a.pose), m.task_coordinates().len()),
-            cells(assembly.map(|a| &a.dependent), m.dependent_coordinates().len()),
-            assembly.map_or_else(String::new, |a| m.format_mode(a.mode)),
-            u8::from(assembly.is_some()),
-            u8::from(assembly.is_some_and(|a| a.within_limits)),
-            joints,
-        );
-        Ok(writer.serialize(row)?)
+        rows.numbers(time.as_slice())?;
+        numbers.iter().try_for_each(|&number| rows.count(number))?;
+        rows.cells(&cells(assembly.map(|a| &a.pose), m.task_coordinates().len()))?;
+        rows.cells(&cells(assembly.map(|a| &a.dependent), m.dependent_coordinates().len()))?;
+        rows.text(&assembly.map_or_else(String::new, |a| m.format_mode(a.mode)))?;
+        rows.answer(assembly.is_some())?;
+        rows.answer(assembly.is_some_and(|a| a.within_limits))?;
+        rows.numbers(joints)?;
+        Ok(rows.end()?)
     }
 }

@@ -5,8 +5,8 @@ use crate::args::{Format, LinkageArgs, Output};
 use crate::failure::Failure;
 use crate::layout;
 use crate::text::count;
-use csv::WriterBuilder;
 use opm_core::linkage::Position;
+use opm_mcap::csv::Rows;
 use opm_mcap::{PartialFile, Sink};
 use opm_study::recording::record_linkage;
 use opm_study::{LinkageRound, RoundSummary, StudyError, input_intervals};
@@ -25,7 +25,7 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
             let problem = "the CSV takes standard output; give it a file with --output";
             return Err(Failure::flag("--format json", problem));
         }
-        return match sweep.csv(io::stdout().lock()) {
+        return match sweep.csv(&mut io::stdout()) {
             Ok(summary) => {
                 sweep.report(None, &summary, output);
                 Ok(())
@@ -81,9 +81,9 @@ impl From<StudyError> for Stop {
     }
 }
 
-impl From<csv::Error> for Stop {
-    fn from(error: csv::Error) -> Self {
-        Self::Write(error.into())
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Self {
+        Self::Write(error)
     }
 }
 
@@ -94,22 +94,21 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    fn csv(&self, output: impl Write) -> Result<RoundSummary, Stop> {
+    fn csv(&self, output: &mut (dyn Write + Send)) -> Result<RoundSummary, Stop> {
         let linkage = self.round.linkage;
-        let mut writer = WriterBuilder::new().has_headers(false).from_writer(output);
+        let mut rows = Rows::new(output);
         let joints = linkage.coordinates().iter().map(|c| &*c.name);
-        writer.write_record(joints.chain([
-            &*linkage.imaginary().name,
-            "branch",
-            "within_limits",
-        ]))?;
+        rows.header(joints.chain([&*linkage.imaginary().name, "branch", "within_limits"]))?;
         let row = |_: u32, position: &Position| -> Result<(), Stop> {
             let Position { joints, imaginary, branch, within_limits } = position;
-            let row = (joints, imaginary, branch.to_string(), u8::from(*within_limits));
-            Ok(writer.serialize(row)?)
+            rows.numbers(joints)?;
+            rows.number(*imaginary)?;
+            rows.text(&branch.to_string())?;
+            rows.answer(*within_limits)?;
+            Ok(rows.end()?)
         };
         let summary = self.round.each(row)?;
-        writer.flush().map_err(Stop::Write)?;
+        rows.flush()?;
         Ok(summary)
     }
 

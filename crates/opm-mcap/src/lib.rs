@@ -58,6 +58,7 @@
 //! | [`slices`] | what the slices of a workspace are |
 //! | [`shard`] | the reachable poses of a part of a sweep, by their numbers |
 //! | [`table`] | points as NPY for NumPy and PLY for mesh tools |
+//! | [`csv`] | plain numbers as CSV, read and written a row at a time |
 //! | [`cloud`] | the layout of the points of a cloud, and how they are packed |
 //! | [`scene`] | bodies made of simple solids |
 //! | [`rejected`] | points that are not in a workspace, coloured by what rejects them |
@@ -77,6 +78,7 @@
 //!   recording that was cut short never looks finished; [`read`] reads what of it reached the disk.
 
 pub mod cloud;
+pub mod csv;
 mod decode;
 mod error;
 mod file;
