@@ -2,14 +2,13 @@
 //! the block.
 
 use super::constraint::{Constraint, follows};
-use super::one_joint::OneJoint;
+use super::one_joint::{OneJoint, SectionMotion};
 use super::zeros::Function;
 use super::{Closed, Dependent, OBEYED};
+use crate::chain::ReachDeficit;
 use crate::chain::condition::Condition;
 use crate::chain::equation::AttemptedZero;
-use crate::group::{
-    CylindricalDisplacement, Displacement, JointDisplacement, PlanarDisplacement, SubspaceKind,
-};
+use crate::group::{CylindricalDisplacement, Displacement, PlanarDisplacement, SubspaceKind};
 use crate::manipulator::batch::Block;
 use crate::manipulator::batch::lanes::{Column, LANES, Lane};
 use crate::manipulator::batch::section::{self, Side, Step};
@@ -206,18 +205,41 @@ impl Block {
     /// Takes the coordinates of a section with one joint.
     #[inline(always)]
     fn take_joint(&mut self, manipulator: &Manipulator, joint: &OneJoint, sign: f64) {
-        for lane in 0..LANES {
-            let mut at = [0.0; 3];
-            for (at, &coordinate) in at.iter_mut().zip(&joint.all) {
-                *at = self.pose[coordinate][lane];
+        let Self { pose, tau, status, .. } = self;
+        let task = &manipulator.task;
+        // Where τ does not matter, a slider moves along the same line at all poses.
+        let follows = follows(task, &manipulator.legs[joint.leg], joint.section);
+        let line = match joint.motion {
+            SectionMotion::Slide(s, given) if !follows => {
+                Some(joint.line(manipulator, s, given, tau.get(0)))
             }
-            let tau: JointDisplacement = self.tau.get(lane);
-            let found = joint.solve(manipulator, tau, sign, at);
-            let solved = u64::from(found.is_ok());
-            self.status.note_lane(lane, solved, solved ^ 1);
-            for (value, &coordinate) in found.unwrap_or(at).into_iter().zip(&joint.all) {
-                self.pose[coordinate][lane] = value;
+            _ => None,
+        };
+        macro_rules! each {
+            ($lane:ident, $at:ident => $solved:expr) => {
+                for $lane in 0..LANES {
+                    let mut $at = [0.0; 3];
+                    for (at, &coordinate) in $at.iter_mut().zip(&joint.all) {
+                        *at = pose[coordinate][$lane];
+                    }
+                    let found: Result<[f64; 3], ReachDeficit> = $solved;
+                    let solved = u64::from(found.is_ok());
+                    status.note_lane($lane, solved, solved ^ 1);
+                    for (value, &coordinate) in found.unwrap_or($at).into_iter().zip(&joint.all) {
+                        pose[coordinate][$lane] = value;
+                    }
+                }
+            };
+        }
+        match line {
+            Some(line) => {
+                let kind = match joint.section {
+                    Section::Lower => task.lower.kind,
+                    Section::Upper => task.upper.kind,
+                };
+                each!(lane, at => line.through(at).map(|found| joint.taken(kind, at, found)));
             }
+            None => each!(lane, at => joint.solve(manipulator, tau.get(lane), sign, at)),
         }
     }
 }

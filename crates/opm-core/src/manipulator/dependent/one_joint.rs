@@ -169,22 +169,13 @@ impl OneJoint {
         manipulator: &Manipulator,
         tau: JointDisplacement,
         sign: f64,
-        mut at: [f64; 3],
+        at: [f64; 3],
     ) -> Result<[f64; 3], ReachDeficit> {
         let task = manipulator.task();
         // Zero for a displacement along the intersection motion, for which there is no coordinate.
         let home = |i: usize| self.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
-        let from_home = |i: usize| at[i] - home(i);
-        // g = exp(I τ) · exp(s q) for b, and exp(s q) · exp(-I τ) for v.
         let subspace = subspace(task, self.section);
-        let shifted = |motion: Displacement| {
-            let leg = &manipulator.legs[self.leg];
-            match self.section {
-                _ if leg.bridge().is_none_or(|bridge| bridge == self.section) => motion,
-                Section::Lower => task.lower_intersection.after(&motion, tau.inverse()),
-                Section::Upper => task.upper_intersection.before(&motion, tau),
-            }
-        };
+        let shifted = |motion: Displacement| self.shifted(manipulator, motion, tau);
         let still = || shifted(subspace.kind.identity());
         let found: [f64; 3] = match self.motion {
             SectionMotion::None => match still() {
@@ -196,7 +187,7 @@ impl OneJoint {
                 other => of_displacement(&other, home),
             },
             SectionMotion::Turn(s) => {
-                let rotation = unit(from_home(2)) * still().planar().rotation.conj();
+                let rotation = unit(at[2] - home(2)) * still().planar().rotation.conj();
                 let q = if s.x < 0.0 { rotation.conj() } else { rotation };
                 of_displacement(
                     &shifted(
@@ -205,23 +196,7 @@ impl OneJoint {
                     home,
                 )
             }
-            SectionMotion::Slide(s, given) => {
-                // It moves along a straight line.
-                let (start, end) = (still(), shifted(slid(subspace.kind, s)));
-                let from_start = from_home(given) - length_of(&start, given);
-                let rate = |i: usize| length_of(&end, i) - length_of(&start, i);
-                if rate(given).abs() < ALONG {
-                    return Err(ReachDeficit::length(from_start.abs()));
-                }
-                let q = from_start / rate(given);
-                let mut found = of_displacement(&start, home);
-                found[0] += q * rate(0);
-                found[1] += q * rate(1);
-                if subspace.kind == SubspaceKind::TranslationalSpace {
-                    found[2] += q * rate(2);
-                }
-                found
-            }
+            SectionMotion::Slide(s, given) => self.line(manipulator, s, given, tau).through(at)?,
             SectionMotion::Third => {
                 let [_, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
                 return Ok(task.angles.of_euler([at[0], xi, psi]));
@@ -238,16 +213,93 @@ impl OneJoint {
                 task.angles.of_euler(found)
             }
         };
+        Ok(self.taken(subspace.kind, at, found))
+    }
+
+    /// The section's coordinates where those that follow are `found`; angles that have no turns are those nearest to what `at`
+    /// has.
+    #[inline(always)]
+    pub fn taken(&self, kind: SubspaceKind, mut at: [f64; 3], found: [f64; 3]) -> [f64; 3] {
         for ((&follows, at), value) in self.follows.iter().zip(&mut at).zip(found) {
             *at = match follows {
-                Some(Quantity::Angle) if subspace.kind != SubspaceKind::Cylindrical => {
-                    near(value, *at)
-                }
+                Some(Quantity::Angle) if kind != SubspaceKind::Cylindrical => near(value, *at),
                 Some(_) => value,
                 None => *at,
             };
         }
-        Ok(at)
+        at
+    }
+
+    /// A displacement by the joint, after or before that along the intersection motion by `tau` if that belongs to the other
+    /// section: g = exp(I τ) · exp(s q) for b, and exp(s q) · exp(-I τ) for v.
+    #[inline(always)]
+    fn shifted(
+        &self,
+        manipulator: &Manipulator,
+        motion: Displacement,
+        tau: JointDisplacement,
+    ) -> Displacement {
+        let (task, leg) = (manipulator.task(), &manipulator.legs[self.leg]);
+        match self.section {
+            _ if leg.bridge().is_none_or(|bridge| bridge == self.section) => motion,
+            Section::Lower => task.lower_intersection.after(&motion, tau.inverse()),
+            Section::Upper => task.upper_intersection.before(&motion, tau),
+        }
+    }
+
+    /// The line along which a slider with the screw `s` moves the section; this length tells the place on it.
+    pub fn line(
+        &self,
+        manipulator: &Manipulator,
+        s: LocalTwist,
+        given: usize,
+        tau: JointDisplacement,
+    ) -> Line {
+        let (task, kind) = (manipulator.task(), subspace(manipulator.task(), self.section).kind);
+        let home = |i: usize| self.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
+        let [start, end] =
+            [kind.identity(), slid(kind, s)].map(|motion| self.shifted(manipulator, motion, tau));
+        let mut rates = [0.0; 3];
+        let lengths = if kind == SubspaceKind::Planar { 2 } else { 3 };
+        for (i, rate) in rates[..lengths].iter_mut().enumerate() {
+            *rate = length_of(&end, i) - length_of(&start, i);
+        }
+        let (home_of_given, from_home) = (home(given), length_of(&start, given));
+        let start = of_displacement(&start, home);
+        Line { start, rates, given, home: home_of_given, from_home }
+    }
+}
+
+/// A straight line of coordinates of a section.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    /// The coordinates at its start.
+    start: [f64; 3],
+    /// Their changes along it.
+    rates: [f64; 3],
+    /// The number of the coordinate that tells the place.
+    given: usize,
+    /// Its value at home, and the difference from that at the start.
+    home: f64,
+    from_home: f64,
+}
+
+impl Line {
+    /// The coordinates where the given one is that of `at`.
+    ///
+    /// # Errors
+    /// By how much it is missed, where it does not change along the line.
+    #[inline(always)]
+    pub fn through(&self, at: [f64; 3]) -> Result<[f64; 3], ReachDeficit> {
+        let from_start = (at[self.given] - self.home) - self.from_home;
+        let rate = self.rates[self.given];
+        if rate.abs() < ALONG {
+            return Err(ReachDeficit::length(from_start.abs()));
+        }
+        let q = from_start / rate;
+        let [a, b, c] = self.start;
+        let [x, y, z] = self.rates;
+        Ok([a + q * x, b + q * y, c + q * z])
     }
 }
 
