@@ -361,6 +361,27 @@ impl Chain {
         Ok(())
     }
 
+    /// The joints' displacements that move the outer link by `target`, with a known displacement of the first joint, and
+    /// their branch: cheaper than to solve for it. `None` where the chain closes with no displacement nearer than
+    /// `within`, in radians, and for all but spherical chains.
+    #[inline(always)]
+    pub(crate) fn completed(
+        &self,
+        target: &Displacement,
+        first: Complex<f64>,
+        within: f64,
+    ) -> Option<([JointDisplacement; 3], Branch)> {
+        match self {
+            Self::Spherical(chain) => chain.completed(target.spherical(), first, within),
+            Self::Rigid
+            | Self::Planar(_)
+            | Self::Ball(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => None,
+        }
+    }
+
     /// The first joint's displacement alone; cheaper than [`Chain::inverse`] for a spherical chain.
     ///
     /// # Errors

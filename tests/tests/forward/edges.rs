@@ -4,11 +4,12 @@
 use super::{Reached, apart, check_all, example, unlimited};
 use fastrand::Rng;
 use nalgebra::DMatrix;
-use opm_core::forward::{ForwardError, Unmet};
+use opm_core::forward::{ForwardError, RESIDUAL, Unmet};
 use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{Mechanism, examples, file};
+use std::f64::consts::FRAC_PI_4;
 
 /// A double root is known to about the square root of rounding, and so is everything that depends
 /// on it.
@@ -32,6 +33,25 @@ fn home_is_an_assembly() {
             }
         });
         assert!(at_home.is_some(), "{name}");
+    }
+}
+
+/// With its motors at these multiples of 45 degrees, assemblies of the Agile Eye are roots of fourth order, which a
+/// polynomial tells to the fourth root of rounding. They are found there, and at every distance from there.
+#[test]
+fn roots_of_fourth_order_are_found() {
+    let m = example("agile-eye");
+    let home: Vec<f64> = m.actuated().iter().map(|&i| m.coordinates()[i].home).collect();
+    for signs in [[-1.0, 1.0, 1.0], [-1.0, -1.0, -1.0], [1.0, 1.0, -1.0]] {
+        for distance in [0.0, 1e-12, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3] {
+            for aside in [[-0.21, 0.37, 1.0], [1.0, -0.4, 0.1], [0.3, 0.3, -1.0]] {
+                let motor = |i: usize| home[i] + signs[i] * FRAC_PI_4 + distance * aside[i];
+                let motors = [motor(0), motor(1), motor(2)];
+                let found = m.forward(&motors).unwrap().list;
+                assert!(found.len() >= 4, "{motors:?}: {}", found.len());
+                assert!(found.iter().all(|assembly| assembly.residual <= RESIDUAL));
+            }
+        }
     }
 }
 

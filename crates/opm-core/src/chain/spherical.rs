@@ -114,6 +114,23 @@ impl SphericalChain {
         Ok(found)
     }
 
+    /// All joints' rotations with a known one of the first joint, a unit vector, and their branch; `None` where the chain
+    /// closes with no rotation of it nearer than `within`, in radians.
+    #[inline(always)]
+    pub(super) fn completed(
+        &self,
+        target: &Matrix3<f64>,
+        first: Complex<f64>,
+        within: f64,
+    ) -> Option<([JointDisplacement; 3], Branch)> {
+        let Equation { a, b, d, .. } = self.equation(&self.third_axis(target));
+        // The derivative of the equation is the root that a branch is the sign of.
+        let miss = a * first.re + b * first.im - d;
+        let root = b * first.re - a * first.im;
+        let branch = if root > 0.0 { Branch::Plus } else { Branch::Minus };
+        (miss.abs() < within * root.abs()).then(|| (self.with_first(target, first), branch))
+    }
+
     /// The direction of the third axis at a target, the argument of [`SphericalChain::first`].
     #[inline(always)]
     pub fn third_axis(&self, target: &Matrix3<f64>) -> Vector3<f64> {
@@ -310,4 +327,48 @@ fn rotate_back(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector
 #[inline(always)]
 fn angle(directions: &[Vector3<f64>; 2], v: &Vector3<f64>) -> Complex<f64> {
     Complex::new(dot(&directions[0], v), dot(&directions[1], v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::angle::unit;
+    use proptest::prelude::*;
+
+    /// A direction that is not near a pole.
+    fn direction() -> impl Strategy<Value = Unit<Vector3<f64>>> {
+        proptest::array::uniform3(-1.0..1.0_f64)
+            .prop_filter("no direction", |v| Vector3::from(*v).norm() > 0.1)
+            .prop_map(|v| Unit::new_normalize(v.into()))
+    }
+
+    proptest! {
+        /// The rotation of the first joint tells the branch and the other rotations that were found with it. A rotation
+        /// with which the chain does not close tells nothing.
+        #[test]
+        fn the_first_rotation_tells_the_others(
+            axes in [direction(), direction(), direction()],
+            rotations in proptest::array::uniform3(-3.0..3.0_f64),
+        ) {
+            let Ok(chain) = SphericalChain::new(axes) else { return Ok(()) };
+            let target = chain.forward(&rotations.map(JointDisplacement::Value));
+            let found = Branch::BOTH.map(|branch| chain.inverse(&target, branch));
+            let [Ok(plus), Ok(minus)] = &found else { return Ok(()) };
+            let apart = (plus[0].unit_direction() - minus[0].unit_direction()).norm();
+            prop_assume!(apart > 0.1);
+            for (branch, found) in Branch::BOTH.into_iter().zip([plus, minus]) {
+                let first = found[0].unit_direction();
+                let completed = chain.completed(&target, first, 1e-9);
+                let (rotations, of) = completed.expect("the first rotation closes the chain");
+                prop_assert_eq!(of, branch);
+                for (one, other) in rotations.iter().zip(found) {
+                    let apart = (one.unit_direction() - other.unit_direction()).norm();
+                    prop_assert!(apart < 1e-9, "{:e}", apart);
+                }
+                for aside in [1e-8, -1e-8, 0.01, -0.01] {
+                    prop_assert!(chain.completed(&target, first * unit(aside), 1e-9).is_none());
+                }
+            }
+        }
+    }
 }

@@ -148,7 +148,8 @@ impl Search<'_> {
         let m = self.manipulator;
         let (v, b) = m.task().sections(all);
         let rise = m.task().rise(all);
-        let target = m.task().raised(rise, m.task().isometry(&v, &b));
+        let place = self.lower_isometry(&v) * m.task().upper.isometry(&b);
+        let target = m.task().raised(rise, place);
         let mut matches = std::mem::take(&mut self.matches);
         let mut open = None;
         for (leg, found) in matches.iter_mut().enumerate() {
@@ -163,6 +164,19 @@ impl Search<'_> {
             None => self.accept_matches(&matches, all, pose, &target),
         }
         self.matches = matches;
+    }
+
+    /// The lower section's displacement in base coordinates. Several candidates share it.
+    #[inline(always)]
+    fn lower_isometry(&mut self, v: &Displacement) -> Isometry3<f64> {
+        match &self.lower {
+            Some((known, isometry)) if known == v => *isometry,
+            _ => {
+                let isometry = self.manipulator.task().lower.isometry(v);
+                self.lower = Some((*v, isometry));
+                isometry
+            }
+        }
     }
 
     /// Accepts every combination of solutions of the legs at a pose. `all` has all of its coordinates, and `pose` the

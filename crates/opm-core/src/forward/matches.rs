@@ -42,13 +42,29 @@ impl Matches {
         Self { list: Vec::with_capacity(4), least: f64::INFINITY }
     }
 
+    /// Notes a solution, if its actuated joints have their values.
     #[inline(always)]
-    fn note(&mut self, solution: Match) {
-        self.least = self.least.min(solution.error);
-        if solution.error <= MATCH {
-            self.list.push(solution);
+    fn note(&mut self, mode: Mode, found: &Found<'_>, error: f64) {
+        self.least = self.least.min(error);
+        if error <= MATCH {
+            // Written in its place: to copy it takes as long as to find it.
+            let lower = found.lower.values;
+            self.list.push(Match { mode, solution: LegSolution::HOME, lower, error });
+            if let Some(Match { solution, .. }) = self.list.last_mut() {
+                solution.lower = found.lower.displacements;
+                solution.upper = *found.upper;
+                solution.tau = found.tau;
+            }
         }
     }
+}
+
+/// A solution of a leg.
+struct Found<'a> {
+    lower: &'a SolvedLower,
+    upper: &'a [JointDisplacement; 3],
+    /// The displacement along the intersection motion.
+    tau: JointDisplacement,
 }
 
 /// A solution of a leg's lower section.
@@ -121,9 +137,12 @@ impl Search<'_> {
         for mode in m.leg_modes(leg) {
             let branches = m.branches(mode, leg);
             if let Ok(solution) = self.held.legs[leg].solve(m.task(), pose, rise, branches, 0.0) {
-                let error = self.section_error(&self.held.legs[leg].lower, &solution.lower);
-                let lower = m.lower_values(leg, &solution.lower, solution.tau);
-                found.note(self.compared(leg, branches, solution, (lower, error), rise));
+                let LegSolution { lower: displacements, upper, tau } = solution;
+                let error = self.section_error(&self.held.legs[leg].lower, &displacements);
+                let values = m.lower_values(leg, &displacements, tau);
+                let lower = &SolvedLower { displacements, tau, values, error };
+                let solution = Found { lower, upper: &upper, tau };
+                found.note(m.leg_mode(leg, branches), &solution, self.error(leg, &solution, rise));
             }
         }
     }
@@ -137,8 +156,18 @@ impl Search<'_> {
         rise: f64,
         found: &mut Matches,
     ) {
-        // A leg that closes has the τ that was solved for. Another τ only tells by how much a leg that does not close
-        // is off.
+        // A leg that closes has the τ that was solved for.
+        if let Some(tau @ JointDisplacement::Direction(direction)) = self.taus[leg]
+            && self.held.legs[leg].bridge().is_some()
+            && let Some((upper, branch)) =
+                self.held.legs[leg].upper.completed(b, direction, ROUNDING)
+        {
+            self.note_with_lower(leg, v, (branch, upper, tau), rise, found);
+            if !found.list.is_empty() {
+                return;
+            }
+        }
+        // Near a singularity that is less certain. Another τ only tells by how much a leg that does not close is off.
         for expected in [true, false] {
             for &branch in self.held.legs[leg].upper.branches() {
                 let compiled = &self.held.legs[leg];
@@ -150,15 +179,7 @@ impl Search<'_> {
                 }
                 let exact = known.filter(|&known| agrees(known, tau, ROUNDING));
                 let tau = exact.unwrap_or(tau);
-                self.solve_lower(leg, v, Some(tau));
-                let [section, _] = &self.lowers[leg];
-                found.least = found.least.min(section.least);
-                for (lower_branch, lower) in section.solutions() {
-                    let solution = LegSolution { lower: lower.displacements, upper, tau };
-                    let branches = LegBranches { lower: lower_branch, upper: branch };
-                    let known = (lower.values, lower.error);
-                    found.note(self.compared(leg, branches, solution, known, rise));
-                }
+                self.note_with_lower(leg, v, (branch, upper, tau), rise, found);
                 // Another branch with this τ would be the same solution, at a singularity.
                 if exact.is_some() && !found.list.is_empty() {
                     return;
@@ -167,6 +188,27 @@ impl Search<'_> {
             if !found.list.is_empty() {
                 return;
             }
+        }
+    }
+
+    /// Notes the solutions of a leg with one of its upper section, of which the branch, the displacements and τ are given.
+    #[inline(always)]
+    fn note_with_lower(
+        &mut self,
+        leg: usize,
+        v: &Displacement,
+        (branch, upper, tau): (Branch, [JointDisplacement; 3], JointDisplacement),
+        rise: f64,
+        found: &mut Matches,
+    ) {
+        self.solve_lower(leg, v, Some(tau));
+        let [section, _] = &self.lowers[leg];
+        found.least = found.least.min(section.least);
+        for (lower_branch, lower) in section.solutions() {
+            let solution = Found { lower, upper: &upper, tau };
+            let branches = LegBranches { lower: lower_branch, upper: branch };
+            let mode = self.manipulator.leg_mode(leg, branches);
+            found.note(mode, &solution, self.error(leg, &solution, rise));
         }
     }
 
@@ -188,10 +230,10 @@ impl Search<'_> {
             let target = self.manipulator.task().upper_intersection.before(b, step);
             for &branch in compiled.upper.branches() {
                 let Ok(upper) = compiled.upper.inverse(&target, branch) else { continue };
-                let SolvedLower { displacements, tau, values, error } = *lower;
-                let solution = LegSolution { lower: displacements, upper, tau };
+                let solution = Found { lower, upper: &upper, tau: lower.tau };
                 let branches = LegBranches { lower: lower_branch, upper: branch };
-                found.note(self.compared(leg, branches, solution, (values, error), rise));
+                let mode = self.manipulator.leg_mode(leg, branches);
+                found.note(mode, &solution, self.error(leg, &solution, rise));
             }
         }
     }
@@ -238,30 +280,22 @@ impl Search<'_> {
         section
     }
 
-    /// A solution of a leg, compared with the given values. Of its lower section, the values and the largest error are
-    /// known.
+    /// The largest error of an actuated joint of a leg's solution.
     #[inline(always)]
-    fn compared(
-        &self,
-        leg: usize,
-        branches: LegBranches,
-        solution: LegSolution,
-        (lower, error): (LowerValues, f64),
-        rise: f64,
-    ) -> Match {
+    fn error(&self, leg: usize, found: &Found<'_>, rise: f64) -> f64 {
         let m = self.manipulator;
         let compiled = &m.legs[leg];
-        let mut error = error.max(self.section_error(&compiled.upper, &solution.upper));
+        let mut error = found.lower.error.max(self.section_error(&compiled.upper, found.upper));
         // All lifts have one height, unless each leg has its own.
         let lift = compiled.lift.filter(|lift| lift.slope != 0.0);
         if let Some((lift, actuated)) =
             lift.and_then(|lift| Some((lift, lift.coordinate.actuated?)))
         {
             let own = lift.rise(self.held.displacements[actuated]);
-            let off = own - m.task().rise_of_leg(rise, solution.tau);
+            let off = own - m.task().rise_of_leg(rise, found.tau);
             error = error.max(off.abs() / m.closure.size);
         }
-        Match { mode: m.leg_mode(leg, branches), solution, lower, error }
+        error
     }
 
     /// Of solutions that are the same near a singularity, keeps the one with the smallest error.

@@ -10,7 +10,7 @@ use crate::group::{Displacement, JointDisplacement};
 use crate::manipulator::plan::{Anchor, Plan};
 use crate::manipulator::{ClosureBuffer, Manipulator, Section, Solution};
 use crate::numeric::angle::unit;
-use nalgebra::Complex;
+use nalgebra::{Complex, Isometry3};
 
 /// One run of the forward kinematics.
 pub(super) struct Search<'a> {
@@ -23,11 +23,13 @@ pub(super) struct Search<'a> {
     pub rise: f64,
     /// A buffer for the conditions on a section.
     conditions: Vec<Condition>,
-    /// For each leg, the τ for which candidates are being tried, in terms of `v` as the pose gives it; `None` where it
-    /// was not solved for.
+    /// For each leg, the τ for which candidates are being tried, in terms of `v` as the pose gives it, a unit vector where it
+    /// is a direction; `None` where it was not solved for.
     pub taus: Vec<Option<JointDisplacement>>,
     /// For each leg, its lower section as it was solved last, and before that for another τ.
     pub lowers: Vec<[LowerSection; 2]>,
+    /// The lower section's displacement at the last candidate, and the same in base coordinates.
+    pub lower: Option<(Displacement, Isometry3<f64>)>,
     /// A buffer for the solutions of each leg at a candidate.
     pub matches: Vec<Matches>,
     /// Buffers for the pose of a candidate: all of its coordinates, and the independent ones.
@@ -60,6 +62,7 @@ impl<'a> Search<'a> {
             lowers: (0..manipulator.legs())
                 .map(|_| [LowerSection::new(), LowerSection::new()])
                 .collect(),
+            lower: None,
             matches: (0..manipulator.legs()).map(|_| Matches::new()).collect(),
             poses: Default::default(),
             solution: manipulator.solution(),
@@ -153,9 +156,10 @@ impl<'a> Search<'a> {
             return;
         }
         let choices: Vec<usize> = (0..options.len()).filter(|&i| options[i][1].is_some()).collect();
+        let mut taus = Vec::with_capacity(options.len());
         for combination in 0..1_u64 << choices.len() {
-            let mut taus: Vec<Option<JointDisplacement>> =
-                options.iter().map(|option| option[0]).collect();
+            taus.clear();
+            taus.extend(options.iter().map(|option| option[0]));
             for (bit, &leg) in choices.iter().enumerate() {
                 if combination >> bit & 1 == 1 {
                     taus[leg] = options[leg][1];
@@ -173,7 +177,14 @@ impl<'a> Search<'a> {
             None => self.loose(Section::Upper),
             Some(bs) => {
                 self.upper_failed |= bs.is_empty();
-                self.taus.copy_from_slice(taus);
+                for (known, tau) in self.taus.iter_mut().zip(taus) {
+                    *known = tau.map(|tau| match tau {
+                        JointDisplacement::Direction(_) => {
+                            JointDisplacement::Direction(tau.unit_direction())
+                        }
+                        JointDisplacement::Value(_) => tau,
+                    });
+                }
                 for b in bs {
                     self.assemble(v, &b);
                 }

@@ -8,7 +8,7 @@
 //! in a planar subspace, where the highest coefficient vanishes. Three lines in a plane are linear in the
 //! translation instead, and θ is the rotation.
 
-use super::trigonometric::{Roots, Trigonometric};
+use super::trigonometric::{Quadratic, Roots, Trigonometric};
 use crate::chain::condition::{Condition, QUARTER, dot, length};
 use crate::group::{PlanarDisplacement, Spherical, Subgroup};
 use crate::numeric::angle::unit;
@@ -36,11 +36,16 @@ const SAME: f64 = 1e-7;
 /// derivative.
 const LONGEST_STEP: f64 = 0.1;
 
-/// The largest number of polishing steps. Each squares an error that is already small.
-const POLISH: usize = 3;
+/// The largest number of polishing steps. Each squares an error that is already small. At a root of higher order, which is
+/// known to a root of rounding, it leaves half of the error or three quarters.
+const POLISH: usize = 40;
 
 /// The conditions are met to rounding, in radians and shares of the size: there is nothing to polish.
 const POLISHED: f64 = 1e-15;
+
+/// How often a polishing step is halved at most that does not come closer, as long as the conditions are not met: between
+/// roots that are near to each other, steps are too long.
+const HALVINGS: usize = 6;
 
 /// The largest number of steps from a displacement that is near, but does not satisfy the conditions.
 const NEAR_STEPS: usize = 8;
@@ -111,16 +116,23 @@ impl Group for PlanarDisplacement {
 impl Group for Matrix3<f64> {
     fn error(&self, condition: &Condition) -> (f64, Vector3<f64>) {
         let (fixed, carried, cosine) = condition.cone();
-        let w = self * carried;
-        (fixed.dot(&w) - cosine, w.cross(&fixed))
+        let [x, y, z] = [carried.x, carried.y, carried.z];
+        let along = |i: usize| self[(i, 0)] * x + self[(i, 1)] * y + self[(i, 2)] * z;
+        let (a, b, c) = (along(0), along(1), along(2));
+        let error = fixed.x * a + fixed.y * b + fixed.z * c - cosine;
+        let slope =
+            [b * fixed.z - c * fixed.y, c * fixed.x - a * fixed.z, a * fixed.y - b * fixed.x];
+        (error, slope.into())
     }
 
     fn moved(&self, step: &Vector3<f64>) -> Self {
         Spherical::product(&Spherical::exponential(step), self)
     }
 
+    #[inline(always)]
     fn distance(&self, other: &Self) -> f64 {
-        (self - other).norm()
+        let squares = self.as_slice().iter().zip(other.as_slice());
+        squares.map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
     }
 }
 
@@ -140,37 +152,46 @@ fn on_cone(
     cone: impl Fn(usize) -> (Vector3<f64>, Vector3<f64>, f64),
     found: &mut Vec<Matrix3<f64>>,
 ) -> Found {
-    let (fixed, carried, cosine) = cone(first);
+    let (fixed, carried, level) = cone(first);
     let (from, to) = (triad(&fixed), triad(&carried));
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    // R = from · Rz(θ) · tilt · Rz(φ) · toᵀ, and z · tilt z is the cosine.
-    let tilt = Matrix3::new(cosine, 0.0, sine, 0.0, 1.0, 0.0, -sine, 0.0, cosine);
+    let sine = (1.0 - level * level).max(0.0).sqrt();
+    // R = from · Rz(θ) · tilt · Rz(φ) · toᵀ, where the tilt is a rotation about y with this cosine and sine.
     let rest = [(first + 1) % 3, (first + 2) % 3].map(|i| {
         let (fixed, carried, cosine) = cone(i);
-        let (f, c) = (from.tr_mul(&fixed), to.tr_mul(&carried));
-        let about = |v: Vector3<f64>, sign: f64| {
-            // Rz(±θ) v by 1, cos, sin
-            Matrix3::from_columns(&[
-                Vector3::new(0.0, 0.0, v.z),
-                Vector3::new(v.x, v.y, 0.0),
-                Vector3::new(-v.y, v.x, 0.0) * sign,
-            ])
-        };
-        let mut coefficients = about(f, -1.0).tr_mul(&(tilt * about(c, 1.0)));
-        coefficients[(0, 0)] -= cosine;
+        let (f, c) = (in_frame(&from, &fixed), in_frame(&to, &carried));
+        // Rz(−θ) f · tilt Rz(φ) c
+        let coefficients = Matrix3::new(
+            f.z * level * c.z - cosine,
+            -f.z * sine * c.x,
+            f.z * sine * c.y,
+            f.x * sine * c.z,
+            f.x * level * c.x + f.y * c.y,
+            f.y * c.x - f.x * level * c.y,
+            f.y * sine * c.z,
+            f.y * level * c.x - f.x * c.y,
+            -f.y * level * c.y - f.x * c.x,
+        );
         Bilinear { coefficients, size: 1.0 }
     });
     let back = to.transpose();
     let place = |theta: Complex<f64>, phi: Complex<f64>| {
         let first = turned(&from, [0, 1], theta);
-        let tilted = turned(&first, [2, 0], Complex::new(cosine, sine));
+        let tilted = turned(&first, [2, 0], Complex::new(level, sine));
         turned(&tilted, [0, 1], phi) * back
     };
     eliminate_angle(&rest, conditions, place, found)
 }
 
+/// The components of a vector along the directions of a frame.
+#[inline(always)]
+fn in_frame(frame: &Matrix3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    let along = |i: usize| frame[(0, i)] * v.x + frame[(1, i)] * v.y + frame[(2, i)] * v.z;
+    Vector3::new(along(0), along(1), along(2))
+}
+
 /// A frame after a rotation about one of its own directions, the one that is not named, by the angle of a unit complex
 /// number.
+#[inline(always)]
 fn turned(frame: &Matrix3<f64>, [from, to]: [usize; 2], e: Complex<f64>) -> Matrix3<f64> {
     let (a, b) = (frame.column(from), frame.column(to));
     let mut turned = *frame;
@@ -322,26 +343,21 @@ fn eliminate_angle<G: Group>(
     place: impl Fn(Complex<f64>, Complex<f64>) -> G,
     found: &mut Vec<G>,
 ) -> Found {
-    let [[c1, a1, b1], [c2, a2, b2]] = rest.map(|equation| {
-        let m = equation.coefficients;
-        let column = |j: usize| Trigonometric::linear([m[(0, j)], m[(1, j)], m[(2, j)]]);
-        [column(0), column(1), column(2)]
-    });
+    let [[c1, a1, b1], [c2, a2, b2]]: [[[f64; 3]; 3]; 2] =
+        rest.each_ref().map(|equation| equation.coefficients.into());
     // Two equations a cos φ + b sin φ + c = 0 give cos φ = x / z and sin φ = y / z.
-    let minor = |p: &Trigonometric, q: &Trigonometric, r: &Trigonometric, s: &Trigonometric| {
-        p.times(q).minus(&r.times(s))
-    };
+    let minor = |p, q, r, s| Quadratic::product(p, q).minus(&Quadratic::product(r, s));
     let x = minor(&b1, &c2, &b2, &c1);
     let y = minor(&c1, &a2, &c2, &a1);
     let z = minor(&a1, &b2, &a2, &b1);
-    let polynomial = x.times(&x).plus(&y.times(&y)).minus(&z.times(&z));
+    let polynomial = x.square().plus(&y.square()).minus(&z.square());
     let product = rest[0].size * rest[1].size;
     let Roots::At { roots, doubtful } = polynomial.roots(product * product) else {
         return Found::Dependent;
     };
     for theta in roots {
-        let equations = [[&a1, &b1, &c1], [&a2, &b2, &c2]]
-            .map(|equation| equation.map(|coefficient| coefficient.value(theta)));
+        let at = |[constant, cos, sin]: [f64; 3]| constant + cos * theta.re + sin * theta.im;
+        let equations = [[at(a1), at(b1), at(c1)], [at(a2), at(b2), at(c2)]];
         for phi in common(&equations, [rest[0].size, rest[1].size]).into_iter().flatten() {
             collect(polish(place(theta, phi), conditions), found);
         }
@@ -420,23 +436,28 @@ fn lines(conditions: &[Condition; 3]) -> Solutions<PlanarDisplacement> {
 
 /// Removes the rounding of the elimination by steps of Newton's method on the conditions themselves.
 fn polish<G: Group>(start: G, conditions: &[Condition; 3]) -> G {
-    newton(start, conditions, POLISH).0
+    newton(start, conditions, POLISH, HALVINGS).0
 }
 
 /// The displacement to which Newton's method leads from another one; `None` if no displacement near it satisfies the
 /// conditions, or if they are not independent there.
 pub fn near<G: Group>(start: G, conditions: &[Condition; 3]) -> Option<G> {
-    let (found, miss) = newton(start, conditions, NEAR_STEPS);
+    let (found, miss) = newton(start, conditions, NEAR_STEPS, 0);
     (miss <= MET).then_some(found)
 }
 
-/// Takes steps of Newton's method as long as each comes closer. Returns by how much the conditions are missed, too.
-fn newton<G: Group>(start: G, conditions: &[Condition; 3], steps: usize) -> (G, f64) {
+/// Takes steps of Newton's method as long as each comes closer, where need be after some halvings. Returns by how much the
+/// conditions are missed, too.
+fn newton<G: Group>(
+    start: G,
+    conditions: &[Condition; 3],
+    steps: usize,
+    halvings: usize,
+) -> (G, f64) {
     let evaluate = |g: &G| {
-        let parts = conditions.each_ref().map(|condition| g.error(condition));
-        let miss = Vector3::from_fn(|i, _| parts[i].0);
-        let derivative = Matrix3::from_rows(&parts.map(|part| part.1.transpose()));
-        (miss, derivative)
+        let [one, two, three] = conditions;
+        let ((x, a), (y, b), (z, c)) = (g.error(one), g.error(two), g.error(three));
+        (Vector3::new(x, y, z), [a, b, c])
     };
     let mut here = start;
     let (mut miss, mut derivative) = evaluate(&here);
@@ -444,18 +465,28 @@ fn newton<G: Group>(start: G, conditions: &[Condition; 3], steps: usize) -> (G, 
         if miss.amax() <= POLISHED {
             break;
         }
-        let Some(inverse) = derivative.try_inverse() else { break };
-        let step = -(inverse * miss);
+        // By Cramer's rule, with the derivatives of the three conditions as rows.
+        let [a, b, c] = derivative;
+        let minors = [b.cross(&c), c.cross(&a), a.cross(&b)];
+        let weighed = minors[0] * miss.x + minors[1] * miss.y + minors[2] * miss.z;
+        let mut step = weighed / -a.dot(&minors[0]);
         let length = step.amax();
         if length.is_nan() || length > LONGEST_STEP {
             break;
         }
-        let next = here.moved(&step);
-        let (after, slope) = evaluate(&next);
-        let closer = after.norm() < miss.norm();
-        if !closer {
-            break;
-        }
+        let mut left = halvings;
+        let (next, after, slope) = loop {
+            let next = here.moved(&step);
+            let (after, slope) = evaluate(&next);
+            if after.norm() < miss.norm() {
+                break (next, after, slope);
+            }
+            if left == 0 || miss.amax() <= MET {
+                return (here, miss.amax());
+            }
+            step *= 0.5;
+            left -= 1;
+        };
         (here, miss, derivative) = (next, after, slope);
     }
     (here, miss.amax())

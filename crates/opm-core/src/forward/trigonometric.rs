@@ -1,6 +1,14 @@
 //! Trigonometric polynomials of degree up to four, and all of their real roots.
 
+mod brackets;
+mod interval;
+mod tables;
+
+use brackets::InBrackets;
+use interval::{Bracket, Interval};
 use nalgebra::Complex;
+use pulp::{Arch, Simd, WithSimd};
+use tables::{POWERS, QUARTERS, Table};
 
 /// The highest degree: that of the polynomial of three conditions in a planar or a spherical section.
 const DEGREE: usize = 4;
@@ -8,6 +16,8 @@ const DEGREE: usize = 4;
 const HALF: usize = 2 * DEGREE;
 /// The number of its coefficients.
 const COEFFICIENTS: usize = HALF + 1;
+/// The number of intervals, and of roots, that are computed together.
+const LANES: usize = 4;
 
 /// A polynomial is zero where it is below this share of the terms that it was computed from: the rounding
 /// after some twenty products and sums.
@@ -26,6 +36,53 @@ const NEAR: f64 = 1e-3;
 pub struct Trigonometric {
     coefficients: [Complex<f64>; DEGREE + 1],
     degree: usize,
+}
+
+/// A polynomial of degree two: `c₀` and the real and imaginary parts of `c₁` and `c₂`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quadratic {
+    constant: f64,
+    first: Complex<f64>,
+    second: Complex<f64>,
+}
+
+impl Quadratic {
+    /// The product of two polynomials `a + b cos θ + c sin θ`.
+    #[inline(always)]
+    pub fn product([a, b, c]: &[f64; 3], [p, q, r]: &[f64; 3]) -> Self {
+        Self {
+            constant: a * p + 0.5 * (b * q + c * r),
+            first: Complex::new(0.5 * (a * q + b * p), -0.5 * (a * r + c * p)),
+            second: Complex::new(0.25 * (b * q - c * r), -0.25 * (b * r + c * q)),
+        }
+    }
+
+    /// The difference `self − other`.
+    #[inline(always)]
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        Self {
+            constant: self.constant - other.constant,
+            first: self.first - other.first,
+            second: self.second - other.second,
+        }
+    }
+
+    /// The square.
+    #[inline(always)]
+    #[must_use]
+    pub fn square(&self) -> Trigonometric {
+        let Self { constant, first, second } = *self;
+        let norms = first.norm_sqr() + second.norm_sqr();
+        let coefficients = [
+            Complex::new(constant * constant + 2.0 * norms, 0.0),
+            (first * constant + first.conj() * second) * 2.0,
+            second * (2.0 * constant) + first * first,
+            first * second * 2.0,
+            second * second,
+        ];
+        Trigonometric { coefficients, degree: 4 }
+    }
 }
 
 /// The real roots of a polynomial, as unit complex numbers `e(θ)`, counter-clockwise from −π/2.
@@ -131,233 +188,78 @@ impl Trigonometric {
     ///
     /// With `t = tan(θ/2)`, `(1 + t²)⁴ f` is a polynomial of degree eight in `t`. One half of the circle is
     /// `|t| ≤ 1`, and so is the other half after a rotation by π. In Bernstein's basis the coefficients
-    /// bound the polynomial, and their signs count its roots. An interval that they do not decide is halved
-    /// (de Casteljau's algorithm).
+    /// bound the polynomial, and their signs count its roots: first on the four quarters of each half, which all
+    /// are computed together. An interval that they do not decide is halved (de Casteljau's algorithm).
     pub fn roots(&self, scale: f64) -> Roots {
         if self.size() <= NOISE * scale || !self.size().is_finite() {
             return Roots::Everywhere;
         }
         // The factor (1 + t²)⁴ is at most 16, at the ends.
         let noise = 16.0 * NOISE * scale;
-        let mut roots: Vec<Complex<f64>> = Vec::with_capacity(HALF);
+        let mut brackets: Vec<Bracket> = Vec::with_capacity(HALF);
+        let arch = Arch::new();
+        for (half, on_half) in [1.0, -1.0].into_iter().zip(arch.dispatch(OnQuarters(self))) {
+            for (quarter, low) in [-1.0, -0.5, 0.0, 0.5].into_iter().enumerate() {
+                let bernstein = on_half.map(|of_quarters| of_quarters[quarter]);
+                Interval { bernstein, half, low, width: 0.5 }.isolate(noise, &mut brackets);
+            }
+        }
+        let powers = self.expanded(&POWERS);
+        let mut roots: Vec<Complex<f64>> = Vec::with_capacity(brackets.len());
         let mut doubtful = false;
-        let (powers, bernstein) = (self.expanded(&POWERS), self.expanded(&BERNSTEIN));
-        for half in [1.0, -1.0] {
-            let on_half = |[even, odd]: &[[f64; COEFFICIENTS]; 2]| {
-                std::array::from_fn(|i| even[i] + half * odd[i])
-            };
-            let polynomial = Polynomial { powers: on_half(&powers), noise };
-            let whole = Interval { bernstein: on_half(&bernstein), low: -1.0, width: 2.0 };
-            polynomial.isolate(&whole, &mut |t, simple| {
+        for together in brackets.chunks(LANES) {
+            let found = arch.dispatch(InBrackets { powers: &powers, brackets: together });
+            for (bracket, t) in together.iter().zip(found) {
                 let square = t * t;
-                let e = Complex::new(1.0 - square, 2.0 * t) * half / (1.0 + square);
-                doubtful |=
-                    !simple || roots.last().is_some_and(|r| (r - e).norm_sqr() < NEAR * NEAR);
+                let e = Complex::new(1.0 - square, 2.0 * t) * bracket.half / (1.0 + square);
+                doubtful |= !bracket.simple
+                    || roots.last().is_some_and(|r| (r - e).norm_sqr() < NEAR * NEAR);
                 roots.push(e);
-            });
+            }
         }
         Roots::At { roots, doubtful }
     }
 
-    /// The coefficients of `(1 + t²)⁴ f` in the basis of a table, those of the terms of even and of odd degree.
-    /// A rotation by π changes the sign of the odd ones.
-    fn expanded(&self, table: &Table) -> [[f64; COEFFICIENTS]; 2] {
-        let mut sums = [[0.0; COEFFICIENTS]; 2];
+    /// The coefficients of `(1 + t²)⁴ f` in the bases of a table, those of the terms of even and of odd degree.
+    #[inline(always)]
+    fn expanded<const N: usize>(&self, table: &Table<N>) -> [[[f64; N]; COEFFICIENTS]; 2] {
+        let mut sums = [[[0.0; N]; COEFFICIENTS]; 2];
         for (k, (c, row)) in self.coefficients[..=self.degree].iter().zip(table).enumerate() {
-            let [re, im] = row;
-            for (i, sum) in sums[k % 2].iter_mut().enumerate() {
-                *sum += c.re * re[i] - c.im * im[i];
+            let sums = &mut sums[k % 2];
+            for i in 0..COEFFICIENTS {
+                let [re, im] = &row[i];
+                for lane in 0..N {
+                    sums[i][lane] += c.re * re[lane] - c.im * im[lane];
+                }
             }
         }
         sums
     }
 }
 
-/// Real and imaginary parts of `(1 + i t)^(4+k) (1 − i t)^(4−k)`, which is `(1 + t²)⁴ exp(i k θ)`: their
-/// coefficients in some basis, for each `k`. Those for `k > 0` are doubled, because `−k` adds as much.
-type Table = [[[f64; COEFFICIENTS]; 2]; DEGREE + 1];
-
-/// The table for the powers of `t`.
-const POWERS: Table = table([[1, 0], [0, 1]], false);
-/// The table for Bernstein's basis on `-1 ≤ t ≤ 1`, where the factor `1 + i t` runs from `1 − i` to `1 + i`.
-const BERNSTEIN: Table = table([[1, -1], [1, 1]], true);
-
-/// The products of eight linear factors `1 + i t` or `1 − i t`, in Gaussian integers. `factor` has the
-/// coefficients of `1 + i t` in the basis. For Bernstein's basis the products are divided by binomial
-/// coefficients.
-const fn table(factor: [[i64; 2]; 2], over_binomials: bool) -> Table {
-    let mut table = [[[0.0; COEFFICIENTS]; 2]; DEGREE + 1];
-    let mut k = 0;
-    while k <= DEGREE {
-        let mut product = [[0_i64; 2]; COEFFICIENTS];
-        product[0] = [1, 0];
-        let mut n = 0;
-        while n < HALF {
-            let sign = if n < DEGREE + k { 1 } else { -1 };
-            let mut next = [[0_i64; 2]; COEFFICIENTS];
-            let mut j = 0;
-            while j <= n {
-                let [a, b] = product[j];
-                let mut step = 0;
-                while step < 2 {
-                    let [c, d] = [factor[step][0], sign * factor[step][1]];
-                    next[j + step][0] += a * c - b * d;
-                    next[j + step][1] += a * d + b * c;
-                    step += 1;
-                }
-                j += 1;
-            }
-            product = next;
-            n += 1;
-        }
-        let mut j = 0;
-        let mut binomial = 1;
-        while j <= HALF {
-            let over = if over_binomials { binomial } else { 1 };
-            let twice = if k > 0 { 2.0 } else { 1.0 };
-            table[k][0][j] = twice * product[j][0] as f64 / over as f64;
-            table[k][1][j] = twice * product[j][1] as f64 / over as f64;
-            binomial = binomial * (HALF - j) as i64 / (j + 1) as i64;
-            j += 1;
-        }
-        k += 1;
-    }
-    table
+/// The sums of the terms of even and of odd degree, on some half of the circle each: a rotation by π changes the sign of
+/// the odd ones.
+#[inline(always)]
+fn summed<const N: usize>(
+    [even, odd]: &[[[f64; N]; COEFFICIENTS]; 2],
+    halves: [f64; LANES],
+) -> [[f64; LANES]; COEFFICIENTS] {
+    let at = |numbers: &[f64; N], lane: usize| numbers[lane % N];
+    std::array::from_fn(|i| {
+        std::array::from_fn(|lane| at(&even[i], lane) + halves[lane] * at(&odd[i], lane))
+    })
 }
 
-/// A polynomial on an interval.
-struct Interval {
-    /// The Bernstein coefficients on the interval.
-    bernstein: [f64; COEFFICIENTS],
-    /// The low end of the interval.
-    low: f64,
-    /// The width of the interval.
-    width: f64,
-}
+/// Bernstein coefficients on the four quarters of both halves of the circle, with the instructions of the processor at hand.
+struct OnQuarters<'a>(&'a Trigonometric);
 
-/// A polynomial in the half angle's tangent.
-struct Polynomial {
-    /// Its coefficients by rising powers.
-    powers: [f64; COEFFICIENTS],
-    /// Where it is below this, it is zero.
-    noise: f64,
-}
+impl WithSimd for OnQuarters<'_> {
+    type Output = [[[f64; LANES]; COEFFICIENTS]; 2];
 
-impl Polynomial {
-    /// Finds the roots on an interval, in ascending order. `found` is called with each root, and with whether it is
-    /// certainly simple.
-    fn isolate(&self, interval: &Interval, found: &mut impl FnMut(f64, bool)) {
-        let Interval { bernstein: ref b, low, width } = *interval;
-        let noise = self.noise;
-        let (least, most) =
-            b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &x| (l.min(x), m.max(x)));
-        if least > noise || most < -noise {
-            return;
-        }
-        if changes_sign_once(b, noise) {
-            return found(self.root(interval), true);
-        }
-        let rising = b.windows(2).all(|pair| pair[1] > pair[0]);
-        if rising || b.windows(2).all(|pair| pair[1] < pair[0]) {
-            // A root at the common end of two intervals belongs to the right one.
-            let (first, last) = (b[0], b[HALF]);
-            let crosses =
-                if rising { first <= 0.0 && last > 0.0 } else { first >= 0.0 && last < 0.0 };
-            if crosses {
-                found(self.root(interval), true);
-            }
-            return;
-        }
-        // The polynomial is below the rounding here. Unless it is convex or concave, in which case halving
-        // leads to its turning point, nothing more can be found.
-        let flat = least.abs().max(most.abs()) <= noise && !is_convex_or_concave(b);
-        if width <= SHORTEST || flat {
-            return found(low + 0.5 * width, false);
-        }
-        for half in interval.halves() {
-            self.isolate(&half, found);
-        }
-    }
-
-    /// The root on an interval at whose ends the polynomial has opposite signs, by Newton's method from where the
-    /// polygon of the coefficients changes its sign. Steps that leave the interval, or that do not become shorter,
-    /// are replaced by halving it.
-    fn root(&self, interval: &Interval) -> f64 {
-        /// Every second step halves the interval or the step at least: this number reaches the last bit.
-        const STEPS: usize = 128;
-        /// After a step that is shorter, the next one is below rounding: Newton's method squares the error.
-        const CLOSE: f64 = 1e-9;
-        let (mut low, mut high) = (interval.low, interval.low + interval.width);
-        let rising = interval.bernstein[HALF] > 0.0;
-        let (mut t, mut last) = (interval.polygon_root(rising), interval.width);
-        for _ in 0..STEPS {
-            let (mut value, mut slope) = (0.0, 0.0);
-            for c in self.powers.iter().rev() {
-                slope = slope * t + value;
-                value = value * t + c;
-            }
-            if (value > 0.0) == rising {
-                high = t;
-            } else {
-                low = t;
-            }
-            let newton = t - value / slope;
-            let step = (newton - t).abs();
-            if step <= CLOSE && newton >= low - CLOSE && newton <= high + CLOSE {
-                return newton.clamp(interval.low, interval.low + interval.width);
-            }
-            let inside = newton > low && newton < high;
-            let next = if inside && step <= 0.5 * last { newton } else { 0.5 * (low + high) };
-            last = (next - t).abs();
-            if last <= 4.0 * f64::EPSILON {
-                return next;
-            }
-            t = next;
-        }
-        t
-    }
-}
-
-/// Whether the coefficients change their sign exactly once, whatever the rounding. Then there is exactly one
-/// root, by Descartes' rule of signs in Bernstein's basis.
-fn changes_sign_once(b: &[f64; COEFFICIENTS], noise: f64) -> bool {
-    let sign = if b[HALF] > 0.0 { 1.0 } else { -1.0 };
-    let before = b.iter().take_while(|&&x| sign * x < -noise).count();
-    let after = b.iter().rev().take_while(|&&x| sign * x > noise).count();
-    // Of two neighbours without a certain sign, each could have that of the other's side.
-    before > 0 && after > 0 && before + after >= HALF
-}
-
-/// Whether the second derivative keeps its sign on the interval.
-fn is_convex_or_concave(b: &[f64; COEFFICIENTS]) -> bool {
-    let second = |w: &[f64]| w[0] - 2.0 * w[1] + w[2];
-    b.windows(3).all(|w| second(w) > 0.0) || b.windows(3).all(|w| second(w) < 0.0)
-}
-
-impl Interval {
-    /// The two halves, by de Casteljau's algorithm.
-    fn halves(&self) -> [Self; 2] {
-        let (mut left, mut right) = ([0.0; COEFFICIENTS], self.bernstein);
-        for (i, left) in left.iter_mut().enumerate() {
-            *left = right[0];
-            for j in 0..HALF - i {
-                right[j] = 0.5 * (right[j] + right[j + 1]);
-            }
-        }
-        let width = 0.5 * self.width;
-        [
-            Self { bernstein: left, low: self.low, width },
-            Self { bernstein: right, low: self.low + width, width },
-        ]
-    }
-
-    /// Where the polygon of the coefficients changes its sign for the first time.
-    fn polygon_root(&self, rising: bool) -> f64 {
-        let b = &self.bernstein;
-        let side = b.iter().take_while(|&&x| (x > 0.0) != rising).count().clamp(1, HALF);
-        let (before, after) = (b[side - 1], b[side]);
-        let share = (side as f64 - 1.0 + before / (before - after)) / HALF as f64;
-        self.low + self.width * share.clamp(0.0, 1.0)
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let sums = self.0.expanded(&QUARTERS);
+        [summed(&sums, [1.0; LANES]), summed(&sums, [-1.0; LANES])]
     }
 }
 

@@ -10,7 +10,7 @@ use crate::decomposition::Freedom;
 use crate::group::{Displacement, JointDisplacement};
 use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Complex, Unit, Vector3};
 
 /// The joint coordinate that a joint of a chain stands for.
 #[derive(Clone, Copy, Debug)]
@@ -123,6 +123,20 @@ impl CompiledSection {
                 JointDisplacement::Value(displacement.value() * slider.rate)
             }
             _ => displacement,
+        }
+    }
+
+    /// The joints' displacements with a known one of the first joint: see [`Chain::completed`].
+    #[inline(always)]
+    pub fn completed(
+        &self,
+        target: &Displacement,
+        first: Complex<f64>,
+        within: f64,
+    ) -> Option<([JointDisplacement; 3], Branch)> {
+        match (&self.partial, &self.offset) {
+            (None, None) => self.chain.completed(target, first, within),
+            _ => None,
         }
     }
 

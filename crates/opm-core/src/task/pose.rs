@@ -7,7 +7,7 @@ use crate::group::{
 };
 use crate::mechanism::OrientationCoordinates;
 use crate::numeric::Quantity;
-use crate::numeric::angle::{atan2, near, sin_cos};
+use crate::numeric::angle::{atan2, atan2_of_each, near, sin_cos};
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::PI;
 
@@ -246,12 +246,12 @@ pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
 
 /// The angles `zeta xi psi` of a rotation, where this is the sine of `xi`, which is not zero.
 fn with_sine(r: &Matrix3<f64>, sine: f64) -> [f64; 3] {
-    let zeta = atan2(r[(1, 2)], r[(0, 2)]);
     // Near the singularity the error of zeta is the rounding over the sine, but zeta ± psi is accurate: psi
     // is computed from what this zeta leaves of the rotation.
-    let (sin, cos) = sin_cos(zeta);
-    let psi = atan2(cos * r[(1, 0)] - sin * r[(0, 0)], cos * r[(1, 1)] - sin * r[(0, 1)]);
-    [zeta, atan2(sine, r[(2, 2)]), psi]
+    let (cos, sin) = (r[(0, 2)] / sine, r[(1, 2)] / sine);
+    let y = [r[(1, 2)], sine, cos * r[(1, 0)] - sin * r[(0, 0)]];
+    let x = [r[(0, 2)], r[(2, 2)], cos * r[(1, 1)] - sin * r[(0, 1)]];
+    atan2_of_each(&y, &x)
 }
 
 /// The angles `azimuth tilt torsion` with `Rz(azimuth) Ry(tilt) Rz(torsion - azimuth) = r`, the tilt in [0, π]. Where

@@ -32,15 +32,10 @@ struct Stage {
     /// The values at home, which are zero for a spherical joint.
     home: Lanes,
     exponents: Exponents,
-    /// The spherical joints, each with its lane.
-    balls: Vec<(usize, BallHome)>,
-}
-
-/// A spherical joint at home.
-#[derive(Clone, Debug)]
-struct BallHome {
-    point: Vector3<f64>,
-    vector: Vector3<f64>,
+    /// The spherical joints, each with its lane and its rotation vector at home.
+    balls: Vec<(usize, Vector3<f64>)>,
+    /// The points of the spherical joints; zero in the other lanes.
+    points: [Lanes; 3],
 }
 
 /// What the exponential of a screw consists of, for each leg: with the angle `θ = 2 h q`, its rotation is
@@ -100,8 +95,13 @@ impl Exponents {
 }
 
 impl Stage {
-    const REST: Self =
-        Self { values: [0; LANES], home: ZEROS, exponents: Exponents::REST, balls: Vec::new() };
+    const REST: Self = Self {
+        values: [0; LANES],
+        home: ZEROS,
+        exponents: Exponents::REST,
+        balls: Vec::new(),
+        points: [ZEROS; 3],
+    };
 
     /// The displacements of these joints from home; of a spherical joint, the first component.
     #[inline(always)]
@@ -119,17 +119,29 @@ impl Stage {
         if self.balls.is_empty() {
             return g.followed(&self.exponents, &by);
         }
-        // A spherical joint rotates about the axis of its rotation vector.
-        let mut exponents = self.exponents.clone();
-        for (lane, BallHome { point, vector }) in &self.balls {
+        // A spherical joint rotates about the axis `a` of its rotation vector: it moves the origin by `s = p × a`, where
+        // `p` is its point.
+        let Exponents { half, mut axis, mut by_sine, mut by_versine, by_rest } = self.exponents;
+        for (lane, home) in &self.balls {
             let first = self.values[*lane];
-            let vector = Vector3::new(joints[first], joints[first + 1], joints[first + 2]) - vector;
+            let vector = Vector3::new(joints[first], joints[first + 1], joints[first + 2]) - home;
             let angle = vector.norm();
-            let axis = if angle > 0.0 { vector / angle } else { vector };
-            exponents.set(*lane, &Screw { angular: axis, linear: point.cross(&axis) });
+            let unit = if angle > 0.0 { vector / angle } else { vector };
+            for k in 0..3 {
+                axis[k][*lane] = unit[k];
+            }
             by[*lane] = angle;
         }
-        g.followed(&exponents, &by)
+        for i in 0..LANES {
+            let a = [axis[0][i], axis[1][i], axis[2][i]];
+            let s = cross([self.points[0][i], self.points[1][i], self.points[2][i]], a);
+            let c = cross(a, s);
+            for k in 0..3 {
+                by_sine[k][i] += s[k];
+                by_versine[k][i] += c[k];
+            }
+        }
+        g.followed(&Exponents { half, axis, by_sine, by_versine, by_rest }, &by)
     }
 }
 
@@ -228,7 +240,11 @@ impl Abreast {
                         stage.exponents.set(lane, screw);
                     }
                     LegJoint::Ball { point, home, .. } => {
-                        stage.balls.push((lane, BallHome { point: *point, vector: *home }));
+                        stage.exponents.half[lane] = 0.5;
+                        stage.balls.push((lane, *home));
+                        for (lanes, component) in stage.points.iter_mut().zip(point) {
+                            lanes[lane] = *component;
+                        }
                     }
                 }
             }
