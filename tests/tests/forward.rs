@@ -9,6 +9,7 @@ mod pairs;
 
 use closure::Closure;
 use fastrand::Rng;
+use opm_core::decomposition::mobility::frame;
 use opm_core::forward::{Assembly, RESIDUAL};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::family::plano_spherical::Home;
@@ -97,10 +98,17 @@ fn off(m: &Manipulator, coordinate: usize, a: f64, b: f64) -> f64 {
     }
 }
 
+/// What rounding adds to a residual where the joints are hundreds of sizes away from the origin.
+fn rounding(m: &Manipulator) -> f64 {
+    let points = m.mechanism().joints().map(|joint| joint.point);
+    let distances = points.chain([m.mechanism().platform]).map(|point| point.coords.norm());
+    100.0 * f64::EPSILON * distances.fold(0.0, f64::max) / frame(m.mechanism()).length
+}
+
 /// Checks what an assembly claims: its legs close with the joint values that were given, and
 /// inverse kinematics in its mode gives these values back.
 fn check(m: &Manipulator, actuated: &[f64], a: &Assembly) {
-    assert!(a.residual <= RESIDUAL, "{a:?}");
+    assert!(a.residual <= RESIDUAL.max(rounding(m)), "{a:?}");
     let target = displacement(m, &a.pose, a.mode);
     let mut joints = &a.joints[..];
     for leg in &m.mechanism().legs {

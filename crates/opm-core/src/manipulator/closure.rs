@@ -19,6 +19,8 @@ pub struct Closure {
     platform: Point3<f64>,
     /// The characteristic length of the mechanism, metres.
     pub size: f64,
+    /// The rounding of a residual. Products of exponentials lose more digits, the farther away the axes are from the origin.
+    pub rounding: f64,
     arch: Arch,
 }
 
@@ -55,6 +57,14 @@ impl LegJoint {
         }
     }
 
+    /// The distance of its axis or point from the origin, metres; zero where it only slides.
+    fn away(&self) -> f64 {
+        match self {
+            Self::Screw { screw, .. } => screw.angular.cross(&screw.linear).norm(),
+            Self::Ball { point, .. } => point.norm(),
+        }
+    }
+
     /// The displacement `g`, followed towards the platform by that of the joint.
     fn after(&self, g: &Isometry3<f64>, values: &[f64]) -> Isometry3<f64> {
         match self {
@@ -70,6 +80,8 @@ impl LegJoint {
 
 impl Closure {
     pub fn new(mechanism: &Mechanism) -> Self {
+        /// The rounding of some ten products, as a share of the longest distance.
+        const ROUNDING: f64 = 64.0 * f64::EPSILON;
         let legs: Vec<_> = mechanism
             .legs
             .iter()
@@ -93,11 +105,16 @@ impl Closure {
                 joints
             })
             .collect();
+        let platform = mechanism.platform;
+        let away = legs.iter().flatten().map(LegJoint::away);
+        let farthest = away.fold(platform.coords.norm(), f64::max);
+        let size = frame(mechanism).length;
         Self {
             abreast: Abreast::of_legs(&legs),
             legs,
-            platform: mechanism.platform,
-            size: frame(mechanism).length,
+            platform,
+            size,
+            rounding: ROUNDING * farthest / size,
             arch: Arch::new(),
         }
     }
