@@ -195,13 +195,10 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
     };
     found.extend(legs.iter().zip(held).position(whole).map(Anchor::Leg));
     if task.lower.kind.commutes() {
-        let along = task.lower_intersection.sum();
         found.extend((0..legs.len()).find_map(|leg| {
             let level = |joint: &&usize| {
-                let c =
-                    Condition::new(&legs[leg].lower.chain, **joint, JointDisplacement::Value(0.0));
-                matches!(c, Some(Condition::Flat { normal, .. })
-                    if normal.dot(&along).abs() <= LEVEL * normal.norm())
+                let held = Condition::new(&legs[leg].lower.chain, **joint, HOME);
+                held.is_some_and(|condition| is_level(&condition, task))
             };
             let joint = *held[leg].lower.iter().find(level)?;
             Some(Anchor::Level { leg, joint })
@@ -221,9 +218,18 @@ fn anchors(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg]) -> Vec<Anchor> {
     found
 }
 
+/// A joint at home.
+const HOME: JointDisplacement = JointDisplacement::Value(0.0);
+
 /// A condition's normal and the intersection motion are perpendicular where the cosine of the angle between
 /// them is below this: both are exact up to rounding.
 const LEVEL: f64 = 1e-12;
+
+/// Whether a displacement of a commutative lower section along the intersection motion keeps a condition on it.
+fn is_level(condition: &Condition, task: &Task) -> bool {
+    let along = task.lower_intersection.sum();
+    matches!(condition, Condition::Flat { normal, .. } if normal.dot(&along).abs() <= LEVEL * normal.norm())
+}
 
 /// The track on which a leg keeps the axis of the intersection motion, if it does.
 fn tracked(number: usize, leg: &CompiledLeg, held: &HeldLeg) -> Option<Tracked> {
@@ -291,8 +297,7 @@ fn conditions(legs: &[CompiledLeg], held: &[HeldLeg], section: Section) -> Vec<C
             Section::Upper => &held.upper,
         };
         let chain = &leg.section(section).chain;
-        let home = JointDisplacement::Value(0.0);
-        held.iter().filter_map(|&joint| Condition::new(chain, joint, home)).collect()
+        held.iter().filter_map(|&joint| Condition::new(chain, joint, HOME)).collect()
     };
     legs.iter().zip(held).flat_map(of_leg).collect()
 }
@@ -321,15 +326,18 @@ fn fixes(kind: SubspaceKind, conditions: &[Condition]) -> bool {
 fn fixes_upper(task: &Task, legs: &[CompiledLeg], held: &[HeldLeg], anchor: &Anchor) -> bool {
     let mut found = Vec::new();
     for (number, (leg, held)) in legs.iter().zip(held).enumerate() {
+        let fixes_tau = |&joint: &usize| {
+            let held = Condition::new(&leg.lower.chain, joint, HOME);
+            held.is_some_and(|condition| !task.lower.kind.commutes() || !is_level(&condition, task))
+        };
         let known = match anchor {
             Anchor::Leg(anchor) if *anchor == number => true,
             Anchor::CoupledLegs { legs, .. } if legs.contains(&number) => true,
-            _ => !held.lower.is_empty(),
+            _ => held.lower.iter().any(fixes_tau),
         };
         let split = (leg.split_section == Section::Upper && known).then_some(0);
-        let home = JointDisplacement::Value(0.0);
         let joints = split.into_iter().chain(held.upper.iter().copied());
-        found.extend(joints.filter_map(|joint| Condition::new(&leg.upper.chain, joint, home)));
+        found.extend(joints.filter_map(|joint| Condition::new(&leg.upper.chain, joint, HOME)));
     }
     fixes(task.upper.kind, &found)
 }
