@@ -102,7 +102,7 @@ fn off(m: &Manipulator, coordinate: usize, a: f64, b: f64) -> f64 {
 fn rounding(m: &Manipulator) -> f64 {
     let points = m.mechanism().joints().map(|joint| joint.point);
     let distances = points.chain([m.mechanism().platform]).map(|point| point.coords.norm());
-    100.0 * f64::EPSILON * distances.fold(0.0, f64::max) / frame(m.mechanism()).length
+    300.0 * f64::EPSILON * distances.fold(0.0, f64::max) / frame(m.mechanism()).length
 }
 
 /// Checks what an assembly claims: its legs close with the joint values that were given, and

@@ -81,7 +81,7 @@ impl LegJoint {
 impl Closure {
     pub fn new(mechanism: &Mechanism) -> Self {
         /// The rounding of some ten products, as a share of the longest distance.
-        const ROUNDING: f64 = 64.0 * f64::EPSILON;
+        const ROUNDING: f64 = 256.0 * f64::EPSILON;
         let legs: Vec<_> = mechanism
             .legs
             .iter()
