@@ -14,13 +14,16 @@ pub struct SphericalChain {
     axes: [Vector3<f64>; 3],
     /// `a₁·a₂` and `a₂·a₃`: cosines of the arcs of the two links.
     cosines: [f64; 2],
-    /// The component of `a₂` perpendicular to `a₁`, and `a₁ × a₂`.
+    /// The sines of these arcs.
+    sines: [f64; 2],
+    /// One over each.
+    over_sines: [f64; 2],
+    /// The component of `a₂` perpendicular to `a₁`, and `a₁ × a₂`: both have the length of the first arc's sine.
     second_on_first: [Vector3<f64>; 2],
-    /// The component of `a₃` perpendicular to `a₂`, and `a₂ × a₃`, both over the square of their length: their
-    /// products with `a₃` as it rotates about `a₂` are the cosine and the sine of the angle.
-    third_on_second: [Vector3<f64>; 2],
-    /// Two unit directions that make a right-handed orthonormal frame with `a₃`.
-    beside_third: [Vector3<f64>; 2],
+    /// The second joint's rotation at which `a₃` is nearest to `a₁`.
+    nearest: Complex<f64>,
+    /// The unit direction along `a₂ × a₃`.
+    beside_third: Vector3<f64>,
 }
 
 impl SphericalChain {
@@ -30,20 +33,28 @@ impl SphericalChain {
     /// Two neighbouring axes are parallel, so that the chain cannot rotate in all directions.
     pub fn new(axes: [Unit<Vector3<f64>>; 3]) -> Result<Self, ChainError> {
         let [a1, a2, a3] = axes.map(Unit::into_inner);
-        let (n12, n23) = (a1.cross(&a2), a2.cross(&a3));
-        if n12.norm().min(n23.norm()) <= DEGENERATE {
+        // The component of one axis perpendicular to another. The second step removes what rounding leaves of the first: for
+        // small arcs, the digits of the joints' rotations depend on it.
+        let across = |a: Vector3<f64>, other: &Vector3<f64>| {
+            let nearly = a - other * a.dot(other);
+            nearly - other * nearly.dot(other)
+        };
+        let (second, third) = (across(a2, &a1), across(a3, &a2));
+        let (n12, n23) = (a1.cross(&second), a2.cross(&third));
+        let sines = [n12.norm(), n23.norm()];
+        if sines[0].min(sines[1]) <= DEGENERATE {
             return Err(ChainError::Dependent("two neighbouring axes are parallel"));
         }
-        let beside = n23.normalize();
+        // From where a₃ is nearest to a₁, the second joint is rotated by an angle with this direction at home.
+        let at_home = Complex::new(-n12.dot(&n23), -n12.dot(&third));
         Ok(Self {
             axes: [a1, a2, a3],
             cosines: [a1.dot(&a2), a2.dot(&a3)],
-            second_on_first: [a2 - a1 * a1.dot(&a2), n12],
-            third_on_second: [
-                (a3 - a2 * a2.dot(&a3)) / n23.norm_squared(),
-                n23 / n23.norm_squared(),
-            ],
-            beside_third: [beside, a3.cross(&beside)],
+            sines,
+            over_sines: sines.map(f64::recip),
+            second_on_first: [second, n12],
+            nearest: at_home.conj() / at_home.norm(),
+            beside_third: n23 / sines[1],
         })
     }
 
@@ -60,9 +71,8 @@ impl SphericalChain {
 
     #[inline(always)]
     fn equation(&self, w: &Vector3<f64>) -> Equation {
-        let a = dot(&self.second_on_first[0], w);
-        let b = dot(&self.second_on_first[1], w);
-        let d = self.cosines[1] - self.cosines[0] * dot(&self.axes[0], w);
+        let [a, b, axial] = self.carried(w);
+        let d = self.cosines[1] - self.cosines[0] * axial;
         Equation { a, b, d, square: a * a + b * b }
     }
 
@@ -85,18 +95,38 @@ impl SphericalChain {
     }
 
     /// All joints' rotations, from the first joint's.
+    ///
+    /// Vectors are taken in frames of the axes, where each joint's rotation and each link's arc is a rotation in a plane.
     #[inline(always)]
     fn with_first(&self, target: &Matrix3<f64>, q1: Complex<f64>) -> [JointDisplacement; 3] {
-        let w1 = rotate_back(&self.axes[0], q1, &apply(target, &self.axes[2]));
-        let q2 = angle(&self.third_on_second, &w1);
-        let beside1 = rotate_back(&self.axes[0], q1, &apply(target, &self.beside_third[0]));
-        let beside2 = rotate_back(&self.axes[1], q2, &beside1);
-        let q3 = angle(&self.beside_third, &beside2);
+        let ([c12, c23], [s12, s23]) = (self.cosines, self.sines);
+        let [over_first, over_second] = self.over_sines;
+        // The components of a vector, as the first joint has rotated it: along a₂, along the component of a₁ perpendicular
+        // to a₂, and perpendicular to both.
+        let about_second = |vector: &Vector3<f64>| {
+            let [x, y, z] = self.carried(vector);
+            let (x, y) = (x * q1.re + y * q1.im, y * q1.re - x * q1.im);
+            (x + c12 * z, s12 * z - c12 * (x * over_first), -y * over_first)
+        };
+        // The third axis is at the angle θ from where it is nearest to a₁.
+        let (_, u, v) = about_second(&apply(target, &self.axes[2]));
+        let theta = Complex::new(u * over_second, v * over_second);
+        // So is the direction that a₂ × a₃ has at home, but for the third joint's rotation.
+        let (along, u, v) = about_second(&apply(target, &self.beside_third));
+        let (u, v) = (u * theta.re + v * theta.im, v * theta.re - u * theta.im);
         [
             JointDisplacement::Direction(q1),
-            JointDisplacement::Direction(q2),
-            JointDisplacement::Direction(q3),
+            JointDisplacement::Direction(theta * self.nearest),
+            JointDisplacement::Direction(Complex::new(v, s23 * along - c23 * u)),
         ]
+    }
+
+    /// The components of a vector along the component of `a₂` perpendicular to `a₁` and along `a₁ × a₂`, both times their
+    /// length, and along `a₁`.
+    #[inline(always)]
+    fn carried(&self, v: &Vector3<f64>) -> [f64; 3] {
+        let [x, y] = &self.second_on_first;
+        [dot(x, v), dot(y, v), dot(&self.axes[0], v)]
     }
 
     /// The joints' rotations that rotate the outer link by `target`.
@@ -158,14 +188,13 @@ impl SphericalChain {
     /// The targets at which the chain closes on a branch with its second joint within limits; `None` where these leave
     /// two ranges of it.
     pub(crate) fn shell(&self, branch: Branch, limits: &Limits) -> Option<Shell> {
-        let [a1, a2, a3] = self.axes;
+        let [a1, _, a3] = self.axes;
         // The second joint rotates a₃ from where it is nearest to a₁, by an angle from 0 to π on either branch. The
         // triple product of the axes is negative where that is counter-clockwise.
-        let nearest = angle(&self.third_on_second, &a1);
         let cosines = match limits.arc() {
             None => [-1.0, 1.0],
             Some(arc) => {
-                let from_nearest = arc.turned(nearest.conj() / nearest.norm());
+                let from_nearest = arc.turned(self.nearest.conj());
                 let of_branch = match branch {
                     Branch::Plus => from_nearest.reflected(|e| e.conj()),
                     Branch::Minus => from_nearest,
@@ -180,7 +209,7 @@ impl SphericalChain {
             }
         };
         let [level, swing] =
-            [self.cosines[0] * self.cosines[1], a1.cross(&a2).norm() * a2.cross(&a3).norm()];
+            [self.cosines, self.sines].map(|[of_first, of_second]| of_first * of_second);
         Some(Shell {
             fixed: a1,
             carried: a3,
@@ -190,8 +219,7 @@ impl SphericalChain {
 
     /// The second joint's two rotations at which the branches meet: the three axes are then in one plane.
     pub(super) fn folds(&self) -> [JointDisplacement; 2] {
-        let rotation = angle(&self.third_on_second, &self.axes[0]);
-        [JointDisplacement::Direction(rotation), JointDisplacement::Direction(-rotation)]
+        [self.nearest, -self.nearest].map(JointDisplacement::Direction)
     }
 
     /// The joints' axes at home, base first.
@@ -257,7 +285,8 @@ impl Equation {
     /// Whether the equation certainly has no solution: the target is not even on the boundary of reach.
     #[inline(always)]
     fn has_none(&self) -> bool {
-        self.d.abs() > self.square.sqrt() + REACH_TOLERANCE
+        let certain = self.d.abs() - REACH_TOLERANCE;
+        (certain > 0.0) & (certain * certain > self.square)
     }
 
     /// The solution on a branch, as a unit vector.
@@ -265,7 +294,8 @@ impl Equation {
     fn solve(&self, branch: Branch) -> Complex<f64> {
         let Self { a, b, d, square } = *self;
         let root = branch.sign() * (square - d * d).max(0.0).sqrt();
-        Complex::new((a * d + b * root) / square, (b * d - a * root) / square)
+        let over = 1.0 / square;
+        Complex::new((a * d + b * root) * over, (b * d - a * root) * over)
     }
 }
 
@@ -322,13 +352,6 @@ fn rotate_back(axis: &Vector3<f64>, q: Complex<f64>, v: &Vector3<f64>) -> Vector
     v * q.re - axis.cross(v) * q.im + axis * (dot(axis, v) * (1.0 - q.re))
 }
 
-/// The rotation, as a unit vector, that takes the first of two perpendicular directions to the direction
-/// of `v`.
-#[inline(always)]
-fn angle(directions: &[Vector3<f64>; 2], v: &Vector3<f64>) -> Complex<f64> {
-    Complex::new(dot(&directions[0], v), dot(&directions[1], v))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -343,6 +366,31 @@ mod tests {
     }
 
     proptest! {
+        /// The joints' rotations lead back to the target, in chains with small arcs, too: these magnify the rounding.
+        #[test]
+        fn rotations_lead_to_the_target(
+            [first, second, turned] in [direction(), direction(), direction()],
+            arcs in [-3.0..0.0_f64, -3.0..0.0_f64],
+            rotations in proptest::array::uniform3(-3.0..3.0_f64),
+        ) {
+            let away = |axis: &Vector3<f64>, towards: &Vector3<f64>, exponent: f64| {
+                let across = axis.cross(towards);
+                prop_assume!(across.norm() > 0.1);
+                let (sin, cos) = 10_f64.powf(exponent).sin_cos();
+                Ok(Unit::new_normalize(axis * cos + across.normalize() * sin))
+            };
+            let second = away(&first, &second, arcs[0])?;
+            let third = away(&second, &turned, arcs[1])?;
+            let chain = SphericalChain::new([first, second, third]).unwrap();
+            let target = chain.forward(&rotations.map(JointDisplacement::Value));
+            let near = Branch::BOTH.map(|branch| chain.inverse(&target, branch));
+            let shortest = arcs[0].min(arcs[1]);
+            for found in near.into_iter().flatten() {
+                let off = (chain.forward(&found) - target).amax();
+                prop_assert!(off < 100.0 * f64::EPSILON / 10_f64.powf(shortest), "{:e}", off);
+            }
+        }
+
         /// The rotation of the first joint tells the branch and the other rotations that were found with it. A rotation
         /// with which the chain does not close tells nothing.
         #[test]
