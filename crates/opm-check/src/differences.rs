@@ -3,13 +3,15 @@
 /// The number of steps; each step is `SHRINK` times the previous one.
 const STEPS: usize = 9;
 const SHRINK: f64 = 0.6;
+/// The largest step of a second set, as a share of the first.
+const OTHER: f64 = 0.8;
 
 /// A derivative, with a bound on its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The value of the derivative.
     pub value: f64,
-    /// The difference of the last extrapolations, as an error bound.
+    /// The difference of the last extrapolations, or of two sets of steps, as an error bound.
     pub error: f64,
 }
 
@@ -22,6 +24,22 @@ pub fn derivatives(
     mut f: impl FnMut(f64) -> Option<Vec<f64>>,
 ) -> Option<Vec<[Estimate; 2]>> {
     let middle = f(0.0)?;
+    let found = from_steps(step, &middle, &mut f)?;
+    // Where rounding decides, two extrapolations may agree by chance, but hardly those of other steps, too.
+    let again = from_steps(OTHER * step, &middle, &mut f)?;
+    let both = |(one, other): (Estimate, Estimate)| {
+        let apart = (one.value - other.value).abs();
+        Estimate { value: one.value, error: one.error.max(apart) }
+    };
+    let pairs = found.into_iter().zip(again);
+    Some(pairs.map(|([a, b], [c, d])| [(a, c), (b, d)].map(both)).collect())
+}
+
+fn from_steps(
+    step: f64,
+    middle: &[f64],
+    mut f: impl FnMut(f64) -> Option<Vec<f64>>,
+) -> Option<Vec<[Estimate; 2]>> {
     let mut sides = Vec::new();
     let mut h = step;
     for _ in 0..STEPS {

@@ -57,7 +57,17 @@ fn loses_turns(m: &Manipulator, pair: [Kind; 2]) -> bool {
 
 #[test]
 fn random_mechanisms_of_every_pair() {
-    let mut rng = Rng::with_seed(31);
+    mechanisms_of_every_pair(31);
+}
+
+/// Among these, some have a level joint beside an inclined plane that does not fix an imaginary joint.
+#[test]
+fn other_mechanisms_of_every_pair() {
+    mechanisms_of_every_pair(32);
+}
+
+fn mechanisms_of_every_pair(seed: u64) {
+    let mut rng = Rng::with_seed(seed);
     for pair in PAIRS {
         let (mut closed, mut poses, mut assemblies, mut numeric) = (0, 0, 0, [0, 0]);
         let mut open = std::collections::BTreeMap::new();
