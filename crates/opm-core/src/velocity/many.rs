@@ -158,7 +158,7 @@ impl Manipulator {
         }
         let mut reached = [false; LANES];
         let reached = &mut reached[..conditions.len()];
-        self.decide_many(poses, mode, batch, reached, |_, _| {});
+        self.decide_many(poses, mode, batch, reached, &mut |_, _| {});
         conditions.fill(f64::NAN);
         reached.iter().rev().fold(0, |bits, &reached| bits << 1 | u64::from(reached))
     }

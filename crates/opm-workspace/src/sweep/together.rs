@@ -63,7 +63,7 @@ impl Reach<'_> {
             };
             let Some(conditioned) = &mut self.limited else {
                 let (mode, batch) = (self.modes.one(), &mut self.batch);
-                self.manipulator.decide_many(poses, mode, batch, reached, take);
+                self.manipulator.decide_many(poses, mode, batch, reached, &mut take);
                 continue;
             };
             let mut conditions = [0.0; Manipulator::DECIDED];

@@ -78,7 +78,7 @@ impl Manipulator {
         mode: Option<Mode>,
         batch: &mut Batch,
         reached: &mut [bool],
-        mut used: impl FnMut(usize, [f64; 2]),
+        used: &mut dyn FnMut(usize, [f64; 2]),
     ) {
         let (width, rows) = (self.task_coordinates().len(), reached.len());
         let Batch { arch, block, solution, all, .. } = batch;

@@ -15,23 +15,19 @@ use crate::manipulator::batch::section::{self, Side, Step};
 use crate::manipulator::{Manipulator, Mode, Section};
 use crate::numeric::Quantity;
 use nalgebra::{Complex, Matrix3, Vector3};
-use pulp::{Simd, WithSimd};
+use pulp::{Arch, Simd, WithSimd};
 
-/// Completes the poses of a block in a mode, with the instructions of the processor at hand. Poses that have no dependent
-/// coordinates are marked as out of reach.
+/// Completes the poses of a block in a mode. Poses that have no dependent coordinates are marked as out of reach.
 pub(in crate::manipulator) struct Complete<'a> {
     pub manipulator: &'a Manipulator,
     pub dependent: &'a Dependent,
     pub mode: Mode,
-    pub block: &'a mut Block,
+    pub arch: Arch,
 }
 
-impl WithSimd for Complete<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, dependent, mode, block } = self;
+impl Complete<'_> {
+    pub fn run(&self, block: &mut Block) {
+        let Self { manipulator, dependent, mode, .. } = *self;
         for &coordinate in &dependent.coordinates {
             block.pose[coordinate].fill(manipulator.home[coordinate]);
         }
@@ -42,30 +38,71 @@ impl WithSimd for Complete<'_> {
             match &step.solution {
                 Closed::Constant { .. } => {}
                 Closed::Condition { constraint, coordinate, function } => {
-                    block.find_tau_before(manipulator, mode, constraint.leg, constraint.section);
+                    self.part(block, Part::Tau(constraint.leg, constraint.section));
                     for (place, values) in function.places().into_iter().zip(&mut values) {
                         block.pose[*coordinate].fill(place);
-                        block.demand(manipulator, constraint, values);
+                        self.part(block, Part::Demand(constraint, values));
                     }
-                    let home = manipulator.home[*coordinate];
-                    block.take_zeros(function, &values, sign, home, *coordinate);
+                    let (values, coordinate) = (&values, *coordinate);
+                    self.part(block, Part::Zeros { function, values, sign, coordinate });
                 }
                 Closed::Joint(joint) => {
-                    block.find_tau_before(manipulator, mode, joint.leg, joint.section);
-                    block.take_joint(manipulator, joint, sign);
+                    self.part(block, Part::Tau(joint.leg, joint.section));
+                    self.part(block, Part::Joint(joint, sign));
                 }
             }
         }
         for check in &dependent.checks {
-            block.find_tau_before(manipulator, mode, check.leg, check.section);
+            self.part(block, Part::Tau(check.leg, check.section));
             let [missed, ..] = &mut values;
-            block.demand(manipulator, check, missed);
+            self.part(block, Part::Demand(check, missed));
             for (lane, &missed) in missed.iter().enumerate() {
                 let deficit = check.condition.deficit(missed);
                 let unit = if deficit.quantity == Quantity::Length { dependent.size } else { 1.0 };
                 let obeyed = u64::from(deficit.excess <= OBEYED * unit);
                 block.status.note_lane(lane, obeyed, obeyed ^ 1);
             }
+        }
+    }
+
+    fn part(&self, block: &mut Block, part: Part<'_>) {
+        self.arch.dispatch(OnBlock { complete: self, block, part });
+    }
+}
+
+/// A part of the work. Several steps need the same part, of which there is one copy for each set of instructions.
+enum Part<'a> {
+    /// See [`Block::find_tau_before`].
+    Tau(usize, Section),
+    /// See [`Block::demand`].
+    Demand(&'a Constraint, &'a mut Column),
+    /// See [`Block::take_zeros`].
+    Zeros { function: &'a Function, values: &'a [Column; 3], sign: f64, coordinate: usize },
+    /// See [`Block::take_joint`].
+    Joint(&'a OneJoint, f64),
+}
+
+/// A part, with the instructions of the processor at hand.
+struct OnBlock<'a, 'p> {
+    complete: &'a Complete<'a>,
+    block: &'a mut Block,
+    part: Part<'p>,
+}
+
+impl WithSimd for OnBlock<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { complete: &Complete { manipulator, mode, .. }, block, part } = self;
+        match part {
+            Part::Tau(leg, section) => block.find_tau_before(manipulator, mode, leg, section),
+            Part::Demand(constraint, values) => block.demand(manipulator, constraint, values),
+            Part::Zeros { function, values, sign, coordinate } => {
+                let home = manipulator.home[coordinate];
+                block.take_zeros(function, values, sign, home, coordinate);
+            }
+            Part::Joint(joint, sign) => block.take_joint(manipulator, joint, sign),
         }
     }
 }
