@@ -212,11 +212,7 @@ impl<'a> Rows<'a> {
         answers: [bool; 2],
         mode: &str,
     ) -> Result<(), Stop> {
-        writer.numbers(self.time.as_slice())?;
-        writer.numbers(pose)?;
-        writer.cells(&self.dependent)?;
-        answers.iter().try_for_each(|&answer| writer.answer(answer))?;
-        writer.text(mode)?;
+        pose_table::begin(writer, self.time, pose, &self.dependent, answers, mode)?;
         writer.cells(&self.cells)?;
         Ok(writer.end()?)
     }

@@ -9,9 +9,27 @@ use crate::text::{count, short};
 use crate::unitless::Plausible;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
+use opm_mcap::csv::Rows;
 use serde::Serialize;
+use std::io;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
+
+/// Begins a row about a pose: its time if it has one, its coordinates, whether it is in reach and within limits, and the mode.
+pub fn begin(
+    rows: &mut Rows<'_>,
+    time: Option<f64>,
+    pose: &[f64],
+    dependent: &[Option<f64>],
+    answers: [bool; 2],
+    mode: &str,
+) -> io::Result<()> {
+    rows.numbers(time.as_slice())?;
+    rows.numbers(pose)?;
+    rows.cells(dependent)?;
+    answers.iter().try_for_each(|&answer| rows.answer(answer))?;
+    rows.text(mode)
+}
 
 /// The totals of a table.
 #[derive(Debug, Serialize)]

@@ -98,7 +98,7 @@ fn off(m: &Manipulator, coordinate: usize, a: f64, b: f64) -> f64 {
     }
 }
 
-/// What rounding adds to a residual where the joints are hundreds of sizes away from the origin.
+/// The residual that rounding may leave where the joints are tens of sizes away from the origin.
 fn rounding(m: &Manipulator) -> f64 {
     let points = m.mechanism().joints().map(|joint| joint.point);
     let distances = points.chain([m.mechanism().platform]).map(|point| point.coords.norm());

@@ -59,11 +59,7 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> 
         reachable += u64::from(reached);
         within_limits += u64::from(within);
         let rows = &mut stream.rows;
-        rows.numbers(time.as_slice())?;
-        rows.numbers(pose)?;
-        rows.cells(&dependent)?;
-        [reached, within].iter().try_for_each(|&answer| rows.answer(answer))?;
-        rows.text(&mode_text)?;
+        pose_table::begin(rows, time, pose, &dependent, [reached, within], &mode_text)?;
         rows.cells(&cells)?;
         Ok(rows.end()?)
     })?;

@@ -362,8 +362,8 @@ impl Chain {
     }
 
     /// The joints' displacements that move the outer link by `target`, with a known displacement of the first joint, and
-    /// their branch: cheaper than to solve for it. `None` where the chain closes with no displacement nearer than
-    /// `within`, in radians, and for all but spherical chains.
+    /// their branch: cheaper than to solve for it. `None` where that displacement misses one with which the chain closes by
+    /// more than `within` radians, and for chains that are not spherical.
     #[inline(always)]
     pub(crate) fn completed(
         &self,

@@ -66,7 +66,7 @@ use search::Search;
 /// The largest residual of an assembly, in radians and shares of the mechanism's size, where the joints are
 /// exactly in their subspaces. A candidate with a larger residual does not close, and is rejected. Where joints
 /// miss their subspaces by a [`deviation`](crate::decomposition::Decomposition::deviation), legs close to some
-/// multiple of that at best; where axes are hundreds of sizes away from the origin, to the rounding of these distances.
+/// multiple of that at best; where axes are tens of sizes away from the origin, to the rounding of these distances.
 pub const RESIDUAL: f64 = 1e-12;
 
 /// The largest residual in multiples of the deviation: what six joints add up to, with a margin.

@@ -111,7 +111,8 @@ impl SphericalChain {
         // The third axis is at the angle θ from where it is nearest to a₁.
         let (_, u, v) = about_second(&apply(target, &self.axes[2]));
         let theta = Complex::new(u * over_second, v * over_second);
-        // So is the direction that a₂ × a₃ has at home, but for the third joint's rotation.
+        // The third joint rotates b = a₂ × a₃. Rotated back by θ, its components along b and along a₃ × b at home tell by how
+        // much.
         let (along, u, v) = about_second(&apply(target, &self.beside_third));
         let (u, v) = (u * theta.re + v * theta.im, v * theta.re - u * theta.im);
         [

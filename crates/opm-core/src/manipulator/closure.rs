@@ -80,7 +80,7 @@ impl LegJoint {
 
 impl Closure {
     pub fn new(mechanism: &Mechanism) -> Self {
-        /// The rounding of some ten products, as a share of the longest distance.
+        /// The rounding of some ten products as a share of the longest distance, with a margin.
         const ROUNDING: f64 = 256.0 * f64::EPSILON;
         let legs: Vec<_> = mechanism
             .legs

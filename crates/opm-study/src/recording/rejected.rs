@@ -24,7 +24,7 @@ const COLORS: [[u8; 3]; 7] = [
 ];
 
 /// The colour of a numbered class of points: a cause that rejects them, or the aspect that they are in. Number 0 are
-/// points of several or of none. After seven numbers the next seven are darker; then they repeat.
+/// points of several or of none. The colours of 8 to 14 are darker ones of 1 to 7; from 15 on, they are those of 1 to 14.
 pub fn class_color(number: usize) -> [u8; 3] {
     match number.checked_sub(1) {
         None => SEVERAL,
