@@ -119,25 +119,39 @@ impl<'a> Distances<'a> {
     }
 
     /// Whether two shapes of a pair are at least this far apart, in units of the mechanism's size.
-    pub(crate) fn are_apart(&self, [one, other]: [usize; 2], least: f64) -> bool {
-        self.between(one, other, least) >= least
+    pub(crate) fn are_apart(&self, shapes: [usize; 2], least: f64) -> bool {
+        self.interference.between(&self.ends, shapes, least) >= least
+    }
+
+    /// The ends of every capsule, in units of the mechanism's size; unused for other shapes.
+    pub(crate) fn ends(&self) -> &[[Vector; 2]] {
+        &self.ends
+    }
+
+    fn scaled_below(&self, pair: usize, most: f64) -> f64 {
+        self.interference.distance_below(&self.ends, pair, most)
+    }
+}
+
+impl Interference {
+    /// The signed distance of a pair, metres, where the ends of every capsule are given.
+    pub(crate) fn distance(&self, ends: &[[Vector; 2]], pair: usize) -> f64 {
+        self.distance_below(ends, pair, f64::INFINITY) * self.unit
     }
 
     /// The distance of a pair, in units of the mechanism's size, if it is below `most`; else some number that is not.
-    fn scaled_below(&self, pair: usize, most: f64) -> f64 {
-        let shapes = self.interference.pairs[pair].shapes.iter();
-        shapes.fold(f64::INFINITY, |least, &[one, other]| {
-            least.min(self.between(one, other, least.min(most)))
+    fn distance_below(&self, ends: &[[Vector; 2]], pair: usize, most: f64) -> f64 {
+        let shapes = self.pairs[pair].shapes.iter();
+        shapes.fold(f64::INFINITY, |least, &pair| {
+            least.min(self.between(ends, pair, least.min(most)))
         })
     }
 
     /// The same for two shapes, of which the first one is a capsule.
-    fn between(&self, one: usize, other: usize, most: f64) -> f64 {
-        let shapes = &self.interference.shapes;
+    fn between(&self, ends: &[[Vector; 2]], [one, other]: [usize; 2], most: f64) -> f64 {
+        let shapes = &self.shapes;
         let capsule = |number: usize| match &shapes[number] {
-            Shape::Capsule { radius, .. } => {
-                Some(Capsule { ends: self.ends[number], radius: *radius })
-            }
+            Shape::Capsule { radius, .. } => Some(Capsule { ends: ends[number], radius: *radius }),
             Shape::Box { .. } | Shape::HalfSpace { .. } => None,
         };
         let Some(one) = capsule(one) else { return f64::INFINITY };

@@ -4,17 +4,25 @@
 //! [`Trajectory`](opm_core::trajectory), its value and its slope are computed at each sample. Where it crosses the clearance
 //! between two samples, the time is found by bisection; where it falls at the first sample and rises at the second, its
 //! lowest value by a golden-section search, and then both crossings. So these are all contacts, unless a distance falls and
-//! rises several times between two samples.
+//! rises several times between two samples. Most pairs are far apart at most samples: [`moved`] says when they are measured.
+
+mod moved;
 
 use crate::distances::{Distances, Nearest};
+use moved::Moved;
 use opm_core::manipulator::{Manipulator, Mode, PoseError, Solution};
 use opm_core::motion::{Instant, PlatformMotion};
+use parry3d_f64::math::Vector;
 
 /// The accuracy of times, as a share of the step between two samples.
 const RESOLUTION: f64 = 1e-10;
 
 /// Slopes are differences over this share of the step; only their signs matter.
 const SLOPE_STEP: f64 = 1e-3;
+
+/// What is nearer by less than this, as a share of the mechanism's size, is as near: distances of pairs that keep theirs differ
+/// by rounding.
+const NO_NEARER: f64 = 1e-9;
 
 /// The number of steps of a golden-section search, which shrink the interval to 1e-8 of its length.
 const STEPS: usize = 39;
@@ -55,6 +63,7 @@ pub struct Watch<'a> {
     distances: Distances<'a>,
     solver: Solver,
     last: Option<Sampled>,
+    moved: Moved,
     open: Vec<Option<Contact>>,
     found: Vec<Contact>,
     nearest: Option<(Nearest, f64)>,
@@ -66,25 +75,36 @@ struct Solver {
     solution: Solution,
 }
 
+/// The ends of every capsule, in units of the mechanism's size.
+type Ends = Vec<[Vector; 2]>;
+
 /// A sample in reach.
-#[derive(Clone)]
 struct Sampled {
     time: f64,
     solution: Solution,
-    /// The distance of every pair less the clearance, metres.
-    levels: Vec<f64>,
-    /// The slopes after and before the sample; NaN where the pose beside it is out of reach.
-    slopes: [Vec<f64>; 2],
+    ends: Ends,
+    /// A little after and before the sample; `None` where that is not part of the motion, or out of reach.
+    after: Option<Beside>,
+    before: Option<Beside>,
+}
+
+/// A pose beside a sample.
+struct Beside {
+    /// How much later it is, seconds.
+    by: f64,
+    ends: Ends,
 }
 
 impl<'a> Watch<'a> {
     /// Prepares to watch a motion; `distances` are working memory for the manipulator's pairs.
     pub fn new(of: Watched<'a>, distances: Distances<'a>) -> Self {
-        let pairs = distances.interference().pairs();
+        let interference = distances.interference();
+        let open = vec![None; interference.pairs()];
+        let moved = Moved::new(interference);
         let instant = Instant::new(of.manipulator.task_coordinates().len());
         let solver = Solver { instant, solution: of.manipulator.solution() };
-        let (last, nearest) = (None, None);
-        Self { of, distances, solver, last, open: vec![None; pairs], found: Vec::new(), nearest }
+        let (last, found, nearest) = (None, Vec::new(), None);
+        Self { of, distances, solver, last, moved, open, found, nearest }
     }
 
     /// Takes the next sample: its time, seconds, the step to its neighbours, and its solution if it is in reach.
@@ -101,29 +121,30 @@ impl<'a> Watch<'a> {
             self.close_all();
             return Ok(());
         };
-        let slope = |watch: &mut Self, by: f64, levels: &[f64]| -> Result<Vec<f64>, PoseError> {
-            let beside = watch.levels_at(time + by, solution)?;
-            Ok(match beside {
-                Some(beside) => beside.iter().zip(levels).map(|(b, a)| (b - a) / by).collect(),
-                None => vec![f64::NAN; levels.len()],
-            })
-        };
-        self.distances.place(self.of.manipulator, solution);
-        let levels = self.levels();
-        let by = SLOPE_STEP * step;
-        let none = || vec![f64::NAN; levels.len()];
-        let after =
-            if time + by < self.of.motion.end() { slope(self, by, &levels)? } else { none() };
-        let before = if self.last.is_some() { slope(self, -by, &levels)? } else { none() };
-        let slopes = [after, before];
-        let sampled = Sampled { time, solution: solution.clone(), levels, slopes };
         let last = self.last.take();
+        let by = SLOPE_STEP * step;
+        let ahead = time + by < self.of.motion.end();
+        let after = if ahead { self.beside(time, by, solution)? } else { None };
+        let before = if last.is_some() { self.beside(time, -by, solution)? } else { None };
+        self.distances.place(self.of.manipulator, solution);
+        let ends = self.distances.ends().to_vec();
+        let sampled = Sampled { time, solution: solution.clone(), ends, after, before };
+        if let Some(last) = &last {
+            self.moved.add(self.distances.interference(), last, &sampled);
+        }
         for pair in 0..self.open.len() {
-            match &last {
-                None => self.begin(pair, &sampled),
-                Some(last) => self.between(pair, last, &sampled)?,
+            let Some(last) = &last else {
+                let level = self.level(&sampled.ends, pair);
+                if level < 0.0 {
+                    self.open(pair, time);
+                }
+                self.measured(pair, time, level);
+                continue;
+            };
+            if !self.moved.is_far(self.distances.interference(), pair) {
+                let level = self.between(pair, last, &sampled)?;
+                self.measured(pair, time, level);
             }
-            self.note(pair, time, sampled.levels[pair]);
         }
         self.last = Some(sampled);
         Ok(())
@@ -145,8 +166,9 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn levels(&self) -> Vec<f64> {
-        (0..self.open.len()).map(|pair| self.distances.of(pair) - self.of.clearance).collect()
+    /// The distance of a pair less the clearance, metres.
+    fn level(&self, ends: &[[Vector; 2]], pair: usize) -> f64 {
+        self.distances.interference().distance(ends, pair) - self.of.clearance
     }
 
     /// Places the bodies at a time; `None` out of reach. Angles are those nearest to a solution.
@@ -160,21 +182,15 @@ impl<'a> Watch<'a> {
         Ok(Some(()))
     }
 
-    fn levels_at(&mut self, time: f64, near: &Solution) -> Result<Option<Vec<f64>>, PoseError> {
-        Ok(self.place(time, near)?.map(|()| self.levels()))
+    fn beside(&mut self, time: f64, by: f64, near: &Solution) -> Result<Option<Beside>, PoseError> {
+        let placed = self.place(time + by, near)?;
+        Ok(placed.map(|()| Beside { by, ends: self.distances.ends().to_vec() }))
     }
 
     /// The level of one pair at a time; infinite out of reach.
     fn level_at(&mut self, pair: usize, time: f64, near: &Solution) -> Result<f64, PoseError> {
         let placed = self.place(time, near)?;
-        Ok(placed.map_or(f64::INFINITY, |()| self.distances.of(pair) - self.of.clearance))
-    }
-
-    /// Opens a contact at the first sample, or the first one back in reach.
-    fn begin(&mut self, pair: usize, at: &Sampled) {
-        if at.levels[pair] < 0.0 {
-            self.open(pair, at.time);
-        }
+        Ok(placed.map_or(f64::INFINITY, |()| self.level(self.distances.ends(), pair)))
     }
 
     fn open(&mut self, pair: usize, start: f64) {
@@ -195,16 +211,29 @@ impl<'a> Watch<'a> {
         {
             (open.worst, open.distance) = (time, distance);
         }
-        if self.nearest.is_none_or(|(nearest, _)| distance < nearest.distance) {
+        if distance < self.nearest_yet() {
             self.nearest = Some((Nearest { pair, distance }, time));
         }
     }
 
-    /// Finds what happens to a pair between two samples.
-    fn between(&mut self, pair: usize, from: &Sampled, to: &Sampled) -> Result<(), PoseError> {
-        let (a, b) = (from.levels[pair], to.levels[pair]);
-        let dips = from.slopes[0][pair] < 0.0 && to.slopes[1][pair] > 0.0;
-        if dips {
+    /// The distance of the nearest pair up to now, metres.
+    fn nearest_yet(&self) -> f64 {
+        self.nearest.map_or(f64::INFINITY, |(nearest, _)| nearest.distance)
+    }
+
+    /// Notes the level of a pair at a sample, and from which distance on it counts again: below the clearance, and nearer
+    /// than the nearest pair.
+    fn measured(&mut self, pair: usize, time: f64, level: f64) {
+        self.note(pair, time, level);
+        let spare = level.min(level + self.of.clearance - self.nearest_yet());
+        let interference = self.distances.interference();
+        self.moved.measured(interference, pair, spare / interference.unit);
+    }
+
+    /// Finds what happens to a pair between two samples. Returns its level at the second one.
+    fn between(&mut self, pair: usize, from: &Sampled, to: &Sampled) -> Result<f64, PoseError> {
+        let [a, b] = [from, to].map(|sample| self.level(&sample.ends, pair));
+        if self.may_dip(pair, from, to, [a, b]) {
             let (time, level) = self.lowest(pair, from, to)?;
             if level < 0.0 && a >= 0.0 {
                 let start = self.crossing(pair, from, [from.time, time])?;
@@ -215,19 +244,38 @@ impl<'a> Watch<'a> {
                 let end = self.crossing(pair, from, [to.time, time])?;
                 self.close(pair, end);
             }
-            return Ok(());
-        }
-        if (a < 0.0) == (b < 0.0) {
-            return Ok(());
-        }
-        if b < 0.0 {
+        } else if a >= 0.0 && b < 0.0 {
             let start = self.crossing(pair, from, [from.time, to.time])?;
             self.open(pair, start);
-        } else {
+        } else if a < 0.0 && b >= 0.0 {
             let end = self.crossing(pair, from, [to.time, from.time])?;
             self.close(pair, end);
         }
-        Ok(())
+        Ok(b)
+    }
+
+    /// Whether a level falls at the first of two samples and rises at the second, and may get so low between them that it
+    /// counts.
+    fn may_dip(&self, pair: usize, from: &Sampled, to: &Sampled, [a, b]: [f64; 2]) -> bool {
+        let (Some(after), Some(before)) = (&from.after, &to.before) else { return false };
+        let slope = |beside: &Beside, at: f64| (self.level(&beside.ends, pair) - at) / beside.by;
+        let (falls, rises) = (slope(after, a), slope(before, b));
+        if !(falls < 0.0 && rises > 0.0) {
+            return false;
+        }
+        // A convex function stays above its tangents, so above the level where they meet. Twice as deep leaves room for others.
+        let until = ((b - a) - rises * (to.time - from.time)) / (falls - rises);
+        let lower = a.min(b);
+        let lowest = lower - 2.0 * (lower - (a + falls * until)).max(0.0);
+        // What is noted without a search: the samples, and what was found before for an open contact or for the nearest pair.
+        let noted = match (lower < 0.0, &self.open[pair]) {
+            (true, Some(contact)) => contact.distance.min(lower + self.of.clearance),
+            (true, None) => lower + self.of.clearance,
+            (false, _) => self.nearest_yet().min(lower + self.of.clearance),
+        };
+        let crosses = lowest < 0.0 && lower >= 0.0;
+        let unit = self.distances.interference().unit;
+        crosses || lowest + self.of.clearance < noted - NO_NEARER * unit
     }
 
     /// The time at which a level becomes negative, from a time at which it is not to one at which it is.
