@@ -107,8 +107,8 @@ impl Model<'_> {
         };
         let sides: Vec<Side> = ends.iter().map(side).collect();
         match sides.iter().filter(|side| side.half > 0.0).count() {
-            0..=1 => self.over::<1>(mode, &sides, sizes),
-            2 => self.over::<2>(mode, &sides, sizes),
+            // One alone is seldom, and hardly faster with a function of its own.
+            0..=2 => self.over::<2>(mode, &sides, sizes),
             3 => self.over::<3>(mode, &sides, sizes),
             _ => self.over::<MOST_WIDE>(mode, &sides, sizes),
         }

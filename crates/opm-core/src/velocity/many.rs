@@ -244,20 +244,19 @@ impl Conditions<'_> {
     #[inline(always)]
     fn combine<const N: usize>(&mut self) {
         let scale = self.query.length.recip();
-        let metric_at = |work: &Work, start: usize| {
-            Metric::new(&work.platform.chunk::<N, CHUNK>(&work.basis, start), scale)
-        };
-        let mut metric = metric_at(self.work, 0);
+        let mut metric = None;
         for start in (0..self.count).step_by(CHUNK) {
             // The platform's twist depends on the upper section alone.
-            if start > 0 && !self.batch.block.one_upper() {
-                metric = metric_at(self.work, start);
+            if metric.is_none() || !self.batch.block.one_upper() {
+                let Work { platform, basis, .. } = &*self.work;
+                metric = Some(Metric::new(&platform.chunk::<N, CHUNK>(basis, start), scale));
             }
+            let Some(metric) = &metric else { return };
             self.work.choice.fill(0);
             loop {
                 let (mask, any) = self.asked(start);
                 if any {
-                    let found = self.conditions::<N>(&metric, start);
+                    let found = self.conditions::<N>(metric, start);
                     self.admit(start, &mask, &found);
                 }
                 if !self.work.choose_next() {

@@ -105,19 +105,22 @@ impl<'m, const N: usize, const L: usize> Weighted<'m, N, L> {
                 *rate *= self.metric.scale;
             }
         }
-        if self.count == N {
-            // There are more rows than columns. Their triangular factor has the same singular values.
-            let rows = std::mem::replace(&mut self.joints, [[[0.0; L]; N]; N]);
-            for row in 0..N {
-                self.rotate_in(std::array::from_fn(|column| rows[column][row]));
-            }
-        }
         if self.count < N {
             for (column, rate) in self.joints.iter_mut().zip(rates) {
                 column[self.count] = rate;
             }
         } else {
-            self.rotate_in(rates);
+            // There are more rows than columns. Their triangular factor has the same singular values.
+            let before = if self.count == N { N } else { 0 };
+            let rows = self.joints;
+            if before > 0 {
+                self.joints = [[[0.0; L]; N]; N];
+            }
+            for row in 0..=before {
+                let last = row == before;
+                let next = std::array::from_fn(|j| if last { rates[j] } else { rows[j][row] });
+                self.rotate_in(next);
+            }
         }
         self.count += 1;
     }
