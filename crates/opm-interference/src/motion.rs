@@ -150,7 +150,8 @@ impl<'a> Watch<'a> {
         Ok(())
     }
 
-    /// The contacts in the order of time, and the nearest pair with its time, seconds.
+    /// The contacts in the order of time, and the nearest pair with its time, seconds: no pair comes nearer by more than 1e-9
+    /// of the mechanism's size.
     pub fn finish(mut self) -> (Vec<Contact>, Option<(Nearest, f64)>) {
         self.close_all();
         self.found.sort_by(|a, b| a.start.total_cmp(&b.start).then(a.pair.cmp(&b.pair)));
