@@ -3,8 +3,9 @@
 //! The distance of each pair is a continuous function of time. As with the gauges of a
 //! [`Trajectory`](opm_core::trajectory), its value and its slope are computed at each sample. Where it crosses the clearance
 //! between two samples, the time is found by bisection; where it falls at the first sample and rises at the second, its
-//! lowest value by a golden-section search, and then both crossings. So these are all contacts, unless a distance falls and
-//! rises several times between two samples. Most pairs are far apart at most samples: [`moved`] says when they are measured.
+//! lowest value by a golden-section search, and then both crossings. Most pairs are far apart at most samples: [`moved`] says
+//! when they are measured. So these are all contacts that are deeper than 1e-9 of the mechanism's size, if there are several
+//! samples in each period of the motion's highest frequency, and no distance falls and rises several times between two samples.
 
 mod moved;
 
@@ -17,12 +18,12 @@ use parry3d_f64::math::Vector;
 /// The accuracy of times, as a share of the step between two samples.
 const RESOLUTION: f64 = 1e-10;
 
-/// Slopes are differences over this share of the step; only their signs matter.
+/// Slopes are differences over this share of the step.
 const SLOPE_STEP: f64 = 1e-3;
 
-/// What is nearer by less than this, as a share of the mechanism's size, is as near: distances of pairs that keep theirs differ
-/// by rounding.
-const NO_NEARER: f64 = 1e-9;
+/// A distance that changes by less than this in a step, as a share of the mechanism's size, neither falls nor rises. Where two
+/// bodies keep their distance, it changes by rounding.
+const NO_CHANGE: f64 = 1e-9;
 
 /// The number of steps of a golden-section search, which shrink the interval to 1e-8 of its length.
 const STEPS: usize = 39;
@@ -150,8 +151,7 @@ impl<'a> Watch<'a> {
         Ok(())
     }
 
-    /// The contacts in the order of time, and the nearest pair with its time, seconds: no pair comes nearer by more than 1e-9
-    /// of the mechanism's size.
+    /// The contacts in the order of time, and the nearest pair with its time, seconds.
     pub fn finish(mut self) -> (Vec<Contact>, Option<(Nearest, f64)>) {
         self.close_all();
         self.found.sort_by(|a, b| a.start.total_cmp(&b.start).then(a.pair.cmp(&b.pair)));
@@ -222,8 +222,8 @@ impl<'a> Watch<'a> {
         self.nearest.map_or(f64::INFINITY, |(nearest, _)| nearest.distance)
     }
 
-    /// Notes the level of a pair at a sample, and from which distance on it counts again: below the clearance, and nearer
-    /// than the nearest pair.
+    /// Notes the level of a pair at a sample, and by how much that is above what counts: a contact, or the nearest pair's
+    /// distance.
     fn measured(&mut self, pair: usize, time: f64, level: f64) {
         self.note(pair, time, level);
         let spare = level.min(level + self.of.clearance - self.nearest_yet());
@@ -234,8 +234,12 @@ impl<'a> Watch<'a> {
     /// Finds what happens to a pair between two samples. Returns its level at the second one.
     fn between(&mut self, pair: usize, from: &Sampled, to: &Sampled) -> Result<f64, PoseError> {
         let [a, b] = [from, to].map(|sample| self.level(&sample.ends, pair));
-        if self.may_dip(pair, from, to, [a, b]) {
-            let (time, level) = self.lowest(pair, from, to)?;
+        let dip = if self.dips(pair, from, to, [a, b]) {
+            Some(self.lowest(pair, from, to)?).filter(|&(_, level)| level < a.min(b))
+        } else {
+            None
+        };
+        if let Some((time, level)) = dip {
             if level < 0.0 && a >= 0.0 {
                 let start = self.crossing(pair, from, [from.time, time])?;
                 self.open(pair, start);
@@ -255,28 +259,12 @@ impl<'a> Watch<'a> {
         Ok(b)
     }
 
-    /// Whether a level falls at the first of two samples and rises at the second, and may get so low between them that it
-    /// counts.
-    fn may_dip(&self, pair: usize, from: &Sampled, to: &Sampled, [a, b]: [f64; 2]) -> bool {
+    /// Whether a level falls at the first of two samples and rises at the second.
+    fn dips(&self, pair: usize, from: &Sampled, to: &Sampled, [a, b]: [f64; 2]) -> bool {
         let (Some(after), Some(before)) = (&from.after, &to.before) else { return false };
         let slope = |beside: &Beside, at: f64| (self.level(&beside.ends, pair) - at) / beside.by;
-        let (falls, rises) = (slope(after, a), slope(before, b));
-        if !(falls < 0.0 && rises > 0.0) {
-            return false;
-        }
-        // A convex function stays above its tangents, so above the level where they meet. Twice as deep leaves room for others.
-        let until = ((b - a) - rises * (to.time - from.time)) / (falls - rises);
-        let lower = a.min(b);
-        let lowest = lower - 2.0 * (lower - (a + falls * until)).max(0.0);
-        // What is noted without a search: the samples, and what was found before for an open contact or for the nearest pair.
-        let noted = match (lower < 0.0, &self.open[pair]) {
-            (true, Some(contact)) => contact.distance.min(lower + self.of.clearance),
-            (true, None) => lower + self.of.clearance,
-            (false, _) => self.nearest_yet().min(lower + self.of.clearance),
-        };
-        let crosses = lowest < 0.0 && lower >= 0.0;
-        let unit = self.distances.interference().unit;
-        crosses || lowest + self.of.clearance < noted - NO_NEARER * unit
+        let least = NO_CHANGE * self.distances.interference().unit / (to.time - from.time);
+        slope(after, a) < -least && slope(before, b) > least
     }
 
     /// The time at which a level becomes negative, from a time at which it is not to one at which it is.

@@ -3,9 +3,9 @@
 //! The distance of two members changes by no more than the ends of their capsules move. So a pair that was measured is left
 //! alone until its two members together have moved as far as it was away from what counts.
 //!
-//! Between two samples an end moves about as a cubic curve with the same velocities. With the velocities `v`, `w` at the two
-//! samples, the chord `c` and the time `h` between them, this curve stays within `|c| + h/3 max(|v|, |w|)` of its first
-//! point: it lies in the convex hull of its control points. Half of `h` instead of a third leaves room for other curves.
+//! Between two samples, a coordinate that is a convex or a concave function of time gets beyond its two values by no more than
+//! half of the step times the larger of its two speeds there: it stays on one side of its tangents. With several samples in
+//! each period of the motion, all coordinates are so in nearly all steps.
 
 use super::Sampled;
 use crate::Interference;
@@ -14,7 +14,7 @@ use crate::member::Shape;
 /// How far the members of a mechanism have moved along a motion, in units of the mechanism's size.
 #[derive(Clone, Debug)]
 pub(super) struct Moved {
-    /// The length of way of every member, at least that of each end of its capsules.
+    /// For every member, the sum over the steps of how far any end of its capsules got from where it was at the step's start.
     ways: Vec<f64>,
     /// The sum of the ways of a pair's members up to which the pair does not count.
     far_until: Vec<f64>,
@@ -50,7 +50,7 @@ impl Moved {
                         (before.ends[shape][end] - finish).length() / before.by.abs(),
                     ];
                     let chord = (finish - start).length();
-                    farthest = farthest.max(chord + 0.5 * step * speeds[0].max(speeds[1]));
+                    farthest = farthest.max(chord + 0.5 * step * (speeds[0] + speeds[1]));
                 }
             }
             *way += farthest;
