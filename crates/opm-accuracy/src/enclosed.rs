@@ -107,7 +107,7 @@ impl Model<'_> {
         };
         let sides: Vec<Side> = ends.iter().map(side).collect();
         match sides.iter().filter(|side| side.half > 0.0).count() {
-            // One alone is seldom, and hardly faster with a function of its own.
+            // One alone is seldom: it does not get a function of its own, which would take time to compile.
             0..=2 => self.over::<2>(mode, &sides, sizes),
             3 => self.over::<3>(mode, &sides, sizes),
             _ => self.over::<MOST_WIDE>(mode, &sides, sizes),

@@ -92,7 +92,7 @@ impl<'a> Distances<'a> {
     /// # Panics
     /// There is no pair of this number.
     pub fn of(&self, pair: usize) -> f64 {
-        self.scaled_below(pair, f64::INFINITY) * self.interference.unit
+        self.interference.distance(&self.ends, pair)
     }
 
     /// The nearest pair; the first one of several. `None` without pairs.
@@ -100,7 +100,7 @@ impl<'a> Distances<'a> {
         let mut nearest: Option<(usize, f64)> = None;
         for pair in 0..self.interference.pairs.len() {
             let below = nearest.map_or(f64::INFINITY, |(_, distance)| distance);
-            let distance = self.scaled_below(pair, below);
+            let distance = self.interference.distance_below(&self.ends, pair, below);
             if distance < below {
                 nearest = Some((pair, distance));
             }
@@ -113,7 +113,7 @@ impl<'a> Distances<'a> {
     pub fn nearer_than(&self, distance: f64) -> impl Iterator<Item = Nearest> + '_ {
         let unit = self.interference.unit;
         (0..self.interference.pairs.len()).filter_map(move |pair| {
-            let found = self.scaled_below(pair, distance / unit) * unit;
+            let found = self.interference.distance_below(&self.ends, pair, distance / unit) * unit;
             (found < distance).then_some(Nearest { pair, distance: found })
         })
     }
@@ -126,10 +126,6 @@ impl<'a> Distances<'a> {
     /// The ends of every capsule, in units of the mechanism's size; unused for other shapes.
     pub(crate) fn ends(&self) -> &[[Vector; 2]] {
         &self.ends
-    }
-
-    fn scaled_below(&self, pair: usize, most: f64) -> f64 {
-        self.interference.distance_below(&self.ends, pair, most)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Interference along a motion: when, which pair, and by how much; also between samples.
 //!
 //! The distance of each pair is a continuous function of time. As with the gauges of a
-//! [`Trajectory`](opm_core::trajectory), its value and its slope are computed at each sample. Where it crosses the clearance
-//! between two samples, the time is found by bisection; where it falls at the first sample and rises at the second, its
-//! lowest value by a golden-section search, and then both crossings. Most pairs are far apart at most samples: [`moved`] says
-//! when they are measured. So these are all contacts that are deeper than 1e-9 of the mechanism's size, if there are several
-//! samples in each period of the motion's highest frequency, and no distance falls and rises several times between two samples.
+//! [`Trajectory`](opm_core::trajectory), its value and its slope are computed at each sample at which it may matter
+//! ([`moved`]): most pairs are far apart most of the time. Where it crosses the clearance between two samples, the time is
+//! found by bisection; where it falls at the first sample and rises at the second, its lowest value by a golden-section
+//! search, and then both crossings. So these are all contacts that are deeper than 1e-9 of the mechanism's size, if there are
+//! several samples in each period of the motion's highest frequency, and no distance falls and rises several times between
+//! two samples.
 
 mod moved;
 

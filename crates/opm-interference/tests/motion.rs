@@ -2,7 +2,7 @@
 
 use nalgebra::{Unit, Vector3};
 use opm_core::mechanism::{Obstacle, ObstacleShape, examples, file};
-use opm_core::motion::{Harmonics, Path, PlatformMotion, Sinusoid};
+use opm_core::motion::{Harmonics, Instant, Path, PlatformMotion, Sinusoid};
 use opm_core::numeric::Quantity;
 use opm_core::{Manipulator, Trajectory};
 use opm_interference::{Contact, Distances, Interference, Watch, Watched};
@@ -117,6 +117,8 @@ fn check_contacts(manipulator: &Manipulator, motion: &PlatformMotion, rate: f64)
     let all = in_reach.iter().flat_map(|(_, of_pairs)| of_pairs);
     let Some(least) = all.copied().min_by(f64::total_cmp) else { return 0 };
     let mut contacts_seen = 0;
+    let mut instant = Instant::new(manipulator.task_coordinates().len());
+    let mut solution = manipulator.solution();
     // A clearance that some pairs do not keep all the time.
     for clearance in [0.0, least + 0.02 * manipulator.characteristic_length()] {
         let of = Watched { manipulator, motion, mode, clearance };
@@ -129,8 +131,20 @@ fn check_contacts(manipulator: &Manipulator, motion: &PlatformMotion, rate: f64)
         }
         let (contacts, nearest) = watch.finish();
         contacts_seen += contacts.len();
-        let (nearest, _) = nearest.unwrap();
+        let (nearest, time) = nearest.unwrap();
         assert!(nearest.distance < least + 1e-9, "{nearest:?}, not {least}");
+        // The distances that are told are those at the times that are told.
+        let worst = contacts.iter().map(|c| (c.pair, c.worst, c.distance));
+        for (pair, time, told) in worst.chain([(nearest.pair, time, nearest.distance)]) {
+            motion.at(time, &mut instant);
+            let found = manipulator.inverse(&instant.pose, mode, &mut solution).unwrap().unwrap();
+            distances.place(manipulator, found);
+            let distance = distances.of(pair);
+            assert!(
+                (distance - told).abs() < 1e-6,
+                "pair {pair} at {time}: {distance}, not {told}"
+            );
+        }
         for (time, of_pairs) in &in_reach {
             for (pair, distance) in of_pairs.iter().enumerate() {
                 let mut of_pair = contacts.iter().filter(|contact| contact.pair == pair);

@@ -251,7 +251,7 @@ impl Conditions<'_> {
                 let Work { platform, basis, .. } = &*self.work;
                 metric = Some(Metric::new(&platform.chunk::<N, CHUNK>(basis, start), scale));
             }
-            let Some(metric) = &metric else { return };
+            let metric = metric.as_ref().expect("that of the first chunk, at least");
             self.work.choice.fill(0);
             loop {
                 let (mask, any) = self.asked(start);

@@ -110,7 +110,8 @@ impl<'m, const N: usize, const L: usize> Weighted<'m, N, L> {
                 column[self.count] = rate;
             }
         } else {
-            // There are more rows than columns. Their triangular factor has the same singular values.
+            // There are more rows than columns. Their triangular factor has the same singular values. First it takes the rows
+            // that were added before; the one call for all of them is compiled once.
             let before = if self.count == N { N } else { 0 };
             let rows = self.joints;
             if before > 0 {

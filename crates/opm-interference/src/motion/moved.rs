@@ -4,8 +4,9 @@
 //! alone until its two members together have moved as far as it was away from what counts.
 //!
 //! Between two samples, a coordinate that is a convex or a concave function of time gets beyond its two values by no more than
-//! half of the step times the larger of its two speeds there: it stays on one side of its tangents. With several samples in
-//! each period of the motion, all coordinates are so in nearly all steps.
+//! half of the step times the larger of its two speeds there: it stays on one side of its tangents. So a point gets no farther
+//! from its first place than the chord and half of the step times the sum of its two speeds. With several samples in each
+//! period of the motion, all coordinates are convex or concave in nearly all steps.
 
 use super::Sampled;
 use crate::Interference;
