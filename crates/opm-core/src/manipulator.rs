@@ -64,6 +64,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
 use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
+use crate::numeric::four_wide::FourWide;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 pub(crate) use closure::ClosureBuffer;
@@ -74,7 +75,6 @@ pub(crate) use mode::Choices;
 use mode::ModeLayout;
 use nalgebra::Isometry3;
 use plan::Plan;
-use pulp::Arch;
 pub(crate) use solution::SolvedPose;
 use std::ops::Range;
 
@@ -164,8 +164,8 @@ pub struct Manipulator {
     pub(crate) plan: Result<Plan, NoClosedForm>,
     /// The legs' products of exponentials.
     pub(crate) closure: Closure,
-    /// The instructions of the processor at hand.
-    pub(crate) arch: Arch,
+    /// The instructions of the processor at hand, for one pose.
+    pub(crate) arch: FourWide,
 }
 
 impl Manipulator {
@@ -515,7 +515,7 @@ impl Compiled {
         let mut manipulator = Manipulator {
             plan: Plan::new(&task, &legs, closure.size),
             closure,
-            arch: Arch::new(),
+            arch: FourWide::new(),
             mechanism,
             decomposition,
             task,

@@ -4,6 +4,7 @@
 
 pub(crate) mod angle;
 pub(crate) mod extremes;
+pub(crate) mod four_wide;
 pub(crate) mod least_squares;
 pub mod number;
 mod quantity;

@@ -4,10 +4,11 @@ mod brackets;
 mod interval;
 mod tables;
 
+use crate::numeric::four_wide::FourWide;
 use brackets::InBrackets;
 use interval::{Bracket, Interval};
 use nalgebra::Complex;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 use tables::{POWERS, QUARTERS, Table};
 
 /// The highest degree: that of the polynomial of three conditions in a planar or a spherical section.
@@ -197,7 +198,7 @@ impl Trigonometric {
         // The factor (1 + t²)⁴ is at most 16, at the ends.
         let noise = 16.0 * NOISE * scale;
         let mut brackets: Vec<Bracket> = Vec::with_capacity(HALF);
-        let arch = Arch::new();
+        let arch = FourWide::new();
         for (half, on_half) in [1.0, -1.0].into_iter().zip(arch.dispatch(OnQuarters(self))) {
             for (quarter, low) in [-1.0, -0.5, 0.0, 0.5].into_iter().enumerate() {
                 let bernstein = on_half.map(|of_quarters| of_quarters[quarter]);

@@ -7,9 +7,10 @@ use crate::decomposition::mobility::frame;
 use crate::group::screw::Screw;
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointKind;
+use crate::numeric::four_wide::FourWide;
 use abreast::{Abreast, Products};
 use nalgebra::{Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 /// The legs' joints, for products of exponentials.
 #[derive(Clone, Debug)]
@@ -21,7 +22,7 @@ pub struct Closure {
     pub size: f64,
     /// The rounding of a residual. Products of exponentials lose more digits, the farther away the axes are from the origin.
     pub rounding: f64,
-    arch: Arch,
+    arch: FourWide,
 }
 
 /// The buffer of [`Closure::residual`] and [`Closure::settle`].
@@ -115,7 +116,7 @@ impl Closure {
             platform,
             size,
             rounding: ROUNDING * farthest / size,
-            arch: Arch::new(),
+            arch: FourWide::new(),
         }
     }
 
