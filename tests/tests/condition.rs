@@ -69,10 +69,11 @@ fn compare(
             let count = block.len() / width;
             let mut conditions = vec![0.0; count];
             let mut ranges = vec![NOTHING; manipulator.imaginary().len()];
-            let used = |number: usize, [low, high]: [f64; 2]| {
+            let mut used = |number: usize, [low, high]: [f64; 2]| {
                 ranges[number] = [ranges[number][0].min(low), ranges[number][1].max(high)];
             };
-            let open = manipulator.condition_many(block, &query, &mut batch, &mut conditions, used);
+            let open =
+                manipulator.condition_many(block, &query, &mut batch, &mut conditions, &mut used);
             let mut expected_ranges = vec![NOTHING; ranges.len()];
             for (i, pose) in block.chunks(width).enumerate() {
                 if open >> i & 1 == 1 {

@@ -136,7 +136,8 @@ impl Search<'_> {
         let m = self.manipulator;
         for mode in m.leg_modes(leg) {
             let branches = m.branches(mode, leg);
-            if let Ok(solution) = self.held.legs[leg].solve(m.task(), pose, rise, branches, 0.0) {
+            let solved = self.held.legs[leg].solve_seldom(m.task(), pose, rise, branches, 0.0);
+            if let Ok(solution) = solved {
                 let LegSolution { lower: displacements, upper, tau } = solution;
                 let error = self.section_error(&self.held.legs[leg].lower, &displacements);
                 let values = m.lower_values(leg, &displacements, tau);

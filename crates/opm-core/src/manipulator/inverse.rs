@@ -127,15 +127,13 @@ impl Manipulator {
         if self.dependent.is_some() && !self.displace_dependent(pose, mode, out, revolutions) {
             return Ok(false);
         }
-        self.arch.dispatch(Close { manipulator: self, pose: Some(pose), mode, out });
-        Ok(out.unreachable.is_empty())
+        Ok(Close { manipulator: self, pose: Some(pose), mode, out }.run())
     }
 
     /// Solves the legs and the lifts as [`Manipulator::close`] does, for the displacements `v` and `b` and the height that
     /// `out` holds, whatever the other coordinates are that it holds.
     pub(crate) fn close_displaced(&self, mode: Mode, out: &mut Solution) -> bool {
-        self.arch.dispatch(Close { manipulator: self, pose: None, mode, out });
-        out.unreachable.is_empty()
+        Close { manipulator: self, pose: None, mode, out }.run()
     }
 
     /// Takes a pose and its displacements. Where coordinates are dependent, `out` has all of them already.
@@ -448,11 +446,19 @@ struct Close<'a> {
     out: &'a mut Solution,
 }
 
+impl Close<'_> {
+    /// Returns whether the pose is in reach.
+    #[inline(never)]
+    fn run(self) -> bool {
+        self.manipulator.arch.dispatch(self)
+    }
+}
+
 impl WithSimd for Close<'_> {
-    type Output = ();
+    type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, _: S) -> bool {
         let Self { manipulator, pose, mode, out } = self;
         if let Some(pose) = pose {
             manipulator.displace(pose, out);
@@ -461,6 +467,7 @@ impl WithSimd for Close<'_> {
         if manipulator.task.height.is_some() {
             manipulator.write_lifts(out);
         }
+        out.unreachable.is_empty()
     }
 }
 

@@ -119,7 +119,7 @@ impl Manipulator {
         query: &ConditionQuery,
         batch: &mut ConditionBatch,
         conditions: &mut [f64],
-        mut used: impl FnMut(usize, [f64; 2]),
+        used: &mut dyn FnMut(usize, [f64; 2]),
     ) -> u64 {
         let count = conditions.len();
         let ConditionBatch { batch, work } = batch;
@@ -131,6 +131,7 @@ impl Manipulator {
         }
         batch.block.take(self, poses);
         let arch = batch.arch;
+        batch.block.displace(self, arch);
         arch.dispatch(Conditions { manipulator: self, query, count, batch, work });
         conditions.copy_from_slice(&work.conditions[..count]);
         for (number, &range) in work.ranges.iter().enumerate() {
@@ -202,9 +203,7 @@ impl Conditions<'_> {
     fn solve(&mut self) -> bool {
         let Self { manipulator, query, batch, work, .. } = self;
         let choices = query.mode.map_or_else(Choices::default, Choices::of);
-        let block = &mut *batch.block;
-        block.displace(manipulator);
-        block.lift(manipulator);
+        let (block, arch) = (&mut *batch.block, batch.arch);
         work.open = block.status.open;
         for column in &block.pose {
             for (open, value) in work.open.iter_mut().zip(column) {
@@ -219,7 +218,8 @@ impl Conditions<'_> {
         for number in 0..manipulator.legs.len() {
             let mut found = 0;
             for branches in manipulator.branches_of(choices, number) {
-                let mut reaches = block.reach(manipulator, number, branches, &mut work.open);
+                block.reach(manipulator, number, branches, arch);
+                let mut reaches = block.status.reaches(&mut work.open);
                 for lane in 0..LANES {
                     reaches[lane] &= lifted[lane];
                 }

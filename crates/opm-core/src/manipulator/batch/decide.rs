@@ -5,7 +5,7 @@ use super::lanes::{Column, LANES, Mask};
 use super::{Batch, Block, Status, section};
 use crate::manipulator::{Choices, CompiledLeg, Dependent, LegBranches, Manipulator, Mode};
 use crate::mechanism::leg::Section;
-use pulp::{Simd, WithSimd};
+use pulp::{Arch, Simd, WithSimd};
 
 /// What is known of the poses of a block.
 #[derive(Clone, Debug)]
@@ -90,7 +90,8 @@ impl Manipulator {
         }
         for choices in self.completions(mode).take_while(|_| together) {
             self.complete_block(choices.chosen, *arch, block);
-            arch.dispatch(Decide { manipulator: self, choices, block });
+            block.displace(self, *arch);
+            arch.dispatch(Decide { manipulator: self, choices, arch: *arch, block });
             let Decided { missed, open, imaginary } = &block.decided;
             for (lane, reached) in reached.iter_mut().enumerate() {
                 *reached |= missed[lane] | open[lane] == 0;
@@ -134,10 +135,35 @@ impl Manipulator {
     pub const DECIDED: usize = LANES;
 }
 
-/// Decides a block with the instructions of the processor at hand.
+/// Solves a branch of a leg, and finds out whether its joints are within their limits, with the instructions of the
+/// processor at hand.
+struct Reach<'a> {
+    manipulator: &'a Manipulator,
+    leg: usize,
+    branches: LegBranches,
+    arch: Arch,
+    block: &'a mut Block,
+}
+
+impl WithSimd for Reach<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { manipulator, leg, branches, arch, block } = self;
+        block.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+        block.solve_leg(manipulator, branches, leg, arch);
+        for section in [Section::Lower, Section::Upper] {
+            block.admit(manipulator, &manipulator.legs[leg], section, LANES);
+        }
+    }
+}
+
+/// Decides a displaced block with the instructions of the processor at hand.
 struct Decide<'a> {
     manipulator: &'a Manipulator,
     choices: Choices,
+    arch: Arch,
     block: &'a mut Block,
 }
 
@@ -146,12 +172,31 @@ impl WithSimd for Decide<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, choices, block } = self;
-        block.displace(manipulator);
-        block.lift(manipulator);
-        let Status { beyond, open, within_limits } = &block.status;
-        block.decided.open = *open;
-        for (lane, missed) in block.decided.missed.iter_mut().enumerate() {
+        self.block.decide(self.manipulator, self.choices, self.arch);
+    }
+}
+
+impl Status {
+    /// Whether a branch reaches each pose within the leg's limits. Marks in `open` where that is not known.
+    #[inline(always)]
+    pub fn reaches(&self, open: &mut Mask) -> Mask {
+        let mut reaches = [0; LANES];
+        for lane in 0..LANES {
+            let closes = self.beyond[lane] ^ 1;
+            reaches[lane] = closes & (self.open[lane] ^ 1) & self.within_limits[lane];
+            open[lane] |= closes & self.open[lane];
+        }
+        reaches
+    }
+}
+
+impl Block {
+    /// Decides a displaced block.
+    #[inline(always)]
+    fn decide(&mut self, manipulator: &Manipulator, choices: Choices, arch: Arch) {
+        let Status { beyond, open, within_limits } = &self.status;
+        self.decided.open = *open;
+        for (lane, missed) in self.decided.missed.iter_mut().enumerate() {
             *missed = beyond[lane] | (within_limits[lane] ^ 1);
         }
         let mut number = 0;
@@ -159,48 +204,34 @@ impl WithSimd for Decide<'_> {
             let mut reached = [0; LANES];
             let mut open = [0; LANES];
             for branches in manipulator.branches_of(choices, leg) {
-                let reaches = block.reach(manipulator, leg, branches, &mut open);
+                self.reach(manipulator, leg, branches, arch);
+                let reaches = self.status.reaches(&mut open);
                 for lane in 0..LANES {
                     reached[lane] |= reaches[lane];
                 }
                 if let Some(imaginary) = compiled.imaginary {
-                    block.note_imaginary(manipulator, number, imaginary, reaches);
+                    self.note_imaginary(manipulator, number, imaginary, reaches);
                     number += 1;
                 }
             }
             for lane in 0..LANES {
-                block.decided.missed[lane] |= (reached[lane] | open[lane]) ^ 1;
-                block.decided.open[lane] |= open[lane];
+                self.decided.missed[lane] |= (reached[lane] | open[lane]) ^ 1;
+                self.decided.open[lane] |= open[lane];
             }
         }
-        block.decided.imaginary.truncate(number);
+        self.decided.imaginary.truncate(number);
     }
-}
 
-impl Block {
-    /// Solves a branch of a leg. Returns whether it reaches each pose within the leg's limits, and marks in `open` where
-    /// that is not known.
-    #[inline(always)]
+    /// Solves a branch of a leg. The status tells which poses it reaches within the leg's limits.
+    #[inline(never)]
     pub fn reach(
         &mut self,
         manipulator: &Manipulator,
-        number: usize,
+        leg: usize,
         branches: LegBranches,
-        open: &mut Mask,
-    ) -> Mask {
-        self.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
-        self.solve_leg(manipulator, branches, number);
-        for section in [Section::Lower, Section::Upper] {
-            self.admit(manipulator, &manipulator.legs[number], section, LANES);
-        }
-        let Status { beyond, open: of_branch, within_limits } = &self.status;
-        let mut reaches = [0; LANES];
-        for lane in 0..LANES {
-            let closes = beyond[lane] ^ 1;
-            reaches[lane] = closes & (of_branch[lane] ^ 1) & within_limits[lane];
-            open[lane] |= closes & of_branch[lane];
-        }
-        reaches
+        arch: Arch,
+    ) {
+        arch.dispatch(Reach { manipulator, leg, branches, arch, block: self });
     }
 
     /// Notes whether a leg's joints of a section are within their limits.

@@ -71,7 +71,21 @@ impl Manipulator {
         }
         let Batch { arch, block, .. } = batch;
         block.take_rows(self.task.lower_count, first, second, others);
-        arch.dispatch(Reach { manipulator: self, branch, count: reached.len(), block });
+        match &branch.with_upper {
+            Some(b) => {
+                block.displace_only(self, Section::Lower, *arch);
+                (0..LANES).for_each(|lane| b.store(&mut block.b, lane));
+                block.reach(self, branch.leg, branch.branches, *arch);
+            }
+            None => {
+                arch.dispatch(ReachLower {
+                    manipulator: self,
+                    branch,
+                    count: reached.len(),
+                    block,
+                });
+            }
+        }
         let Status { beyond, open, within_limits } = &block.status;
         for (lane, reached) in reached.iter_mut().enumerate() {
             *reached = if beyond[lane] == 0 && open[lane] != 0 {
@@ -99,8 +113,8 @@ fn vectors(lanes: usize) -> usize {
 /// Fewer poses than this are asked for one by one: it takes longer to begin a block.
 const FEW: usize = 6;
 
-/// Solves a branch for a block of poses.
-struct Reach<'a> {
+/// Solves the lower section of a branch for a block of poses, with the instructions of the processor at hand.
+struct ReachLower<'a> {
     manipulator: &'a Manipulator,
     branch: &'a LegBranch,
     /// The number of poses.
@@ -108,7 +122,7 @@ struct Reach<'a> {
     block: &'a mut Block,
 }
 
-impl WithSimd for Reach<'_> {
+impl WithSimd for ReachLower<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -117,23 +131,10 @@ impl WithSimd for Reach<'_> {
         let lanes = vectors(count);
         block.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
         let leg = &manipulator.legs[branch.leg];
-        match &branch.with_upper {
-            Some(b) => {
-                block.displace_section(manipulator, Section::Lower, LANES);
-                for lane in 0..LANES {
-                    b.store(&mut block.b, lane);
-                }
-                block.solve_leg(manipulator, branch.branches, branch.leg);
-                block.admit(manipulator, leg, Section::Upper, LANES);
-            }
-            None => {
-                block.aim(manipulator, branch, Shared::AllButTwo, lanes);
-                let Block { shifted, lower, status, .. } = block;
-                let branch = branch.branches.lower;
-                section::solve_chain(&leg.lower.chain, branch, shifted, lower, lanes);
-                status.note(lower);
-            }
-        }
+        block.aim(manipulator, branch, Shared::AllButTwo, lanes);
+        let Block { shifted, lower, status, .. } = &mut *block;
+        section::solve_chain(&leg.lower.chain, branch.branches.lower, shifted, lower, lanes);
+        status.note(lower);
         block.admit(manipulator, leg, Section::Lower, lanes);
     }
 }

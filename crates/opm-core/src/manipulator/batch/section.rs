@@ -286,14 +286,18 @@ where
     {
         displacements.are_directions = matches!(displacement, JointDisplacement::Direction(_));
     }
-    for lane in 0..lanes.min(LANES) {
-        let Attempt { displacements, holds, beyond } =
-            chain.attempt(&C::Target::load(targets, lane), branch);
+    let mut take = |lane: usize, Attempt { displacements, holds, beyond }| {
         a.set(lane, displacements[0]);
         b.set(lane, displacements[1]);
         c.set(lane, displacements[2]);
         found.holds[lane] = u64::from(holds);
         found.beyond[lane] = u64::from(beyond);
+    };
+    if lanes == 1 {
+        return take(0, first);
+    }
+    for lane in 0..lanes.min(LANES) {
+        take(lane, chain.attempt(&C::Target::load(targets, lane), branch));
     }
 }
 

@@ -9,10 +9,10 @@ use crate::chain::ReachDeficit;
 use crate::chain::condition::Condition;
 use crate::chain::equation::AttemptedZero;
 use crate::group::{CylindricalDisplacement, Displacement, PlanarDisplacement, SubspaceKind};
-use crate::manipulator::batch::Block;
 use crate::manipulator::batch::lanes::{Column, LANES, Lane};
 use crate::manipulator::batch::section::{self, Side, Step};
-use crate::manipulator::{Manipulator, Mode, Section};
+use crate::manipulator::batch::{Block, SolveSection};
+use crate::manipulator::{CompiledLeg, Manipulator, Mode, Section};
 use crate::numeric::Quantity;
 use nalgebra::{Complex, Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
@@ -38,24 +38,24 @@ impl Complete<'_> {
             match &step.solution {
                 Closed::Constant { .. } => {}
                 Closed::Condition { constraint, coordinate, function } => {
-                    self.part(block, Part::Tau(constraint.leg, constraint.section));
+                    self.find_tau_before(block, constraint.leg, constraint.section);
                     for (place, values) in function.places().into_iter().zip(&mut values) {
                         block.pose[*coordinate].fill(place);
-                        self.part(block, Part::Demand(constraint, values));
+                        self.demand(block, constraint, values);
                     }
                     let (values, coordinate) = (&values, *coordinate);
                     self.part(block, Part::Zeros { function, values, sign, coordinate });
                 }
                 Closed::Joint(joint) => {
-                    self.part(block, Part::Tau(joint.leg, joint.section));
+                    self.find_tau_before(block, joint.leg, joint.section);
                     self.part(block, Part::Joint(joint, sign));
                 }
             }
         }
         for check in &dependent.checks {
-            self.part(block, Part::Tau(check.leg, check.section));
+            self.find_tau_before(block, check.leg, check.section);
             let [missed, ..] = &mut values;
-            self.part(block, Part::Demand(check, missed));
+            self.demand(block, check, missed);
             for (lane, &missed) in missed.iter().enumerate() {
                 let deficit = check.condition.deficit(missed);
                 let unit = if deficit.quantity == Quantity::Length { dependent.size } else { 1.0 };
@@ -65,6 +65,33 @@ impl Complete<'_> {
         }
     }
 
+    /// Finds the displacements τ of a leg along the intersection motion, where they follow from the section other than this
+    /// one; zeros otherwise.
+    fn find_tau_before(&self, block: &mut Block, number: usize, section: Section) {
+        let Self { manipulator, mode, arch, .. } = *self;
+        let leg = &manipulator.legs[number];
+        let joint = leg.imaginary_joint().filter(|_| follows(&manipulator.task, leg, section));
+        let Some(joint) = joint else {
+            block.tau.clear();
+            return;
+        };
+        let bridge = leg.split_section;
+        block.displace_only(manipulator, bridge, arch);
+        let Block { v, b, lower: found, status, .. } = &mut *block;
+        let target = if bridge == Section::Lower { &*v } else { &*b };
+        let branch = manipulator.branches(mode, number).of(bridge);
+        let section = leg.section(bridge);
+        SolveSection { section, branch, target, found, lanes: LANES }.run(arch);
+        status.note(found);
+        self.part(block, Part::Tau(leg, joint));
+    }
+
+    /// Computes the values of a constraint's condition at the present poses.
+    fn demand(&self, block: &mut Block, constraint: &Constraint, values: &mut Column) {
+        block.displace_only(self.manipulator, constraint.section, self.arch);
+        self.part(block, Part::Demand(constraint, values));
+    }
+
     fn part(&self, block: &mut Block, part: Part<'_>) {
         self.arch.dispatch(OnBlock { complete: self, block, part });
     }
@@ -72,8 +99,8 @@ impl Complete<'_> {
 
 /// A part of the work. Several steps need the same part, of which there is one copy for each set of instructions.
 enum Part<'a> {
-    /// See [`Block::find_tau_before`].
-    Tau(usize, Section),
+    /// See [`Block::take_tau`].
+    Tau(&'a CompiledLeg, usize),
     /// See [`Block::demand`].
     Demand(&'a Constraint, &'a mut Column),
     /// See [`Block::take_zeros`].
@@ -94,9 +121,9 @@ impl WithSimd for OnBlock<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { complete: &Complete { manipulator, mode, .. }, block, part } = self;
+        let Self { complete: &Complete { manipulator, .. }, block, part } = self;
         match part {
-            Part::Tau(leg, section) => block.find_tau_before(manipulator, mode, leg, section),
+            Part::Tau(leg, joint) => block.take_tau(leg, joint),
             Part::Demand(constraint, values) => block.demand(manipulator, constraint, values),
             Part::Zeros { function, values, sign, coordinate } => {
                 let home = manipulator.home[coordinate];
@@ -108,41 +135,22 @@ impl WithSimd for OnBlock<'_, '_> {
 }
 
 impl Block {
-    /// Finds the displacements τ of a leg along the intersection motion, where they follow from the section other than this
-    /// one; zeros otherwise.
+    /// Takes the displacements τ of a leg along the intersection motion from joint number `joint` of the section that was
+    /// solved last.
     #[inline(always)]
-    fn find_tau_before(
-        &mut self,
-        manipulator: &Manipulator,
-        mode: Mode,
-        number: usize,
-        section: Section,
-    ) {
-        let leg = &manipulator.legs[number];
-        let joint = leg.imaginary_joint().filter(|_| follows(&manipulator.task, leg, section));
-        let Some(joint) = joint else {
-            self.tau.clear();
-            return;
-        };
-        let bridge = leg.split_section;
-        self.displace_section(manipulator, bridge, LANES);
-        let branch = manipulator.branches(mode, number).of(bridge);
-        let Self { v, b, lower, tau, status, .. } = self;
-        let target = if bridge == Section::Lower { &*v } else { &*b };
-        section::solve(leg.section(bridge), branch, target, lower, LANES);
-        status.note(lower);
-        section::unwind(leg.unwinds, &lower.displacements[joint], tau);
-        if bridge == Section::Lower {
+    fn take_tau(&mut self, leg: &CompiledLeg, joint: usize) {
+        let Self { lower: found, tau, .. } = self;
+        section::unwind(leg.unwinds, &found.displacements[joint], tau);
+        if leg.split_section == Section::Lower {
             section::invert(tau);
         }
     }
 
-    /// Computes the values of a constraint's condition at the present poses.
+    /// Computes the values of a constraint's condition at the displacements of its section.
     #[inline(always)]
     fn demand(&mut self, manipulator: &Manipulator, constraint: &Constraint, values: &mut Column) {
         let Constraint { leg, section, condition } = constraint;
         let task = &manipulator.task;
-        self.displace_section(manipulator, *section, LANES);
         let Self { v, b, shifted, tau, .. } = self;
         let (own, kind) = match section {
             Section::Lower => (&*v, task.lower.kind),
