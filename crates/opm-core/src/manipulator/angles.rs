@@ -4,7 +4,7 @@
 use crate::numeric::angle::atan2_of_each;
 use nalgebra::Complex;
 
-/// The number of angles that are computed together: as many as fit into the widest vector.
+/// The number of angles that are computed together: those of a few of the processor's vectors.
 const TOGETHER: usize = 8;
 
 /// The number of vectors of directions that there is room for.

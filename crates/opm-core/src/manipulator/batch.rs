@@ -166,7 +166,8 @@ impl Manipulator {
             let rows = poses.len() / width;
             let refused =
                 |(row, error): (usize, PoseError)| BatchError::Pose { row: first + row, error };
-            if !batch.block.take(self, poses) {
+            let arch = batch.arch;
+            if !batch.block.take(self, poses, arch) {
                 self.check(poses).map_err(refused)?;
             }
             let mut block_output = BatchOutput {
@@ -176,9 +177,8 @@ impl Manipulator {
                 within_limits: &mut out.within_limits[first..][..rows],
             };
             let (block, out) = (&mut *batch.block, &mut block_output);
-            self.complete_block(mode, batch.arch, block);
-            block.displace(self, batch.arch);
-            let arch = batch.arch;
+            self.complete_block(mode, arch, block);
+            block.displace(self, arch);
             arch.dispatch(Solve { manipulator: self, mode, arch, block, out });
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];

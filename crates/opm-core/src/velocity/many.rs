@@ -129,8 +129,8 @@ impl Manipulator {
         if count == 0 {
             return u64::MAX;
         }
-        batch.block.take(self, poses);
         let arch = batch.arch;
+        batch.block.take(self, poses, arch);
         batch.block.displace(self, arch);
         arch.dispatch(Conditions { manipulator: self, query, count, batch, work });
         conditions.copy_from_slice(&work.conditions[..count]);

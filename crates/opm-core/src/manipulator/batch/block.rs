@@ -1,4 +1,5 @@
-//! A block of poses, and the steps of inverse kinematics for all of them: every step is a loop over the block.
+//! A block of poses, and the steps of inverse kinematics for all of them. A step is a loop over the block, or done once
+//! for what all poses have in common.
 
 use super::BatchOutput;
 use super::decide::Decided;
@@ -27,8 +28,8 @@ pub struct Block {
     pub pose: Vec<Column>,
     pub v: Displacements,
     pub b: Displacements,
-    /// The number of poses for which the upper section is computed: one if they all have its coordinates in common,
-    /// otherwise all.
+    /// The number of poses for which the upper section is computed: one if they all have its coordinates in common
+    /// ([`Block::displace`] finds out), otherwise all.
     pub upper_lanes: usize,
     pub lower: Found,
     pub upper: Found,
@@ -81,7 +82,7 @@ impl WithSimd for Take<'_> {
 }
 
 /// Computes the displacements of a block with the instructions of the processor at hand. There is one copy of this work
-/// for each set of instructions, which all tasks use.
+/// for each set of instructions, which several tasks use.
 struct Displace<'a> {
     manipulator: &'a Manipulator,
     /// The only section, or (`None`) both and the lifts.
@@ -104,8 +105,9 @@ impl WithSimd for Displace<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, section, block } = self;
         let task = &manipulator.task;
-        block.upper_lanes = LANES;
-        if section.is_none() {
+        if section.is_some() {
+            block.upper_lanes = LANES;
+        } else {
             if manipulator.dependent.is_some() {
                 // Some of the angles were not known before.
                 block.leave_large(manipulator);
@@ -161,7 +163,7 @@ impl WithSimd for SolveSection<'_> {
 }
 
 impl Block {
-    pub fn new(manipulator: &Manipulator) -> Self {
+    pub(super) fn new(manipulator: &Manipulator) -> Self {
         let columns = |count: usize| vec![[0.0; LANES]; count];
         let none = [0; LANES];
         Self {
@@ -182,15 +184,14 @@ impl Block {
 
     /// Copies poses into the block, and fills its remaining lanes with the last one. Returns whether all coordinates are
     /// numbers that are not too large.
-    pub fn take(&mut self, manipulator: &Manipulator, poses: &[f64]) -> bool {
-        manipulator.arch.dispatch(Take { manipulator, poses, block: self })
+    pub fn take(&mut self, manipulator: &Manipulator, poses: &[f64], arch: Arch) -> bool {
+        arch.dispatch(Take { manipulator, poses, block: self })
     }
 
     /// Begins with the poses of the block: nothing is known of them, but that angles of many revolutions are not solved
     /// together.
     #[inline(always)]
     pub fn begin(&mut self, manipulator: &Manipulator) {
-        self.upper_lanes = LANES;
         self.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
         self.leave_large(manipulator);
     }
@@ -231,7 +232,7 @@ impl Block {
 
     /// Writes the block's results to rows, including the rows that are still open.
     #[inline(always)]
-    pub fn give(&self, out: &mut BatchOutput<'_>) {
+    pub(super) fn give(&self, out: &mut BatchOutput<'_>) {
         write_rows(&self.joints, out.joints);
         write_rows(&self.imaginary, out.imaginary);
         let (joints, imaginary) = (self.joints.len(), self.imaginary.len());
@@ -247,7 +248,7 @@ impl Block {
     }
 
     /// Whether a row has to be solved by [`Manipulator::inverse`].
-    pub fn is_open(&self, row: usize) -> bool {
+    pub(super) fn is_open(&self, row: usize) -> bool {
         self.status.open[row] != 0 && self.status.beyond[row] == 0
     }
 
@@ -256,7 +257,7 @@ impl Block {
         Displace { manipulator, section: None, block: self }.run(arch);
     }
 
-    /// Computes the displacements of one section.
+    /// Computes the displacements of one section; those of the other one stay as they are.
     pub fn displace_only(&mut self, manipulator: &Manipulator, section: Section, arch: Arch) {
         Displace { manipulator, section: Some(section), block: self }.run(arch);
     }
@@ -273,6 +274,7 @@ impl Block {
     }
 
     /// The displacement of the upper section where all poses have its coordinates in common.
+    // Inlined, it would be compiled for every set of instructions.
     #[inline(never)]
     fn common_upper(&self, task: &Task) -> Displacement {
         let mut common = [0.0; MOST_OF_SECTION];
@@ -343,7 +345,7 @@ impl Block {
 
     /// Computes the values of a leg's joints.
     #[inline(always)]
-    pub fn report(&mut self, manipulator: &Manipulator, leg: &CompiledLeg) {
+    pub(super) fn report(&mut self, manipulator: &Manipulator, leg: &CompiledLeg) {
         for (section, found) in [(&leg.lower, &self.lower), (&leg.upper, &self.upper)] {
             for (coordinate, displacements) in section.coordinates.iter().zip(&found.displacements)
             {
@@ -367,7 +369,7 @@ impl Block {
 
 /// The columns of a section's coordinates without its height, of zeros beyond the last, and their values at home.
 #[inline(always)]
-pub fn columns_of<'p>(
+pub(super) fn columns_of<'p>(
     task: &Task,
     section: Section,
     pose: &'p [Column],
@@ -380,6 +382,18 @@ pub fn columns_of<'p>(
 }
 
 impl Status {
+    /// Whether a branch reaches each pose within the leg's limits. Marks in `open` where that is not known.
+    #[inline(always)]
+    pub fn reaches(&self, open: &mut Mask) -> Mask {
+        let mut reaches = [0; LANES];
+        for lane in 0..LANES {
+            let closes = self.beyond[lane] ^ 1;
+            reaches[lane] = closes & (self.open[lane] ^ 1) & self.within_limits[lane];
+            open[lane] |= closes & self.open[lane];
+        }
+        reaches
+    }
+
     /// Records a chain's result. It is ignored for poses to which an earlier chain's general case did not
     /// apply.
     #[inline(always)]

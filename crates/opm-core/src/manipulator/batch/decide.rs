@@ -86,7 +86,7 @@ impl Manipulator {
         let mut alone = [u64::from(!together); LANES];
         reached.fill(false);
         if together {
-            block.take(self, poses);
+            block.take(self, poses, *arch);
         }
         for choices in self.completions(mode).take_while(|_| together) {
             self.complete_block(choices.chosen, *arch, block);
@@ -176,20 +176,6 @@ impl WithSimd for Decide<'_> {
     }
 }
 
-impl Status {
-    /// Whether a branch reaches each pose within the leg's limits. Marks in `open` where that is not known.
-    #[inline(always)]
-    pub fn reaches(&self, open: &mut Mask) -> Mask {
-        let mut reaches = [0; LANES];
-        for lane in 0..LANES {
-            let closes = self.beyond[lane] ^ 1;
-            reaches[lane] = closes & (self.open[lane] ^ 1) & self.within_limits[lane];
-            open[lane] |= closes & self.open[lane];
-        }
-        reaches
-    }
-}
-
 impl Block {
     /// Decides a displaced block.
     #[inline(always)]
@@ -222,7 +208,8 @@ impl Block {
         self.decided.imaginary.truncate(number);
     }
 
-    /// Solves a branch of a leg. The status tells which poses it reaches within the leg's limits.
+    /// Solves a branch of a leg. The status, of which nothing is kept, tells which poses it reaches within the leg's limits.
+    // Inlined, it would be compiled once more in every task.
     #[inline(never)]
     pub fn reach(
         &mut self,

@@ -159,7 +159,6 @@ impl Block {
     /// Takes poses of a section of so many coordinates: the first and second ones, and those that they share. The remaining
     /// lanes are filled with the last pose.
     fn take_rows(&mut self, width: usize, first: &[f64], second: &[f64], others: &[f64]) {
-        self.upper_lanes = LANES;
         for (column, values) in self.pose[..width].iter_mut().zip([first, second]) {
             column[..values.len()].copy_from_slice(values);
             column[values.len()..].fill(values.last().copied().unwrap_or_default());

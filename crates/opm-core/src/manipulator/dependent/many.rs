@@ -80,8 +80,8 @@ impl Complete<'_> {
         let Block { v, b, lower: found, status, .. } = &mut *block;
         let target = if bridge == Section::Lower { &*v } else { &*b };
         let branch = manipulator.branches(mode, number).of(bridge);
-        let section = leg.section(bridge);
-        SolveSection { section, branch, target, found, lanes: LANES }.run(arch);
+        let bridge = leg.section(bridge);
+        SolveSection { section: bridge, branch, target, found, lanes: LANES }.run(arch);
         status.note(found);
         self.part(block, Part::Tau(leg, joint));
     }
@@ -135,8 +135,8 @@ impl WithSimd for OnBlock<'_, '_> {
 }
 
 impl Block {
-    /// Takes the displacements τ of a leg along the intersection motion from joint number `joint` of the section that was
-    /// solved last.
+    /// Takes the displacements τ of a leg along the intersection motion from joint number `joint` of its section with the
+    /// imaginary joint, whose solution is in `lower`, whichever section it is.
     #[inline(always)]
     fn take_tau(&mut self, leg: &CompiledLeg, joint: usize) {
         let Self { lower: found, tau, .. } = self;
