@@ -208,7 +208,7 @@ impl Block {
         self.decided.imaginary.truncate(number);
     }
 
-    /// Solves a branch of a leg. The status, of which nothing is kept, tells which poses it reaches within the leg's limits.
+    /// Solves a branch of a leg. The status begins anew, and tells which poses the branch reaches within the leg's limits.
     // Inlined, it would be compiled once more in every task.
     #[inline(never)]
     pub fn reach(
