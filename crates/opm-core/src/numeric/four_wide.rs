@@ -6,8 +6,8 @@ use pulp::{Scalar, Simd, x86::V3};
 
 /// The instructions of the processor at hand on vectors of at most four numbers: AVX2 where there is AVX-512, too.
 ///
-/// Work on one pose has three or four numbers of a kind. Compiled for AVX-512, the joints of a pose took 1.03 times as
-/// long on a processor that has it (Sapphire Rapids), and the actuated ones 1.3 times. Many poses at once took 0.7
+/// Work on one pose has three or four numbers of a kind. Compiled for AVX-512, the joints of a pose took up to 1.1 times
+/// as long on a processor that has it (Sapphire Rapids), and the actuated ones 1.3 times. Many poses at once took 0.7
 /// times as long; so work on blocks of them uses [`pulp::Arch`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FourWide {
