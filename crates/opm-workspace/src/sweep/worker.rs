@@ -35,9 +35,9 @@ pub struct Worker<'a> {
     /// The poses that the legs reach that are the same in every slice, of the rows of the range.
     fixed: Option<(Range<u64>, Box<AskedRows>)>,
     hits: HitPoses,
-    limit: Option<LimitedRows<'a>>,
+    limit: Option<Box<LimitedRows<'a>>>,
     clear: Option<Box<ClearPoses<'a>>>,
-    together: Option<Together<'a>>,
+    together: Option<Box<Together<'a>>>,
     /// The angles of imaginary joints over the poses that this thread found.
     known: KnownRanges,
 }
@@ -184,7 +184,7 @@ impl<'a> Worker<'a> {
             asked: None,
             fixed: None,
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },
-            limit: sweep.limit.clone().map(|limit| LimitedRows::new(manipulator, limit)),
+            limit: sweep.limit.clone().map(|limit| Box::new(LimitedRows::new(manipulator, limit))),
             clear: sweep.clear_poses(),
             together: None,
             known: KnownRanges::new(manipulator.legs()),
@@ -194,7 +194,8 @@ impl<'a> Worker<'a> {
     /// Decides poses with these numbers, of whole segments of rows, without regard to sheets.
     pub fn together(&mut self, poses: Range<u64>, found: &mut Count, hit: &mut Visitor<'_>) {
         let (sweep, ranges) = (self.sweep, self.ranges);
-        let together = self.together.get_or_insert_with(|| Together::new(sweep, ranges));
+        let new = || Box::new(Together::new(sweep, ranges));
+        let together = self.together.get_or_insert_with(new);
         together.decide(sweep, poses, found, hit);
     }
 
