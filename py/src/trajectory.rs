@@ -1,29 +1,35 @@
 //! Motions of the platform as the joints follow them.
 
+mod events;
+mod read;
+mod record;
+
 use crate::arguments;
 use crate::columns::columns;
 use crate::error::{failed, study, wrong};
-use crate::html::{self, digits};
+use crate::html;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::parts::Pickled;
-use crate::pickle::{attribute, attributes, equal, frozen, pickled};
-use crate::rows::{Rows, no_memory};
-use crate::solutions::units;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use crate::pickle::{attribute, attributes, equal};
+pub use events::{Contact, Violation};
+use numpy::{PyArray1, PyArray2};
 use opm_analysis::Setup;
-use opm_core::manipulator::{self as core, Mode};
+use opm_core::manipulator::Mode;
 use opm_core::mechanism;
-use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
-use opm_core::trajectory::{self as core_trajectory, Change, Sample, ViolationReport};
-use opm_interference::{Distances, Interference, Nearest, Watch, Watched};
+use opm_core::motion::{Ends, PlatformMotion};
+use opm_core::trajectory as core_trajectory;
+use opm_interference::{Distances, Interference, Watch, Watched};
 use opm_study::recording::{Attachment, MotionRecorder, TableOptions, write_motion_table};
 use opm_study::{DEFAULT_RATE, MotionRequest};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+pub use read::motion;
+use read::{parse, read, spline_ends, through};
+use record::Record;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A motion as the joints follow it, ``n`` samples; NaN where it is out of reach, or a joint has no rate.
@@ -127,54 +133,6 @@ struct Source {
     clearance: Option<f64>,
 }
 
-/// A part of a motion that the mechanism cannot follow, or a singularity on its way.
-#[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
-#[derive(Clone)]
-pub struct Violation {
-    /// ``"reach"``, ``"limit"``, ``"rate"``, ``"acceleration"`` or ``"singularity"``.
-    kind: String,
-    /// Time at which it starts, seconds.
-    start: f64,
-    /// Time at which it ends, seconds; equal to `start` for a singularity.
-    end: f64,
-    /// Time at which it is worst, seconds.
-    worst: f64,
-    /// How large the violation is at that time, in :attr:`unit`.
-    amount: f64,
-    /// Unit of the amount: ``"m"``, ``"rad"``; ``"m/s"``, ``"rad/s"``, ``"m/s^2"``, ``"rad/s^2"`` beyond a limit of motion; or ``"1"`` for the remaining measure of a singularity.
-    unit: String,
-    /// The leg that the violation is about.
-    leg: Option<String>,
-    /// The joint that is past its limit, or too fast.
-    joint: Option<String>,
-    /// ``"lower"`` or ``"upper"``: what is out of reach or singular.
-    section: Option<String>,
-    /// ``"lowest"`` or ``"highest"``: the limit that is passed.
-    bound: Option<String>,
-    /// ``"serial"`` or ``"parallel"``.
-    singularity: Option<String>,
-    /// The whole violation in one line.
-    message: String,
-}
-
-/// A part of a motion in which two bodies are nearer than the clearance.
-#[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
-#[derive(Clone)]
-pub struct Contact {
-    /// The name of one body.
-    one: String,
-    /// The name of the other.
-    other: String,
-    /// Time at which it begins, seconds.
-    start: f64,
-    /// Time at which it ends, seconds.
-    end: f64,
-    /// Time at which the two are nearest, seconds.
-    worst: f64,
-    /// Their distance then, metres; negative where they overlap.
-    distance: f64,
-}
-
 /// Follow a motion of the platform.
 ///
 /// Parameters
@@ -267,293 +225,6 @@ pub fn trajectory(
     record.finish(py, source, interference.as_ref())
 }
 
-/// A motion, the name of its file, and the text of that.
-type Read = (PlatformMotion, String, String);
-
-/// Waypoints as a table of poses, one second apart if they have no times.
-fn through(
-    manipulator: &Manipulator,
-    poses: &Bound<'_, PyAny>,
-    times: Option<&[f64]>,
-    ends: Ends,
-) -> PyResult<Read> {
-    let poses = manipulator.poses_of(poses, "motion")?;
-    let poses = Rows::new(&poses)?;
-    let seconds: Vec<f64> = (0..poses.count).map(|row| row as f64).collect();
-    let times = times.unwrap_or(&seconds);
-    if poses.count != times.len() {
-        let (poses, times) = (poses.count, times.len());
-        return Err(wrong(format!("{times} times for {poses} poses, expected one for each pose")));
-    }
-    let names = manipulator.pose_names();
-    for row in 0..poses.count {
-        if let Some(number) = poses.row(row).iter().position(|value| !value.is_finite()) {
-            let (name, value) = (names[number], poses.row(row)[number]);
-            return Err(wrong(format!("waypoint {row}: {name} is {value:?}, expected a number")));
-        }
-    }
-    let mut text = ["t"].into_iter().chain(names).collect::<Vec<_>>().join(",");
-    for (row, time) in times.iter().enumerate() {
-        let cells = [time].into_iter().chain(poses.row(row)).map(|value| format!("{value:?}"));
-        text = text + "\n" + &cells.collect::<Vec<_>>().join(",");
-    }
-    text.push('\n');
-    let motion = table::read(&text, "waypoints", &manipulator.inner, ends).map_err(|errors| {
-        // The first line is the header, and poses count from zero.
-        let lines = errors.problems.iter().map(|problem| match problem.line {
-            0 | 1 => problem.message.clone(),
-            line => format!("waypoint {}: {}", line - 2, problem.message),
-        });
-        wrong(lines.collect::<Vec<_>>().join("\n"))
-    })?;
-    Ok((motion, "waypoints.csv".to_owned(), text))
-}
-
-/// The motion of a file or of a table of poses, or a shipped motion.
-pub fn motion(manipulator: &Manipulator, given: &Bound<'_, PyAny>) -> PyResult<PlatformMotion> {
-    read(manipulator, given, None).map(|(motion, ..)| motion)
-}
-
-/// A motion file, a table of poses, or a shipped motion: an existing path wins.
-fn read(
-    manipulator: &Manipulator,
-    motion: &Bound<'_, PyAny>,
-    ends: Option<Ends>,
-) -> PyResult<Read> {
-    let expected = "motion: expected a path, the name of a shipped motion, or poses with times";
-    let path = arguments::path(motion).map_err(|_| wrong(expected))?;
-    let label = path.display().to_string();
-    let (text, name) = match examples::find(&label).filter(|_| !path.exists()) {
-        Some(example) => (example.text.to_owned(), format!("{}.toml", example.name)),
-        None => {
-            let text = arguments::text(motion.py(), &path, "a motion file", "")?;
-            (text, path.file_name().map_or(label.clone(), |n| n.display().to_string()))
-        }
-    };
-    let motion = parse(manipulator, &text, (&name, &label), ends)?;
-    Ok((motion, name, text))
-}
-
-/// The ends of this name.
-fn spline_ends(name: &str) -> PyResult<Ends> {
-    let found = Ends::NAMES.iter().find(|(known, _)| *known == name);
-    found.map(|(_, ends)| *ends).ok_or_else(|| {
-        let names = Ends::NAMES.map(|(name, _)| format!("{name:?}")).join(", ");
-        wrong(format!("ends: {name:?}, expected one of {names}"))
-    })
-}
-
-/// The motion in the text of a file of this name; messages call it `label`.
-fn parse(
-    manipulator: &Manipulator,
-    text: &str,
-    (name, label): (&str, &str),
-    ends: Option<Ends>,
-) -> PyResult<PlatformMotion> {
-    let (inner, path) = (&manipulator.inner, Path::new(name));
-    let csv = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let stem = path.file_stem().map_or_else(|| label.to_owned(), |s| s.display().to_string());
-    let motion = match ends {
-        _ if csv => table::read(text, &stem, inner, ends.unwrap_or_default()),
-        Some(ends) => {
-            let problem = "a motion file says it itself, beside its points:";
-            return Err(wrong(format!("ends: {problem} ends = {:?}", ends.name())));
-        }
-        None => file::read(text, inner),
-    };
-    motion.map_err(|errors| wrong(errors.in_file(label)))
-}
-
-/// The columns while they are filled.
-#[derive(Default)]
-struct Record {
-    times: Vec<f64>,
-    /// Poses, rates and accelerations; of the dependent coordinates; of the joints; of the imaginary joints.
-    tables: [Vec<f64>; 12],
-    condition: Vec<f64>,
-    /// Reachable, within limits, regular.
-    answers: [Vec<bool>; 3],
-    violations: Vec<core_trajectory::Violation>,
-    /// The contacts, and the nearest pair with its time.
-    contacts: (Vec<opm_interference::Contact>, Option<(Nearest, f64)>),
-}
-
-impl Record {
-    fn follow(
-        manipulator: &core::Manipulator,
-        mut followed: core_trajectory::Trajectory<'_>,
-        mut watch: Option<(Watch<'_>, f64)>,
-        stop: &AtomicBool,
-    ) -> PyResult<Self> {
-        let mut record = Self::default();
-        let samples = followed.samples();
-        let width = manipulator.task_coordinates().len()
-            + manipulator.dependent_coordinates().len()
-            + manipulator.coordinates().len()
-            + manipulator.imaginary().len();
-        let room = usize::try_from(samples).ok().and_then(|n| n.checked_mul(3 * width));
-        // Memory is allocated table by table; this reports early if there is not enough.
-        let whole = room.filter(|&room| Vec::<f64>::new().try_reserve_exact(room).is_ok());
-        whole.ok_or_else(|| no_memory(format_args!("{samples} samples")))?;
-        while !stop.load(Ordering::Relaxed) && followed.advance().map_err(|e| failed(&e))? {
-            let sample = followed.sample();
-            record.add(sample);
-            if let Some((watch, step)) = &mut watch {
-                let solution = sample.reached.then_some(&sample.solution);
-                watch.advance(sample.time, *step, solution).map_err(|error| failed(&error))?;
-            }
-            for change in followed.changes() {
-                if let Change::Ends(violation) = change {
-                    record.violations.push(*violation);
-                }
-            }
-        }
-        record.violations.extend(followed.open());
-        record.violations.sort_by(|a, b| a.start.total_cmp(&b.start));
-        if let Some((watch, _)) = watch {
-            record.contacts = watch.finish();
-        }
-        Ok(record)
-    }
-
-    fn add(&mut self, sample: &Sample) {
-        let Sample { time, instant, reached, solution, regular, motion, condition, .. } = sample;
-        self.times.push(*time);
-        self.condition.push(if *reached { *condition } else { f64::NAN });
-        let rows: [(&[f64], bool); 12] = [
-            (&instant.pose, true),
-            (&instant.velocity, true),
-            (&instant.acceleration, true),
-            (solution.dependent(), *reached),
-            (&motion.dependent_rates, *reached && *regular),
-            (&motion.dependent_accelerations, *reached && *regular),
-            (solution.joints(), *reached),
-            (&motion.joint_rates, *reached && *regular),
-            (&motion.joint_accelerations, *reached && *regular),
-            (solution.imaginary(), *reached),
-            (&motion.imaginary_rates, *reached && *regular),
-            (&motion.imaginary_accelerations, *reached && *regular),
-        ];
-        for (table, (row, known)) in self.tables.iter_mut().zip(rows) {
-            table.extend(row.iter().map(|&value| if known { value } else { f64::NAN }));
-        }
-        let answers = [*reached, sample.valid(), *reached && *regular];
-        for (list, answer) in self.answers.iter_mut().zip(answers) {
-            list.push(answer);
-        }
-    }
-
-    fn finish(
-        self,
-        py: Python<'_>,
-        source: Source,
-        interference: Option<&Interference>,
-    ) -> PyResult<Trajectory> {
-        let manipulator = &*source.manipulator.get().inner;
-        let rows = self.times.len();
-        let widths = [
-            manipulator.task_coordinates().len(),
-            manipulator.dependent_coordinates().len(),
-            manipulator.coordinates().len(),
-            manipulator.imaginary().len(),
-        ];
-        let mut tables = self.tables.into_iter().enumerate();
-        let mut table = || -> PyResult<Py<PyArray2<f64>>> {
-            let (number, values) = tables.next().unwrap_or_default();
-            frozen(values.into_pyarray(py).reshape([rows, widths[number / 3]])?)
-        };
-        let [reachable, within_limits, regular] =
-            self.answers.map(|answers| frozen(answers.into_pyarray(py)));
-        Ok(Trajectory {
-            times: frozen(self.times.into_pyarray(py))?,
-            poses: table()?,
-            pose_rates: table()?,
-            pose_accelerations: table()?,
-            dependent: table()?,
-            dependent_rates: table()?,
-            dependent_accelerations: table()?,
-            joints: table()?,
-            joint_rates: table()?,
-            joint_accelerations: table()?,
-            imaginary: table()?,
-            imaginary_rates: table()?,
-            imaginary_accelerations: table()?,
-            condition: frozen(self.condition.into_pyarray(py))?,
-            reachable: reachable?,
-            within_limits: within_limits?,
-            regular: regular?,
-            violations: self.violations.iter().map(|v| Violation::new(v, manipulator)).collect(),
-            contacts: interference
-                .map(|of| self.contacts.0.iter().map(|found| Contact::new(found, of)).collect()),
-            nearest: interference.zip(self.contacts.1).map(|(of, (nearest, time))| {
-                let [one, other] = of.names_of(nearest.pair).map(str::to_owned);
-                (one, other, nearest.distance, time)
-            }),
-            joint_names: manipulator.coordinates().iter().map(|c| c.name.clone()).collect(),
-            imaginary_names: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
-            units: units(manipulator),
-            mode: manipulator.format_mode(source.mode),
-            name: source.motion.name.clone(),
-            rows,
-            source,
-        })
-    }
-}
-
-impl Contact {
-    fn new(found: &opm_interference::Contact, of: &Interference) -> Self {
-        let opm_interference::Contact { pair, start, end, worst, distance } = *found;
-        let [one, other] = of.names_of(pair).map(str::to_owned);
-        Self { one, other, start, end, worst, distance }
-    }
-}
-
-pickled!(Contact { one, other, start, end, worst, distance });
-
-#[pymethods]
-impl Contact {
-    fn __repr__(&self) -> String {
-        let Self { one, other, .. } = self;
-        let [start, end, distance] = [self.start, self.end, self.distance].map(digits);
-        format!("<Contact of {one} and {other} from {start} to {end} s: {distance} m>")
-    }
-}
-
-impl Violation {
-    fn new(violation: &core_trajectory::Violation, manipulator: &core::Manipulator) -> Self {
-        let report = ViolationReport::new(violation, manipulator);
-        Self {
-            kind: report.kind.to_owned(),
-            start: violation.start,
-            end: violation.end,
-            worst: violation.worst,
-            amount: violation.amount,
-            unit: report.unit().to_owned(),
-            leg: report.leg.map(str::to_owned),
-            joint: report.joint.map(str::to_owned),
-            section: report.section.map(|section| section.to_string()),
-            bound: report.bound.map(|bound| bound.name().to_owned()),
-            singularity: report.singularity().map(str::to_owned),
-            message: report.si(),
-        }
-    }
-}
-
-pickled!(Violation {
-    kind,
-    start,
-    end,
-    worst,
-    amount,
-    unit,
-    leg,
-    joint,
-    section,
-    bound,
-    singularity,
-    message,
-});
-
 columns!(Trajectory);
 
 /// The parts of a trajectory in the form that Python sees.
@@ -592,14 +263,6 @@ type Followable = (Py<Manipulator>, String, String, f64, &'static str, bool, Opt
 
 /// The same, as it is read.
 type Restored = (Py<Manipulator>, String, String, f64, String, bool, Option<f64>);
-
-#[pymethods]
-impl Violation {
-    fn __repr__(&self) -> String {
-        let [start, end] = [self.start, self.end].map(digits);
-        format!("<Violation from {start} to {end} s: {}>", self.message)
-    }
-}
 
 #[pymethods]
 impl Trajectory {

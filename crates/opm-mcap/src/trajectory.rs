@@ -73,18 +73,22 @@
 //! # }
 //! ```
 
+mod bodies;
+mod content;
+
 use std::path::Path;
 
 use foxglove::Encode;
 use foxglove::messages::{
-    FrameTransform, FrameTransforms, JointState, JointStates, Quaternion, Timestamp, Vector3,
-    log::Level,
+    FrameTransforms, JointState, JointStates, Quaternion, Timestamp, Vector3, log::Level,
 };
 
 use crate::joints::{JointsTopic, fields};
 use crate::log::{CHUNK_BYTES, Log, Topic};
-use crate::scene::{Body, State, check, surface, update};
+use crate::scene::{State, check};
 use crate::{Metadata, PartialFile, RecordError, Sink};
+use bodies::Shown;
+pub use content::{Coordinate, Frame, Posture, Rates, Role, Sample, Trajectory};
 
 /// The topic of the joints.
 pub const JOINTS_TOPIC: &str = "/joints";
@@ -128,140 +132,6 @@ pub const PICTURE_PERIOD: u64 = 16_666_667;
 
 /// The field of `/condition` that says whether the pose is in reach and within all limits.
 pub const VALID: &str = "valid";
-
-/// The role of a value in the mechanism.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
-    /// The value of an actuated joint.
-    Actuated,
-    /// The value of a passive joint.
-    Passive,
-    /// The value of an imaginary joint.
-    Imaginary,
-    /// A task coordinate of the pose.
-    Task,
-    /// A task coordinate that follows from those of the pose.
-    Dependent,
-}
-
-impl Role {
-    /// The word for the role: `actuated`, `passive`, `imaginary`, `task` or `dependent`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Actuated => "actuated",
-            Self::Passive => "passive",
-            Self::Imaginary => "imaginary",
-            Self::Task => "task",
-            Self::Dependent => "dependent",
-        }
-    }
-}
-
-/// A coordinate that is recorded.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Coordinate {
-    /// The name, which no other coordinate on the same topic has.
-    pub name: String,
-    /// The SI unit of its position: `rad` or `m`.
-    pub unit: &'static str,
-    /// The role of its values.
-    pub role: Role,
-}
-
-/// The head of a recording of a motion: which values and bodies it has.
-#[derive(Debug, Clone)]
-pub struct Trajectory<'a> {
-    /// The task coordinates; none for a mechanism without a platform.
-    pub pose: Vec<Coordinate>,
-    /// The task coordinates that follow from those of the pose; none in most mechanisms.
-    pub dependent: Vec<Coordinate>,
-    /// The joint coordinates.
-    pub joints: Vec<Coordinate>,
-    /// The imaginary joints.
-    pub imaginary: Vec<Coordinate>,
-    /// Whether rates and accelerations come with the positions.
-    pub rates: bool,
-    /// The names of the values of `/condition` beside `valid`; without any there is no such topic.
-    pub measures: Vec<String>,
-    /// Names and units of the values of `/indices`; without any there is no such topic.
-    pub indices: Vec<(String, &'static str)>,
-    /// The bodies, parents first; none for a recording without a scene.
-    pub bodies: Vec<Body>,
-    /// The files to attach: name and text (TOML or CSV), the mechanism file first.
-    pub files: Vec<(&'a str, &'a [u8])>,
-    /// The description of the run: what moves, from where to where, version.
-    pub run: Metadata,
-}
-
-/// One instant of a motion. Every slice has one value for each name in the [`Trajectory`]; slices of rates are
-/// empty if it has no rates.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Sample<'a> {
-    /// The task coordinates, radians and metres.
-    pub pose: &'a [f64],
-    /// The rates of the task coordinates, per second.
-    pub pose_velocities: &'a [f64],
-    /// The values of `/condition`.
-    pub measures: &'a [f64],
-    /// The values of `/indices`.
-    pub indices: &'a [f64],
-    /// Whether the pose is in reach and within all limits.
-    pub valid: bool,
-    /// The joints and bodies; `None` out of reach.
-    pub posture: Option<Posture<'a>>,
-}
-
-/// The joints and bodies at one instant.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Posture<'a> {
-    /// The dependent coordinates, radians and metres.
-    pub dependent: &'a [f64],
-    /// The joint coordinates, radians and metres.
-    pub joints: &'a [f64],
-    /// The imaginary joints, radians and metres.
-    pub imaginary: &'a [f64],
-    /// The rates of the joints; `None` at a singularity, where they are not known.
-    pub rates: Option<Rates<'a>>,
-    /// The frame of every body except the base, in the frame of its parent. They are only read at times of
-    /// which [`TrajectoryRecorder::shows`] is true.
-    pub frames: &'a [Frame],
-    /// The numbers of the bodies that interfere, ascending: the scene shows them red. They are only read at times of which
-    /// [`TrajectoryRecorder::shows`] is true.
-    pub interfering: &'a [usize],
-}
-
-/// The rates of the joints at one instant.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Rates<'a> {
-    /// The rates of the dependent coordinates, per second.
-    pub dependent: &'a [f64],
-    /// The rates of the joint coordinates, per second.
-    pub velocities: &'a [f64],
-    /// The rates of the imaginary joints, per second.
-    pub imaginary: &'a [f64],
-    /// The accelerations of the joint coordinates, per second squared.
-    pub accelerations: &'a [f64],
-}
-
-/// The place of a frame in the frame of its parent.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
-    /// The position of its origin, metres.
-    pub translation: [f64; 3],
-    /// The rotation as a unit quaternion x, y, z, w.
-    pub rotation: [f64; 4],
-}
-
-/// The bodies that the scene shows.
-struct Shown {
-    topic: Topic,
-    bodies: Vec<Body>,
-    /// The topic of the cloud of each body.
-    clouds: Vec<Topic>,
-    state: State,
-    /// The numbers of the bodies that interfere.
-    interfering: Vec<usize>,
-}
 
 /// Writes a recording of a motion. Any error is final. The [module](self) has an example.
 pub struct TrajectoryRecorder<W: Sink = PartialFile> {
@@ -399,87 +269,6 @@ impl<W: Sink> TrajectoryRecorder<W> {
             recorder.show(bodies)?;
         }
         Ok(recorder)
-    }
-
-    /// Writes the shapes of the bodies.
-    fn show(&mut self, bodies: &[Body]) -> Result<(), RecordError> {
-        let topic = self.log.topic::<foxglove::messages::SceneUpdate>(SCENE_TOPIC)?;
-        let cloud = |body: &Body| {
-            let name = format!("{BODIES_TOPIC}{}", body.frame);
-            self.log.topic::<foxglove::messages::PointCloud>(&name)
-        };
-        let clouds = bodies.iter().map(cloud).collect::<Result<_, _>>()?;
-        self.scene = Some(Shown {
-            topic,
-            bodies: bodies.to_vec(),
-            clouds,
-            state: State::Moves,
-            interfering: Vec::new(),
-        });
-        self.draw(START)?;
-        for number in 0..bodies.len() {
-            self.draw_cloud(START, number)?;
-        }
-        let transform = |body: &Body| {
-            body.parent.map(|parent| FrameTransform {
-                timestamp: None,
-                parent_frame_id: bodies[parent].frame.clone(),
-                child_frame_id: body.frame.clone(),
-                translation: None,
-                rotation: None,
-            })
-        };
-        let transforms = bodies.iter().filter_map(transform).collect();
-        let topic = self.log.topic::<FrameTransforms>(FRAMES_TOPIC)?;
-        self.frames = Some((topic, FrameTransforms { transforms }));
-        Ok(())
-    }
-
-    /// Writes the scene in its present state.
-    fn draw(&mut self, time: u64) -> Result<(), RecordError> {
-        let Some(Shown { topic, bodies, state, interfering, .. }) = &mut self.scene else {
-            return Ok(());
-        };
-        let scene = update(bodies, (*state, interfering), stamp(time));
-        put(&mut self.log, &mut self.message, topic, time, &scene)
-    }
-
-    /// Writes the surface of a body in its present colours.
-    fn draw_cloud(&mut self, time: u64, number: usize) -> Result<(), RecordError> {
-        let Some(Shown { bodies, clouds, state, interfering, .. }) = &mut self.scene else {
-            return Ok(());
-        };
-        let look = (*state, interfering.contains(&number));
-        let cloud = surface(&bodies[number], bodies, look, stamp(time))?;
-        self.log.message(&mut clouds[number], time, &cloud)
-    }
-
-    /// Writes the scene anew where the bodies get stuck, or move again, and where others interfere.
-    fn draw_change(
-        &mut self,
-        time: u64,
-        (now, interfering): (State, Option<&[usize]>),
-    ) -> Result<(), RecordError> {
-        match &mut self.scene {
-            Some(shown)
-                if shown.state != now
-                    || interfering.is_some_and(|all| shown.interfering != all) =>
-            {
-                let before = std::mem::replace(&mut shown.state, now);
-                let mut red = shown.interfering.clone();
-                if let Some(interfering) = interfering {
-                    std::mem::swap(&mut red, &mut shown.interfering);
-                    shown.interfering = interfering.to_vec();
-                }
-                let look = |state, red: &[usize], number| (state, red.contains(&number));
-                let changed: Vec<usize> = (0..shown.bodies.len())
-                    .filter(|&i| look(before, &red, i) != look(now, &shown.interfering, i))
-                    .collect();
-                self.draw(time)?;
-                changed.into_iter().try_for_each(|number| self.draw_cloud(time, number))
-            }
-            _ => Ok(()),
-        }
     }
 
     /// Whether an instant `time` nanoseconds after the start will be on `/tf` and `/joint_states`.
