@@ -25,7 +25,8 @@ pub struct Move {
     pub via: Option<Vec<f64>>,
     /// The speed of the position, metres per second.
     pub feed: f64,
-    /// The distance from the corner at its end within which the path is rounded, metres. That of the last move is not used.
+    /// The distance from the corner at its end within which the path is rounded, metres. It is not used where the next move goes
+    /// on in the same direction, nor that of the last move.
     pub blend: f64,
 }
 
@@ -208,10 +209,13 @@ impl Moves {
         }
         let (mut blends, mut stops) = (Vec::new(), Vec::new());
         for (pair, given) in segments.windows(2).zip(moves) {
-            if given.blend > 0.0 {
-                blends.push(Blend::new(&pair[0], &pair[1], given.blend));
-            } else if !is_smooth(&pair[0], &pair[1], positions) {
-                stops.push(pair[1].start);
+            // Where moves go on in one direction, there is no corner: a blend would leave a line beside an arc.
+            match is_smooth(&pair[0], &pair[1], positions) {
+                true => {}
+                false if given.blend > 0.0 => {
+                    blends.push(Blend::new(&pair[0], &pair[1], given.blend));
+                }
+                false => stops.push(pair[1].start),
             }
         }
         Ok((Self { segments, blends }, stops))
@@ -555,6 +559,29 @@ mod tests {
             panic!("{overlap:?}")
         };
         assert!(overlap.number == 1 && needed == 0.12 && (length - 0.1).abs() < 1e-15);
+    }
+
+    /// A line and an arc that touch are followed as they are, at their feed rate, whatever the blend; the angle, whose rate
+    /// changes there, makes it a corner.
+    #[test]
+    fn there_is_no_blend_where_moves_touch() {
+        let slot = |angle: f64| {
+            let across = Move { via: Some(vec![0.4, 0.0, 0.0]), ..line([0.2, 0.2, angle], 0.05) };
+            [line([0.2, -0.2, angle], 0.05), across, line([-0.2, 0.2, 0.0], 0.0)]
+        };
+        let start = [-0.2, -0.2, 0.0];
+        let (path, stops) = Moves::new(&start, &slot(0.0), &POSITIONS).unwrap();
+        assert!(stops.is_empty() && path.blends.is_empty(), "{stops:?} {:?}", path.blends);
+        let mut out = Instant::new(3);
+        for i in 0..=1000 {
+            path.at(path.length() * f64::from(i) / 1000.0, &mut out);
+            let [x, y] = [out.pose[0], out.pose[1]];
+            let off = if x > 0.2 { (x - 0.2).hypot(y) - 0.2 } else { y.abs() - 0.2 };
+            assert!(off.abs() < 1e-14, "{x} {y}");
+            assert!((out.velocity[0].hypot(out.velocity[1]) - 1.0).abs() < 1e-14);
+        }
+        let (path, stops) = Moves::new(&start, &slot(0.3), &POSITIONS).unwrap();
+        assert!(stops.is_empty() && path.blends.len() == 2, "{stops:?} {:?}", path.blends);
     }
 
     /// Between moves of different feed rates the speed changes with the acceleration, on the faster side.
