@@ -78,6 +78,9 @@ fn note_zero(args: &AccuracyArgs, output: &Output, setting: &Setting<'_>) {
 
 pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
+    if let (Some(path), Some(tolerances)) = (&args.output, &args.tolerances) {
+        loaded.refuse_as_output(path, &[tolerances])?;
+    }
     if let Some(vary) = &args.vary {
         return table::run(args, &loaded, vary, output);
     }

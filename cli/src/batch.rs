@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose::Checks;
 use crate::pose_table::{self, Totals};
-use crate::stream::{self, Stop, Stream, Streams};
+use crate::stream::{self, MODE, Stop, Stream, Streams};
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::csv;
@@ -96,7 +96,7 @@ impl<'a> Rows<'a> {
         let header: Vec<&str> = (timed.then_some("t").into_iter())
             .chain(manipulator.task_coordinates().iter().map(|c| c.name))
             .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
-            .chain(["reachable", "within_limits", "mode"])
+            .chain(["reachable", "within_limits", MODE])
             .chain(manipulator.imaginary().iter().map(|joint| &*joint.name))
             .chain(joints.iter().map(|&i| &*coordinates[i].name))
             .collect();

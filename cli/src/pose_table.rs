@@ -4,7 +4,7 @@ use crate::args::{Format, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose::{Checks, find};
-use crate::stream::{Columns, Stream, Streams, Wanted, other_columns};
+use crate::stream::{Columns, MODE, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
 use crate::unitless::Plausible;
 use opm_core::manipulator::Manipulator;
@@ -96,7 +96,9 @@ pub fn columns_beside<'m>(
     let values = own.iter().map(wanted(false)).chain(following.iter().map(wanted(true)));
     // The other columns of a table that this program wrote.
     let others = other_columns(manipulator);
-    stream.columns(values.collect(), |name| {
+    let mut has_mode = false;
+    let columns = stream.columns(values.collect(), |name| {
+        has_mode |= name == MODE;
         if others.iter().chain(beside).any(|other| other == name) {
             return Ok(None);
         }
@@ -104,7 +106,11 @@ pub fn columns_beside<'m>(
             return Ok(Some(own.len() + number));
         }
         find(name, own).map(Some).map_err(|error| error.to_string())
-    })
+    })?;
+    if has_mode {
+        stream.note(format_args!("column {MODE} is not read; --mode chooses the working mode"));
+    }
+    Ok(columns)
 }
 
 /// The values of a row in which nothing is given: the pose at home, and no value of what follows from it.

@@ -82,12 +82,17 @@ impl Stream<'_> {
         self.rows.flush().map_err(Stop::Write)
     }
 
+    /// Prints a note about the input.
+    pub fn note(&self, message: impl Display) {
+        self.output.note(format_args!("{}: {message}", self.label));
+    }
+
     /// What is in every column, by the header. `find` gives the number of a named value, or `None` for a column that is
     /// not read.
     pub fn columns<'n>(
         &mut self,
         values: Vec<Wanted<'n>>,
-        find: impl Fn(&str) -> Result<Option<usize>, String>,
+        mut find: impl FnMut(&str) -> Result<Option<usize>, String>,
     ) -> Result<Columns<'n>, Failure> {
         let label = self.label;
         let header = self.lines.next().map_err(|error| Failure::at(label, error))?;
@@ -186,6 +191,9 @@ pub fn run<T>(
     file.commit().map_err(|error| Failure::at(&place, error))?;
     Ok(Some(summary))
 }
+
+/// The column of the working mode in tables that are written.
+pub const MODE: &str = "mode";
 
 /// What a stream reads, without where it writes.
 struct Source<'a> {
@@ -322,7 +330,7 @@ pub fn other_columns(manipulator: &Manipulator) -> Vec<String> {
     let names: Vec<&str> = joints.chain(imaginary).collect();
     let rates = names.iter().copied().chain(tasks.map(|c| c.name));
     let rates = rates.flat_map(|name| [format!("d.{name}"), format!("dd.{name}")]);
-    let known = ["reachable", "within_limits", "mode", "valid", "inverse_condition"];
+    let known = ["reachable", "within_limits", MODE, "valid", "inverse_condition"];
     let known = known.map(str::to_owned);
     names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).collect()
 }

@@ -5,7 +5,7 @@ use crate::args::{AnalyzeArgs, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose_table::{self, Totals};
-use crate::stream::{self, Stop, Stream, Streams};
+use crate::stream::{self, MODE, Stop, Stream, Streams};
 use opm_analysis::Index;
 use opm_core::manipulator::Mode;
 use opm_study::effort_names;
@@ -52,7 +52,7 @@ fn solve(
     let header = (columns.timed().then_some("t").into_iter())
         .chain(coordinates.iter().map(|c| c.name))
         .chain(manipulator.dependent_coordinates().iter().map(|c| c.name))
-        .chain(["reachable", "within_limits", "mode"])
+        .chain(["reachable", "within_limits", MODE])
         .chain(loaded_with.then_some("balance"))
         .chain(efforts.iter().map(String::as_str))
         .chain(known.iter().map(|index| index.name()));

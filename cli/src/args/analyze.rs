@@ -46,7 +46,7 @@ pub struct AnalyzeArgs {
     /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub pose: Pose,
-    /// A CSV file of poses; - reads standard input
+    /// A CSV file of poses; - reads standard input. Its column `mode` is not read
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
     /// What acts on the mechanism, and how much it gives way.

@@ -40,6 +40,9 @@ pub struct DesignArgs {
     /// Go on with an interrupted run: what the evaluations beside OUT.toml have is not evaluated again
     #[arg(long, requires = "output")]
     pub resume: bool,
+    /// Begin anew even if there are evaluations beside OUT.toml, and replace them
+    #[arg(long, requires = "output", conflicts_with = "resume")]
+    pub force: bool,
     /// Of a front, write at most this number of mechanism files, evenly spread, instead of all
     #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u64).range(1..))]
     pub designs: Option<u64>,

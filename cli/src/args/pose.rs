@@ -23,7 +23,8 @@ use std::path::PathBuf;
 ///
 /// CSV in: a header of task coordinates in any order, then one row for each pose, in metres and radians, or in units that
 /// the header names: `x [mm],xi [deg]`. A column `t`, as in the table of a motion, is carried through. Columns of
-/// coordinates that depend on the others are compared with the values that follow, where a cell is not empty.
+/// coordinates that depend on the others are compared with the values that follow, where a cell is not empty. The other
+/// columns of tables that opm writes are not read, nor is `mode`: --mode chooses the working mode.
 /// CSV out: all task coordinates, those that depend on them, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
 /// the actuated joints, or with --all-joints every joint. A pose out of reach keeps its row; its joint cells are empty.
 #[derive(Debug, clap::Args)]

@@ -31,11 +31,21 @@ impl Files {
             return Err(Failure::flag("--output", problem));
         }
         loaded.refuse_as_output(output, &[&args.problem])?;
+        if problem.objectives.len() > 1 {
+            refuse_front(output, loaded.path.as_deref().into_iter().chain([&*args.problem]))?;
+        }
+        let evaluations = output.with_extension("csv");
+        if evaluations.exists() && !args.resume && !args.force {
+            let problem = format!(
+                "{} is there already, with the evaluations of an earlier run: --resume goes on with it, --force replaces it",
+                evaluations.display()
+            );
+            return Err(Failure::flag("--output", problem));
+        }
         let target = match problem.objectives.len() {
             1 => Some(Target::create(output)?),
             _ => None,
         };
-        let evaluations = output.with_extension("csv");
         let columns = columns(problem, &loaded.file);
         let log = match args.resume {
             true => Log::resume(&evaluations, &columns),
@@ -67,7 +77,7 @@ impl Files {
             target.commit(found.designs[0].file.text().as_bytes())?;
             return Ok(vec![Some(output)]);
         }
-        let stem = output.file_stem().map_or_else(String::new, |stem| stem.display().to_string());
+        let stem = stem(&output);
         let digits = count.to_string().len();
         let chosen = spread(count, most);
         let write = |(number, design): (usize, &Design)| {
@@ -80,6 +90,32 @@ impl Files {
         };
         found.designs.iter().enumerate().map(write).collect()
     }
+}
+
+/// The name of a file without its ending.
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |stem| stem.display().to_string())
+}
+
+/// Refuses an input whose name a design of a front would get.
+fn refuse_front<'p>(output: &Path, inputs: impl Iterator<Item = &'p Path>) -> Result<(), Failure> {
+    let folder = |path: &Path| {
+        let parent = path.parent().filter(|parent| *parent != Path::new(""));
+        parent.unwrap_or(Path::new(".")).canonicalize().ok()
+    };
+    for input in inputs.filter(|input| folder(input) == folder(output)) {
+        let number = stem(input).strip_prefix(&format!("{}-", stem(output))).map(str::to_owned);
+        let is_number =
+            number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()));
+        if is_number && input.extension() == output.extension() {
+            let problem = format!(
+                "{} is also the input, and a design of the front would replace it",
+                input.display()
+            );
+            return Err(Failure::flag("--output", problem));
+        }
+    }
+    Ok(())
 }
 
 /// At most `most` of some numbers from 0 on, evenly spread, with both ends.

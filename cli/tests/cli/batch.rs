@@ -274,3 +274,46 @@ fn times_are_carried_through() {
     opm(&["ik", PLANO, "--poses", &poses, "-o", &folder.arg("out.csv")])
         .fails_with_one_line(1, &["poses.csv:2: column t: \"soon\" is not a number"]);
 }
+
+/// A table that opm wrote says in which mode it was solved. It is solved again in that of --mode, and a note says so.
+#[test]
+fn the_mode_of_a_table_is_not_read_and_a_note_says_so() {
+    let folder = Folder::new();
+    let poses = folder.write("poses.csv", "x,xi [deg]\n0.01,15\n");
+    let [other, again] = ["other.csv", "again.csv"].map(|name| folder.arg(name));
+    let first = opm(&["ik", PLANO, "--poses", &poses, "--mode=-+ ++ ++ +", "-o", &other]);
+    first.text();
+    assert!(!first.stderr.contains("column mode"), "{}", first.stderr);
+    let second = opm(&["ik", PLANO, "--poses", &other, "-o", &again]);
+    second.text();
+    let note = "other.csv: column mode is not read; --mode chooses the working mode";
+    assert!(second.stderr.contains(note), "{}", second.stderr);
+    let [other, again] = ["other.csv", "again.csv"].map(|name| Csv::parse(&folder.read(name)));
+    assert_eq!([other.cell(0, "mode"), again.cell(0, "mode")], ["-+ ++ ++ +", "++ ++ ++ +"]);
+}
+
+/// The tolerances are an input as well as the mechanism.
+#[test]
+fn accuracy_does_not_replace_its_tolerances() {
+    let folder = Folder::new();
+    let tolerances = folder.write("t.toml", "actuators = 0.001\n");
+    let grid = ["--grid", "x=-10mm:10mm:3"];
+    let args = ["accuracy", "five-bar", "--tolerances", &tolerances, "-o", &tolerances];
+    let parts = ["--output", "t.toml is also the input"];
+    opm(&[&args[..], &grid].concat()).fails_with_one_line(2, &parts);
+    assert_eq!(folder.read("t.toml"), "actuators = 0.001\n");
+}
+
+/// What a symbolic link leads to is replaced, and the link stays.
+#[cfg(unix)]
+#[test]
+fn an_output_is_written_through_a_link() {
+    let folder = Folder::new();
+    let poses = folder.write("poses.csv", "x\n0.01\n");
+    folder.write("real.csv", "old");
+    std::os::unix::fs::symlink("real.csv", folder.path("link.csv")).expect("a link");
+    opm(&["ik", PLANO, "--poses", &poses, "-o", &folder.arg("link.csv"), "--quiet"]).text();
+    assert!(folder.path("link.csv").is_symlink());
+    assert!(folder.read("real.csv").starts_with("x,"), "{}", folder.read("real.csv"));
+    assert_eq!(folder.names(), ["link.csv", "poses.csv", "real.csv"]);
+}

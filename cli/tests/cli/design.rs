@@ -108,11 +108,45 @@ fn a_run_goes_on_where_it_was_cut_short() {
     none.fails_with_one_line(1, &["nothing.csv: No such file"]);
 }
 
+/// The evaluations of an earlier run are hours of work: they are only replaced by --force.
+#[test]
+fn evaluations_that_are_there_are_kept() {
+    let folder = Folder::new();
+    let short = with("budget = 60", "budget = 4");
+    let (_, [_, csv]) = run(&folder, &short, "short", &[]);
+    let (problem, output) = (folder.arg("problem.toml"), folder.arg("short.toml"));
+    let again = ["design", &problem, "-o", &output, "--seed", "3"];
+    let parts = ["--output: ", "short.csv is there already", "--resume", "--force"];
+    opm(&again).fails_with_one_line(2, &parts);
+    assert_eq!(folder.read("short.csv"), csv);
+    opm(&[&again[..], &["--force", "--quiet"]].concat()).text();
+    assert_ne!(folder.read("short.csv"), csv);
+}
+
+/// A problem with two objectives, and so with a front.
+fn of_a_front(budget: &str) -> String {
+    let second = "[[objective]]\nmeasure = \"size\"\n\n[variables]";
+    with("budget = 60", budget).replace("[variables]", second)
+}
+
+/// A design of a front would get the name of the mechanism that it begins with.
+#[test]
+fn a_front_does_not_replace_its_mechanism() {
+    let folder = Folder::new();
+    let own = folder.write("front-01.toml", opm(&["convert", PLANO]).text());
+    let two = of_a_front("budget = 4").replace("\"plano-spherical-5dof\"", "\"front-01.toml\"");
+    let problem = folder.write("problem.toml", two);
+    let before = folder.read("front-01.toml");
+    let parts = ["--output: ", "front-01.toml is also the input"];
+    opm(&["design", &problem, "-o", &folder.arg("front.toml")]).fails_with_one_line(2, &parts);
+    assert_eq!(std::fs::read_to_string(own).expect("it is there"), before);
+    assert_eq!(folder.names(), ["front-01.toml", "problem.toml"]);
+}
+
 #[test]
 fn two_objectives_have_a_front() {
     let folder = Folder::new();
-    let second = "[[objective]]\nmeasure = \"size\"\n\n[variables]";
-    let two = with("budget = 60", "budget = 160").replace("[variables]", second);
+    let two = of_a_front("budget = 160");
     let problem = folder.write("problem.toml", two);
     let (output, picture) = (folder.arg("front.toml"), folder.arg("front.svg"));
     let args = ["design", &problem, "-o", &output, "--designs", "2", "--picture", &picture];

@@ -31,7 +31,8 @@ impl Sink for io::Cursor<&mut Vec<u8>> {
 
 /// A file being written as `NAME.partial`, which [`Sink::commit`] renames to `NAME`.
 ///
-/// Until then a file `NAME` stays as it is; then it is replaced. A run that ends early, for whatever
+/// Until then a file `NAME` stays as it is; then it is replaced. Where `NAME` is a symbolic link to a file, that file is
+/// replaced, and the link stays. A run that ends early, for whatever
 /// reason, leaves the `.partial` file, unless it [discards](Self::discard) it. The next run overwrites it.
 ///
 /// ```
@@ -68,6 +69,9 @@ impl PartialFile {
         if fs::metadata(target).is_ok_and(|found| !found.is_file()) {
             return Err(RecordError::NotAFile { path: target.into() });
         }
+        let linked = fs::symlink_metadata(target).is_ok_and(|found| found.is_symlink());
+        let file = if linked { fs::canonicalize(target).ok() } else { None };
+        let target = file.as_deref().unwrap_or(target);
         let mut partial = target.as_os_str().to_owned();
         partial.push(".partial");
         let partial = PathBuf::from(partial);
