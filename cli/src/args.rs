@@ -42,7 +42,7 @@ use opm_core::mechanism::OrientationCoordinates;
 use std::path::PathBuf;
 
 /// Columns of the help on a terminal that has as many.
-const WIDEST: usize = 100;
+pub const WIDEST: usize = 100;
 
 /// Kinematics and workspaces of overconstrained parallel manipulators
 ///
@@ -82,7 +82,7 @@ Examples:
   opm merge part-*.mcap -o cloud.mcap                  the parts of a sweep, joined to one recording
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
                                                        a motion, as a recording that plays
-  opm path planar-3rpr --from x=0 --to x=9mm           a path without a singularity
+  opm path planar-3rpr --from x=14mm --to x=9mm        a path without a singularity
   opm linkage bennett-double-spherical-6r              joint values of a loop with one input
   opm plot cloud.mcap -o cloud.svg                     a picture of a recording
   opm inspect cloud.mcap                               what a recording holds

@@ -11,7 +11,9 @@ use crate::load;
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch_steps};
 use crate::target::Target;
+use crate::unitless;
 use opm_calibrate::{BasePoint, CalibrateError, Options, calibrate};
+use opm_core::Quantity;
 use report::Report;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -33,13 +35,20 @@ pub fn run(args: &CalibrateArgs, output: &Output) -> Result<(), Failure> {
     }
     let options = Options {
         mode: Some(load::mode(&manipulator, &args.mode)?),
-        sigma: args.sigma.map(|sigma| sigma.0),
-        joint_sigma: args.joint_sigma.map(|sigma| sigma.0),
+        sigma: args.sigma.map(|given| given.sigma),
+        joint_sigma: args.joint_sigma.map(|given| given.sigma),
         only: args.only.clone(),
         hold: args.hold.clone(),
         reject_outliers: args.reject_outliers,
         weakest: args.weakest,
     };
+    for (flag, given) in [("--sigma", &args.sigma), ("--joint-sigma", &args.joint_sigma)] {
+        if let Some(given) = given {
+            let quantities = [Quantity::Length, Quantity::Angle];
+            let values = given.given.into_iter().zip(quantities);
+            unitless::note_values(output, flag, (&loaded, &manipulator), values);
+        }
+    }
     let points: Vec<BasePoint> = args.point.iter().map(|point| point.0.clone()).collect();
     if let Some(count) = args.plan {
         return planned::run(args, output, (&loaded, &manipulator), &points, (&options, count));

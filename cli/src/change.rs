@@ -42,6 +42,21 @@ impl FromStr for Change {
 }
 
 impl Change {
+    /// The name of what is changed.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The new number, both ends of a range, or nothing.
+    pub fn numbers(&self) -> impl Iterator<Item = Number> {
+        let numbers = match self.value {
+            ChangedTo::None => [None, None],
+            ChangedTo::Number(value) => [Some(value), None],
+            ChangedTo::Pair(ends) => ends.map(Some),
+        };
+        numbers.into_iter().flatten()
+    }
+
     /// The value, SI.
     fn resolve(&self, file: &file::MechanismFile) -> Result<ParameterValue, Misread> {
         // An unknown name is reported with those that are known.

@@ -33,7 +33,7 @@ const ROUNDING: f64 = 1e-7;
 const LISTED: usize = 6;
 
 pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::read(&args.mechanism)?;
+    let loaded = load::read(&args.mechanism, output)?;
     if let Some(vary) = &args.vary {
         return table(&loaded, vary, output);
     }

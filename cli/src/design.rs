@@ -36,7 +36,6 @@ pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
         }
     };
     let mut files = Files::new(args, &problem, &loaded)?;
-    let resumed = files.log.len();
     let (watch, pool) = (Watch::new(interruptible()?), threads(args.threads)?);
     let found = watch_steps(
         output,
@@ -63,6 +62,7 @@ pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
             "{label}: no design keeps all constraints; this is the nearest one"
         ));
     }
+    let resumed = files.log.used();
     let names = files.commit(&found, args.designs)?;
     if let Some((ending, target)) = picture {
         let drawing = picture::draw(&problem, &loaded, &found, output)?;

@@ -44,13 +44,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             c.limits.filter(|_| !limits.admits(JointDisplacement::Value(value - c.home)))
         {
             let units = loaded.file.units;
-            output.note(format_args!(
-                "{} = {} is beyond its limits, {} {}",
-                c.name,
-                units.show(value, c.quantity),
-                text::range(range, c.quantity, units),
-                units.symbol(c.quantity)
-            ));
+            output.note(text::beyond_limits(&c.name, value, range, c.quantity, units));
         }
     }
     let aspects = match args.aspects {

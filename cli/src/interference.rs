@@ -1,8 +1,12 @@
 //! What commands say about the distances of links.
 
+use crate::args::Output;
 use crate::failure::Failure;
+use crate::load::Loaded;
 use crate::pose::Number;
+use crate::unitless;
 use opm_core::Quantity;
+use opm_core::manipulator::Manipulator;
 use opm_interference::{Interference, Nearest};
 use serde_json::{Value, json};
 
@@ -17,6 +21,12 @@ pub fn nearest_json(interference: &Interference, nearest: Option<Nearest>) -> Va
 pub fn set_aside_json(interference: &Interference) -> Value {
     let each = interference.set_aside_pairs().iter();
     each.map(|pair| json!({ "pair": pair.names, "overlap": pair.overlap })).collect()
+}
+
+/// Notes a --clearance that looks misread.
+pub fn note_clearance(output: &Output, given: Option<Number>, of: (&Loaded, &Manipulator)) {
+    let value = given.map(|number| (number, Quantity::Length));
+    unitless::note_values(output, "--clearance", of, value);
 }
 
 /// The value of --clearance, metres.

@@ -53,8 +53,8 @@ mod workspace;
 
 use crate::args::{Args, Command};
 use crate::failure::Failure;
-use clap::Parser;
 use std::ffi::OsString;
+use std::io::{self, Write as _};
 
 /// Runs a command line, which begins with the program's name, and returns the exit status:
 /// 0 done, 1 the work failed, 2 wrong usage, 130 interrupted. All output has then been written to
@@ -63,13 +63,15 @@ use std::ffi::OsString;
 /// It handles Ctrl-C during long work, and the second Ctrl-C ends the process. Use it only in a
 /// process that does nothing else.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let done = match Args::try_parse_from(arguments) {
+    let done = match usage::parse(arguments) {
         Ok(args) => run(&args),
-        // Help and the version come this way, too. Failures to print them are ignored.
+        // Help and the version come this way, too, and go to standard output.
+        Err(usage) if !usage.use_stderr() => {
+            usage.print().and_then(|()| io::stdout().flush()).map_err(Failure::stdout)
+        }
         Err(usage) => {
-            let usage = usage::with_tips(usage);
-            let _ = usage.print();
-            return u8::try_from(usage.exit_code()).unwrap_or(2);
+            let _ = usage::with_tips(usage).print();
+            return 2;
         }
     };
     done.map_or_else(|failure| failure.report(), |()| 0)

@@ -4,6 +4,7 @@ use crate::args::{MechanismArgs, Output};
 use crate::failure::Failure;
 use crate::pose::Number;
 use crate::text::chain;
+use crate::unitless;
 use opm_core::Quantity;
 use opm_core::decomposition::{DecomposeError, JointMiss, NearMiss, Snapped, nearly, snap};
 use opm_core::linkage::Linkage;
@@ -41,14 +42,16 @@ pub struct Loaded {
 
 /// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped.
 pub fn open(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
-    let loaded = read(given)?;
+    let loaded = read(given, output)?;
     loaded.note_snapped(output);
     Ok(loaded)
 }
 
 /// Reads a mechanism, and snaps it if it has a tolerance.
-pub fn read(given: &MechanismArgs) -> Result<Loaded, Failure> {
+pub fn read(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
     let mut loaded = read_as_it_is(&given.file)?;
+    // Before the change: numbers that are misread often fail.
+    unitless::note_changes(output, &given.change.set, &loaded);
     loaded.change(&given.change)?;
     if let Some(tolerance) = given.tolerance {
         loaded.snap(tolerance, "--tolerance")?;

@@ -15,7 +15,7 @@ use crate::workspace::{Work, threads};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::csv::Rows;
-use opm_workspace::{AspectPath, Aspects, NoPath, aspect_at, find_path};
+use opm_workspace::{AspectPath, Aspects, BeyondLimits, NoPath, aspect_at, find_path};
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 use std::path::Path;
@@ -46,9 +46,10 @@ pub fn run(args: &PathArgs, output: &Output) -> Result<(), Failure> {
     let target = file.map(Target::create).transpose()?;
     let (progress, pool) = (interruptible()?, threads(args.threads)?);
     let answer = query.search(&Work { output, pool: &pool, progress: &progress })?;
-    if let Err(NoPath::End { end, problem }) = &answer.found {
-        let flag = if *end == "the start" { "--from" } else { "--to" };
-        return Err(Failure::flag(flag, format!("the pose is {problem}")));
+    if let Err(none) = &answer.found
+        && let Some(failure) = of_an_end(none, loaded.file.units)
+    {
+        return Err(failure);
     }
     let path = match (&answer.found, &args.output) {
         (Err(none), Some(_)) => {
@@ -68,6 +69,22 @@ pub fn run(args: &PathArgs, output: &Output) -> Result<(), Failure> {
             .note(format_args!("{}: {poses} poses, for `opm trajectory --motion`", file.display()));
     }
     output.print(&answer.json(), answer.text())
+}
+
+/// The failure of a path whose start or goal cannot be used.
+fn of_an_end(none: &NoPath, units: FileUnits) -> Option<Failure> {
+    let (end, problem) = match none {
+        NoPath::End { end, problem } => (end, format!("the pose is {problem}")),
+        NoPath::Limits { end, joints } => {
+            let each = joints.iter().map(|BeyondLimits { name, quantity, value, limits }| {
+                text::beyond_limits(name, *value, *limits, *quantity, units)
+            });
+            (end, format!("at this pose {}", each.collect::<Vec<_>>().join("; ")))
+        }
+        _ => return None,
+    };
+    let flag = if *end == "the start" { "--from" } else { "--to" };
+    Some(Failure::flag(flag, problem))
 }
 
 /// `opm trajectory` takes the kind of a motion from its ending.

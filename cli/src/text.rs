@@ -96,6 +96,18 @@ pub fn range([low, high]: [f64; 2], quantity: Quantity, units: FileUnits) -> Str
     format!("{} .. {}", number(low, quantity, units), number(high, quantity, units))
 }
 
+/// That a joint is beyond its limits, in the file's unit.
+pub fn beyond_limits(
+    name: &str,
+    value: f64,
+    limits: [f64; 2],
+    quantity: Quantity,
+    units: FileUnits,
+) -> String {
+    let (value, limits) = (units.show(value, quantity), range(limits, quantity, units));
+    format!("{name} = {value} is beyond its limits, {limits} {}", units.symbol(quantity))
+}
+
 /// A count with its noun.
 pub fn plural(number: u64, what: &str) -> String {
     format!("{} {what}{}", count(number), if number == 1 { "" } else { "s" })

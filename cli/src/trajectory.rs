@@ -144,6 +144,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     }
     let setup = setup.check(&manipulator)?;
     let clearance = interference::clearance(args.clearance)?;
+    interference::note_clearance(output, args.clearance, (&loaded, &manipulator));
     let mut request = request(args, &manipulator, &motion, clearance);
     if args.indices {
         request = request.indices(&setup);

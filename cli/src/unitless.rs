@@ -1,6 +1,7 @@
 //! Notes on numbers without a unit that look as if they were meant in another one: `x=10` is ten metres.
 
 use crate::args::Output;
+use crate::change::Change;
 use crate::load::Loaded;
 use crate::pose::{Number, Pose};
 use opm_core::Quantity;
@@ -137,6 +138,41 @@ pub fn note_ranges<'a>(
     note(output, flag, (loaded, manipulator), ends, Form::Range, |name| {
         known.iter().find(|c| c.0 == name).map(|c| (c.1, c.2))
     });
+}
+
+/// Notes which values of a flag look misread that have no names: sizes, such as distances and standard deviations.
+pub fn note_values(
+    output: &Output,
+    flag: &str,
+    of: (&Loaded, &Manipulator),
+    values: impl IntoIterator<Item = (Number, Quantity)>,
+) {
+    for (number, quantity) in values {
+        let plausible = Plausible::new(quantity, 0.0, of);
+        if let Some(text) = plausible.suspicion(number, str::to_owned) {
+            output.note(format_args!("{flag}: {text}"));
+        }
+    }
+}
+
+/// Notes which numbers of --set look misread, for the mechanism as it is in the file.
+pub fn note_changes(output: &Output, changes: &[Change], loaded: &Loaded) {
+    let file = &loaded.file;
+    let bare = |change: &&Change| change.numbers().any(|number| number.without_unit().is_some());
+    let given: Vec<&Change> = changes.iter().filter(bare).collect();
+    // Without a number that might be misread, nothing has to be compiled.
+    let Some(manipulator) =
+        (!given.is_empty()).then(|| Manipulator::new(file.mechanism.clone()).ok()).flatten()
+    else {
+        return;
+    };
+    for change in given {
+        let form = if change.numbers().count() > 1 { Form::Range } else { Form::Assignment };
+        let values = change.numbers().map(|number| (change.name(), number));
+        note(output, "--set", (loaded, &manipulator), values, form, |name| {
+            Some((file.quantity_of(name)?, 0.0))
+        });
+    }
 }
 
 /// How a flag gives numbers.

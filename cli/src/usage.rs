@@ -1,9 +1,28 @@
 //! Errors of usage, with tips that help.
 
-use crate::args::Args;
-use clap::CommandFactory;
+use crate::args::{Args, WIDEST};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, FromArgMatches};
+use std::ffi::OsString;
+use std::io::{self, IsTerminal};
+
+/// Reads a command line, which begins with the program's name.
+pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Args, clap::Error> {
+    let mut command = Args::command();
+    if has_no_width() {
+        command = command.term_width(WIDEST);
+    }
+    let mut matches = command.try_get_matches_from_mut(arguments)?;
+    Args::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
+}
+
+/// Whether the width of the help is unknown. Without a terminal clap takes it from COLUMNS, also where that is 0.
+fn has_no_width() -> bool {
+    let terminal =
+        io::stdout().is_terminal() || io::stderr().is_terminal() || io::stdin().is_terminal();
+    !terminal && std::env::var("COLUMNS").is_ok_and(|columns| columns.parse() == Ok(0))
+}
 
 /// An error for an unknown option without the tip to pass it as a value, which no command takes. If other commands have
 /// this option, they are named.

@@ -64,6 +64,7 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     }
     let ends = args.grid.iter().flat_map(GridAxis::ends);
     unitless::note_ranges(output, "--grid", (&loaded, &manipulator), ends);
+    interference::note_clearance(output, args.clearance, (&loaded, &manipulator));
     let progress = interruptible()?;
     let work = Work { output, pool: &threads(args.threads)?, progress: &progress };
     let workspace = work.fit(request, loaded.file.units)?;

@@ -8,9 +8,13 @@ use crate::pose::GridAxis;
 /// What the tests of opm hold on random mechanisms is held on this one, at random poses:
 ///
 /// * closure: joint values of inverse kinematics in every mode, with the ends of the undecomposed legs;
+///
 /// * branches: the solutions of every leg, with those that a numeric solver finds from many starts;
+///
 /// * derivatives: rates and accelerations of all joints, with differences of inverse kinematics;
+///
 /// * rows: how many poses of random grids a sweep counts, with inverse kinematics of every pose;
+///
 /// * forward: assemblies, with the poses that their joint values came from.
 ///
 /// Poses where two computations cannot be expected to agree, such as those near a singularity, are left out and counted.

@@ -23,7 +23,7 @@ use std::path::PathBuf;
 #[command(after_long_help = "\
 Examples:
   opm path five-bar --from x=-100mm,y=300mm --to x=100mm,y=250mm
-  opm path planar-3rpr --from x=0,y=0 --to x=-14.9mm,y=1.6mm,theta=-43deg -o path.csv
+  opm path planar-3rpr --from x=14.92mm --to x=-13.4mm,y=-6.6mm,theta=-23.8deg -o path.csv
   opm trajectory planar-3rpr --motion path.csv -o play.mcap
   opm path plano-spherical-5dof --from x=-0.1 --to x=0.05 --grid x=-0.2:0.2:21 \\
       --vary h=100mm:160mm:4")]

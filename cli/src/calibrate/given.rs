@@ -8,7 +8,17 @@ use std::str::FromStr;
 
 /// Standard deviations: `20um,20urad`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sigmas(pub Sigma);
+pub struct Sigmas {
+    /// In SI.
+    pub sigma: Sigma,
+    /// As they were given: of lengths, and of angles.
+    pub given: [Number; 2],
+}
+
+impl Sigmas {
+    /// What is given, in order.
+    pub const NAMES: [&str; 2] = ["LENGTH", "ANGLE"];
+}
 
 impl FromStr for Sigmas {
     type Err = Misread;
@@ -24,8 +34,10 @@ impl FromStr for Sigmas {
                 }
             }
         };
-        let [length, angle] = numbers(text, ["LENGTH", "ANGLE"], of)?;
-        Ok(Self(Sigma { length, angle }))
+        let [length, angle] = numbers(text, Self::NAMES, of)?;
+        let (first, second) = text.split_once(',').unwrap_or((text, text));
+        let given = [first.parse()?, second.parse()?];
+        Ok(Self { sigma: Sigma { length, angle }, given })
     }
 }
 
@@ -50,7 +62,7 @@ mod tests {
 
     #[test]
     fn deviations_and_points_are_read_with_units() {
-        assert_eq!("0.02mm,0.001deg".parse::<Sigmas>().unwrap().0.length, 2e-5);
+        assert_eq!("0.02mm,0.001deg".parse::<Sigmas>().unwrap().sigma.length, 2e-5);
         for (text, expected) in [
             ("20e-6", "1 number in \"20e-6\", expected 2: LENGTH,ANGLE"),
             ("0,1", "LENGTH is 0, expected a positive number"),

@@ -15,8 +15,8 @@ pub struct Report<'a> {
     pub found: &'a Outcome,
     /// The file of each design, if it has one.
     pub names: &'a [Option<PathBuf>],
-    /// How many designs an interrupted run had evaluated.
-    pub resumed: usize,
+    /// How many designs were taken from the table of an interrupted run.
+    pub resumed: u64,
 }
 
 /// The units that measures are shown in.

@@ -29,8 +29,11 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let layout = Layout::new(source);
     let points = source.recording.topic(SLICES_TOPIC).and_then(|topic| topic.points);
     if points.unwrap_or(0) == 0 {
-        let limited = source.metadata("run").contains_key("characteristic_length");
-        let (label, nothing) = (&source.label, layout.kind.nothing(limited));
+        let run = source.metadata("run");
+        let mut limited = Vec::new();
+        limited.extend(run.get("max_condition").map(|_| "condition number"));
+        limited.extend(run.keys().filter_map(|key| key.strip_prefix("limit.")));
+        let (label, nothing) = (&source.label, layout.kind.nothing(&limited));
         return Err(Failure::work(format!("{label}: nothing to draw: {nothing}")));
     }
     let (view, joints) = chosen(&layout, source, args)?;

@@ -19,6 +19,9 @@ pub fn run(
     output: &Output,
 ) -> Result<(), Failure> {
     let clearance = interference::clearance(args.clearance)?;
+    if let Ok(manipulator) = loaded.compile() {
+        interference::note_clearance(output, args.clearance, (loaded, &manipulator));
+    }
     let (units, progress) = (loaded.file.units, interruptible()?);
     runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
         let manipulator = changed.compile()?;

@@ -39,7 +39,12 @@ pub fn before(workspace: &Workspace, output: &Output) {
 pub fn after(workspace: &Workspace, analysis: &Analysis, output: &Output) {
     if analysis.count.reachable == 0 {
         let kind = workspace.kind();
-        let nothing = kind.nothing(workspace.limit().is_some());
+        let mut limited = Vec::new();
+        if let Some(limit) = workspace.limit() {
+            limited.extend(limit.max_condition().map(|_| "condition number"));
+            limited.extend(limit.indices.iter().map(|(index, _)| index.name()));
+        }
+        let nothing = kind.nothing(&limited);
         let apart = match workspace.clearance() {
             Some(_) => " with that clearance",
             None => "",

@@ -121,7 +121,8 @@ fn poses_of_two_aspects_are_not_joined() {
     written.fails(1, &["no path", "different aspects"]);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     let far = ["path", "planar-3rpr", "--from", "x=1m", "--to", "x=14mm"];
-    opm(&with_grid(&far)).fails(2, &["--from", "beyond the limits of joints"]);
+    opm(&with_grid(&far))
+        .fails(2, &["--from", "S1 = 1000 mm is beyond its limits, 5.000 .. 35.000 mm"]);
     let ending = [&args[..], &["-o", "path.toml"]].concat();
     opm(&with_grid(&ending)).fails(2, &["--output", ".csv"]);
     opm(&with_grid(&[&args[..], &["--duration", "0"]].concat()))

@@ -278,6 +278,9 @@ fn a_full_standard_output_is_a_failure() {
         &["ik", PLANO, "--poses", &csv],
         &["examples", PLANO],
         &["completions", "bash"],
+        &["help", "format"],
+        &["ik", "--help"],
+        &["--version"],
     ] {
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
         let output = command(args).stdout(full).output().unwrap();
@@ -376,6 +379,9 @@ fn numbers_without_a_unit_that_look_misread_are_noted() {
             "measure", PLANO, "--over", "x=0:10", "--over", "y=0", "--over", "zeta=90", "--over",
             "xi=0", "--over", "psi=0",
         ],
+        &["ik", PLANO, "--set", "leg1.h=140", "--set", "limits.S=-200:200", "--pose", "x=0"],
+        &["workspace", PLANO, "--clearance", "3", "--grid", "x=-100:.1:11"],
+        &["calibrate", PLANO, "--plan", "2", "--candidates", "2", "--sigma", "20,20"],
     ] {
         assert_eq!(odd(args), 2, "{args:?}");
         assert_eq!(odd(&[args, &["--quiet"]].concat()), 0, "{args:?}");

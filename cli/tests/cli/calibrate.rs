@@ -106,6 +106,11 @@ fn wrong_options_of_a_calibration_are_named() {
     for (flags, code, parts) in [
         (&["--sigma", "20um"][..], 2, &["--sigma", "expected 2: LENGTH,ANGLE"][..]),
         (&["--sigma", "0,1"], 2, &["--sigma", "LENGTH is 0, expected a positive number"]),
+        (
+            &["--sigma", "20,20"],
+            1,
+            &["too inaccurate", "a standard error of ", "expected at most 0.05"],
+        ),
         (&["--sigma", "1deg,1"], 2, &["--sigma", "LENGTH is a length"]),
         (&["--joint-sigma", "1um,1urad"], 2, &["--sigma"]),
         (&["--only", "leg7"], 2, &["--only, --hold", "`leg7` names no parameter", "leg1.h"]),

@@ -94,6 +94,11 @@ fn a_run_goes_on_where_it_was_cut_short() {
     let (more, [_, table]) = run(&folder, PROBLEM, "cut", &["--resume", "--budget", "75"]);
     assert_eq!(number(&more["resumed"]), 60.0);
     assert_eq!(table.lines().count(), 76);
+    // Another seed asks for other designs.
+    let args = ["--resume", "--seed", "3", "--budget", "10"];
+    let (other, [_, table]) = run(&folder, PROBLEM, "cut", &args);
+    assert_eq!(number(&other["resumed"]), 0.0);
+    assert_eq!(table.lines().count(), 86);
     // Evaluations of another problem are refused, and stay.
     let problem = folder.write("other.toml", with("[80, 160]", "[80, 170]"));
     let output = folder.arg("cut.toml");
@@ -106,6 +111,7 @@ fn a_run_goes_on_where_it_was_cut_short() {
     let nothing = folder.arg("nothing.toml");
     let none = opm(&["design", &problem, "-o", &nothing, "--resume"]);
     none.fails_with_one_line(1, &["nothing.csv: No such file"]);
+    assert_eq!(none.stderr.matches("No such file").count(), 1, "{}", none.stderr);
 }
 
 /// The evaluations of an earlier run are hours of work: they are only replaced by --force.
@@ -233,7 +239,8 @@ fn what_is_wrong_with_a_problem_is_told_with_its_place() {
         ),
         (with("\"mm\"", "\"mn\""), &[":4:", "`length` is not a unit"]),
         (with("budget = 60", "budget = 1"), &[":5:", "`budget` is less than 2 designs"]),
-        (with("budget = 60", "budget = -3"), &[":5:"]),
+        (with("budget = 60", "budget = -3"), &[":5:10: -3, expected a whole number of 0 or more"]),
+        (with("budget = 60", "budget = 1e9"), &[":5:10: 1000000000.0, expected a whole number"]),
         (with("x = [-100, 100, 9]", "x = [-100, 100]"), &[":9:", "expected a value, or [lowest"]),
         (
             with("x = [-100, 100, 9]", "x = [100, -100, 9]"),
@@ -251,7 +258,12 @@ fn what_is_wrong_with_a_problem_is_told_with_its_place() {
         ),
         (with("\"dexterous\"", "\"effort\""), &["`effort`: effort: nothing acts on the mechanism"]),
         (with("h = [80", "hh = [80"), &[":17:1:", "hh"]),
-        (with("h = [80, 160]", "h = [160, 80]"), &[":17:1: `h`: expected the lower bound before"]),
+        (with("h = [80, 160]", "h = [160, 80]"), &[":17:1: `h`: 160 is above 80, expected"]),
+        (with("h = [80, 160]", "h = [80, 80]"), &[":17:1: `h`: both bounds are 80, expected two"]),
+        (
+            with("h = [80, 160]", "h = [nan, 160]"),
+            &[":17:1: `h`: a bound is nan, expected a number"],
+        ),
         (with("h = [80, 160]", "h = [80, inf]"), &[":17:1: `h`"]),
         (with("h = [80, 160]", "h = [[0, 1], [2, 3]]"), &[":17:1:", "`h`"]),
         (

@@ -258,6 +258,7 @@ fn what_is_no_linkage_is_told_so_and_a_linkage_its_command() {
         opm(&["linkage", name])
             .fails_with_one_line(1, &[name, legs, "expected a linkage of two legs"]);
     }
+    opm(&["linkage", "five-bar"]).fails_with_one_line(1, &["a single section, which is planar"]);
     let hint = format!("use `opm linkage {BENNETT}`");
     opm(&["ik", BENNETT, "--pose", ""]).fails_with_one_line(1, &["closed-form", &hint]);
     opm(&["workspace", BENNETT]).fails_with_one_line(1, &["closed-form", &hint]);

@@ -1,7 +1,7 @@
 //! `opm examples`, `opm completions`, help and version.
 
 use crate::PLANO;
-use crate::run::{Folder, keys, opm};
+use crate::run::{Folder, command, keys, opm};
 
 #[test]
 fn examples_are_listed_and_printed() {
@@ -115,6 +115,20 @@ fn licences_are_printed() {
     assert_eq!(opm(&["licenses", "--format", "json"]).json()["text"], text.stdout);
 }
 
+/// A width of 0 is not known.
+#[test]
+fn help_has_its_usual_width_without_a_known_one() {
+    let help = |columns: &str| {
+        let output = command(&["check", "--help"]).env("COLUMNS", columns).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert_eq!(help("0"), help("100"));
+    for width in ["60", "100"] {
+        let items = help(width).lines().filter(|line| line.starts_with("* ")).count();
+        assert_eq!(items, 5, "{}", help(width));
+    }
+}
+
 /// Makes recordings with the names in the examples of `opm plot`.
 fn record_for_plots(folder: &Folder) {
     let grid = ["--grid", "x=-0.1:0.1:5", "--grid", "y=0:0.1:3", "--grid", "xi=0:1:5"];
@@ -134,6 +148,7 @@ fn the_examples_in_the_help_parse() {
         "velocity",
         "linkage",
         "trajectory",
+        "path",
         "workspace",
         "plot",
         "convert",
@@ -177,8 +192,8 @@ fn the_examples_in_the_help_parse() {
                 ]
                 .iter()
                 .any(|e| arg.ends_with(e));
-                if written || ["joints.csv", "controller", "src/kinematics"].contains(&arg.as_str())
-                {
+                let others = ["joints.csv", "path.csv", "controller", "src/kinematics"];
+                if written || others.contains(&arg.as_str()) {
                     *arg = folder.arg(arg);
                 }
                 if *arg == "my-mechanism.toml" {

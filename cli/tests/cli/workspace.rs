@@ -170,6 +170,9 @@ fn nothing_in_reach_is_no_failure() {
     assert_eq!([&found["reachable"], &found["fraction"]].map(number), [0.0, 0.0]);
     assert_eq!(found["imaginary_range"]["theta11"], Value::Null);
     assert!(run.stderr.contains("no pose of the grid"), "{}", run.stderr);
+    let limited = opm(&["workspace", PLANO, "--grid", "x=0:0.1:3", "--limit", "lti=2"]);
+    let expected = "no pose of the grid is in reach and within the limits of joints and lti\n";
+    assert!(limited.stderr.ends_with(expected), "{}", limited.stderr);
     assert!(read::<ReadError>(&folder.path("empty.mcap"), |_| Ok(())).unwrap().complete);
 }
 

@@ -177,6 +177,23 @@ pub enum CalibrateError {
         "the measurements say nothing of the parameters: no row has more measured values than the pose has coordinates, {0}"
     )]
     NoSurplus(usize),
+    /// No parameter that may vary changes what is measured.
+    #[error(
+        "the measurements say nothing of the parameters that may vary: none of these changes a measured value"
+    )]
+    NothingTold,
+    /// The standard deviations are so large that nothing is determined as well as it has to be.
+    #[error(
+        "the measurements are too inaccurate: with these standard deviations even the best determined combination of \
+         parameters has a standard error of {error:.3}, in radians and units of the characteristic length, expected at most \
+         {weakest}"
+    )]
+    Inaccurate {
+        /// The standard error of that combination.
+        error: f64,
+        /// The largest that is accepted ([`Options::weakest`]).
+        weakest: f64,
+    },
     /// The method did not converge.
     #[error("no convergence: {0}; measurements or the mechanism may be far off")]
     NotConverged(&'static str),
@@ -334,9 +351,17 @@ impl Fitted {
         let singular = CalibrateError::NotConverged("a measured pose is singular");
         let derivatives = problem.derivatives(&start).ok_or(singular)?;
         let identified = Identified::new(&derivatives.reduced, least);
-        if identified.rank() == 0 || derivatives.reduced.amax() == 0.0 {
+        // A pose that makes up for every cell of its row leaves only rounding.
+        if derivatives.by_pose.iter().all(|basis| basis.nrows() <= basis.ncols()) {
             let pose = problem.nominal.manipulator.task_coordinates().len();
             return Err(CalibrateError::NoSurplus(pose));
+        }
+        if derivatives.reduced.amax() == 0.0 {
+            return Err(CalibrateError::NothingTold);
+        }
+        if identified.rank() == 0 {
+            let error = identified.singular_values[0].recip();
+            return Err(CalibrateError::Inaccurate { error, weakest: least.recip() });
         }
         let (state, changes) =
             problem.solve(start, &identified, watch).map_err(|error| match error {

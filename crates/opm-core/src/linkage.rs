@@ -100,6 +100,17 @@ pub enum Obstacle {
     /// More than one loop; the number of legs.
     #[error("{0} legs")]
     Legs(usize),
+    /// One subspace for everything, so that there is no second section; its name.
+    #[error("a single section, which is {0}")]
+    OneSection(&'static str),
+    /// Sections that share no motion.
+    #[error("a {lower} and a {upper} section that share no motion")]
+    Nothing {
+        /// The name of the lower section's subspace.
+        lower: &'static str,
+        /// The name of the upper section's subspace.
+        upper: &'static str,
+    },
     /// Sections without closed-form chains, or that share a helical motion.
     #[error("a {lower} and a {upper} section that share a {shared}")]
     Subspaces {
@@ -180,10 +191,13 @@ impl Linkage {
         let ([one, two], [split_one, split_two]) = (&*mechanism.legs, &*decomposition.legs) else {
             return Err(LinkageError::NotCovered(Obstacle::Legs(mechanism.legs.len())));
         };
-        let subspaces = Obstacle::Subspaces {
-            lower: decomposition.lower.name(),
-            upper: decomposition.upper.name(),
-            shared: decomposition.intersection.name(),
+        let (lower, upper) = (decomposition.lower.name(), decomposition.upper.name());
+        let subspaces = if decomposition.upper.dimension() == 0 {
+            Obstacle::OneSection(lower)
+        } else if decomposition.intersection.dimension() == 0 {
+            Obstacle::Nothing { lower, upper }
+        } else {
+            Obstacle::Subspaces { lower, upper, shared: decomposition.intersection.name() }
         };
         let task = match Task::new(&mechanism, &decomposition) {
             Err(TaskError::Subspace { .. } | TaskError::Screw | TaskError::Height { .. }) => {

@@ -28,7 +28,8 @@ use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::mechanism::file::{self, AngleUnit, FileUnits, LengthUnit, MechanismFile};
 use opm_workspace::{Axis, Grid, InscribedShape, Sections};
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use toml::Spanned;
@@ -69,12 +70,12 @@ struct Text {
     format: Spanned<u32>,
     mechanism: String,
     mode: Option<Spanned<String>>,
-    budget: Spanned<u64>,
+    budget: Spanned<Whole>,
     #[serde(default)]
-    seed: u64,
+    seed: Whole,
     #[serde(default)]
     split: bool,
-    values: Option<Spanned<u64>>,
+    values: Option<Spanned<Whole>>,
     units: Option<Units>,
     #[serde(default)]
     set: BTreeMap<Spanned<String>, SetText>,
@@ -88,6 +89,20 @@ struct Text {
     upper: BTreeMap<Spanned<String>, BoundsText>,
     #[serde(default)]
     lower: BTreeMap<Spanned<String>, BoundsText>,
+}
+
+/// A number of things, or a seed.
+#[derive(Clone, Copy, Debug, Default)]
+struct Whole(u64);
+
+impl<'de> Deserialize<'de> for Whole {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let value = toml::Value::deserialize(from)?;
+        let number = value.as_integer().and_then(|number| u64::try_from(number).ok());
+        number.map(Self).ok_or_else(|| {
+            D::Error::custom(format!("{value}, expected a whole number of 0 or more"))
+        })
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -210,11 +225,11 @@ impl Reader<'_> {
         {
             self.report(mode.span().start, format!("`mode`: {error}"));
         }
-        if *text.budget.get_ref() < 2 {
+        if text.budget.get_ref().0 < 2 {
             self.report(text.budget.span().start, "`budget` is less than 2 designs");
         }
-        let values = text.values.as_ref().map_or(5, |values| *values.get_ref());
-        if let Some(given) = text.values.as_ref().filter(|values| *values.get_ref() == 0) {
+        let values = text.values.as_ref().map_or(5, |values| values.get_ref().0);
+        if let Some(given) = text.values.as_ref().filter(|values| values.get_ref().0 == 0) {
             self.report(given.span().start, "`values` is 0, expected at least 1");
         }
         let grid = self.grid(&text.grid, &manipulator)?;
@@ -236,8 +251,8 @@ impl Reader<'_> {
             objectives,
             constraints,
             variables,
-            budget: *text.budget.get_ref(),
-            seed: text.seed,
+            budget: text.budget.get_ref().0,
+            seed: text.seed.0,
             values,
         };
         Some((problem, file))
@@ -427,11 +442,8 @@ impl Reader<'_> {
                 BoundsText::Number(bounds) => vec![*bounds],
                 BoundsText::Point(bounds) => bounds.to_vec(),
             };
-            if bounds.iter().any(|[low, high]| !(low < high && low.is_finite() && high.is_finite()))
-            {
-                let problem =
-                    format!("`{}`: expected the lower bound before the higher one", name.get_ref());
-                self.report(name.span().start, problem);
+            if let Some(problem) = bounds.iter().find_map(|pair| wrong_bounds(*pair)) {
+                self.report(name.span().start, format!("`{}`: {problem}", name.get_ref()));
                 continue;
             }
             let bounds = bounds.iter().map(|pair| pair.map(|end| self.units.si(end, quantity)));
@@ -506,6 +518,18 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// What is wrong with the bounds of a variable.
+fn wrong_bounds([low, high]: [f64; 2]) -> Option<String> {
+    if let Some(bound) = [low, high].into_iter().find(|bound| !bound.is_finite()) {
+        return Some(format!("a bound is {}, expected a number", toml::Value::Float(bound)));
+    }
+    if low == high {
+        return Some(format!("both bounds are {low}, expected two that differ"));
+    }
+    (low > high)
+        .then(|| format!("{low} is above {high}, expected the lower bound before the higher one"))
 }
 
 /// Why a grid has no inscribed shape.

@@ -3,7 +3,7 @@
 //! An optimiser with a seed asks for the same designs again. Those that the table has are not evaluated again, so that a
 //! run that goes on ends as one that was never interrupted.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
@@ -12,6 +12,10 @@ use std::path::Path;
 #[derive(Debug, Default)]
 pub struct Log {
     known: HashMap<Key, Option<Vec<f64>>>,
+    /// Those of an interrupted run that have not been asked for yet.
+    unused: HashSet<Key>,
+    /// How many of that run have been.
+    used: u64,
     file: Option<csv::Writer<File>>,
     columns: usize,
     problem: String,
@@ -25,7 +29,7 @@ type Key = (String, Vec<u64>);
 #[non_exhaustive]
 pub enum LogError {
     /// It cannot be read or written.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// It is not a table of evaluations of this problem.
     #[error("the evaluations in it are of another problem")]
@@ -132,22 +136,20 @@ impl Log {
         file: csv::Writer<File>,
     ) -> Self {
         let problem = columns.problem.clone();
-        Self { known, file: Some(file), columns: columns.header().len(), problem }
+        let unused = known.keys().cloned().collect();
+        Self { known, unused, used: 0, file: Some(file), columns: columns.header().len(), problem }
     }
 
-    /// How many designs it has.
-    pub fn len(&self) -> usize {
-        self.known.len()
-    }
-
-    /// Whether it has none.
-    pub fn is_empty(&self) -> bool {
-        self.known.is_empty()
+    /// How many designs of an interrupted run were not evaluated again. The table may have more, of another seed.
+    pub fn used(&self) -> u64 {
+        self.used
     }
 
     /// The numbers of a design that was evaluated; `Some(None)` for one that does not assemble.
-    pub(crate) fn known(&self, stage: &str, variables: &[f64]) -> Option<Option<Vec<f64>>> {
-        self.known.get(&key(stage, variables)).cloned()
+    pub(crate) fn known(&mut self, stage: &str, variables: &[f64]) -> Option<Option<Vec<f64>>> {
+        let key = key(stage, variables);
+        self.used += u64::from(self.unused.remove(&key));
+        self.known.get(&key).cloned()
     }
 
     /// Adds a design. `cells` are all cells of its variables and numbers; those of another stage are empty.

@@ -269,12 +269,14 @@ impl WorkspaceKind {
         }
     }
 
-    /// The sentence about an empty set; `limited` says whether the condition number has a limit.
-    pub fn nothing(self, limited: bool) -> String {
-        let well = if limited {
-            ", within the limits and well conditioned"
-        } else {
-            " and within the limits"
+    /// The sentence about an empty set; `limited` names what has a limit besides the joints.
+    pub fn nothing(self, limited: &[&str]) -> String {
+        let well = match limited {
+            [] => " and within the limits".to_owned(),
+            [others @ .., last] => {
+                let names = [&["joints"], others].concat().join(", ");
+                format!(" and within the limits of {names} and {last}")
+            }
         };
         match self {
             Self::Dexterous => {

@@ -8,7 +8,6 @@ use crate::request::Coordinates;
 use crate::scene;
 use crate::session::Reply;
 use crate::units::shown;
-use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Solution, Unreachable};
 use opm_core::{Mode, Quantity};
 use opm_study::text::reason;
@@ -86,7 +85,7 @@ pub fn solve(
         return Ok(Reply::new(&posture));
     }
     posture.values = values(explorer, solution.joints(), solution.imaginary());
-    posture.beyond = beyond(manipulator, &solution);
+    posture.beyond = manipulator.beyond_limits(&solution).collect();
     let dependent = manipulator.dependent_coordinates().iter().zip(solution.dependent());
     posture.dependent =
         dependent.map(|(c, &value)| shown(value, c.quantity, explorer.units())).collect();
@@ -108,16 +107,6 @@ pub fn values(explorer: &Explorer, joints: &[f64], imaginary: &[f64]) -> Vec<f64
 pub fn quantities(manipulator: &Manipulator) -> impl Iterator<Item = Quantity> {
     let joints = manipulator.coordinates().iter().map(|c| c.quantity);
     joints.chain(manipulator.imaginary().iter().map(|joint| joint.quantity))
-}
-
-/// The joint coordinates that are beyond their limits.
-fn beyond(manipulator: &Manipulator, solution: &Solution) -> Vec<usize> {
-    let limits = manipulator.coordinates().iter().zip(manipulator.limits());
-    let joints = limits.zip(solution.joints()).enumerate();
-    let outside = joints.filter(|(_, ((coordinate, limits), value))| {
-        !limits.admits(JointDisplacement::Value(*value - coordinate.home))
-    });
-    outside.map(|(number, _)| number).collect()
 }
 
 fn out_of_reach<'a>(explorer: &'a Explorer, missed: &Unreachable) -> OutOfReach<'a> {

@@ -29,7 +29,7 @@ mod search;
 mod step;
 
 pub use curves::{SingularCurves, singular_curves};
-pub use path::{AspectPath, NoPath, aspect_at, find_path};
+pub use path::{AspectPath, BeyondLimits, NoPath, aspect_at, find_path};
 
 use crate::boundary::{Outline, boundary};
 use crate::forest::Forest;

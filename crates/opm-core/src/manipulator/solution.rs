@@ -3,7 +3,7 @@
 use super::Manipulator;
 use super::leg::{LegSolution, Section};
 use crate::chain::ReachDeficit;
-use crate::group::Displacement;
+use crate::group::{Displacement, JointDisplacement};
 use nalgebra::Isometry3;
 
 /// A leg that does not reach a pose.
@@ -226,6 +226,16 @@ impl ActuatedJoints {
 }
 
 impl Manipulator {
+    /// The numbers of the joint coordinates that are beyond their limits in a solution.
+    pub fn beyond_limits(&self, solution: &Solution) -> impl Iterator<Item = usize> {
+        let limits = self.coordinates.iter().zip(&self.limits);
+        let joints = limits.zip(solution.joints()).enumerate();
+        let beyond = joints.filter(|(_, ((c, limits), value))| {
+            !limits.admits(JointDisplacement::Value(**value - c.home))
+        });
+        beyond.map(|(number, _)| number)
+    }
+
     /// A buffer for [`Manipulator::inverse`]. It holds the values at home, which the first call of
     /// [`Manipulator::inverse_near`] starts from.
     pub fn solution(&self) -> Solution {

@@ -7,6 +7,7 @@ use super::step::{is_clear, violation};
 use crate::progress::{Cancelled, Progress};
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::mechanism::file::FileUnits;
 use opm_core::motion::{Ends, Spline};
 use std::f64::consts::TAU;
 
@@ -48,6 +49,14 @@ pub enum NoPath {
         /// What is wrong with it.
         problem: String,
     },
+    /// Joints are beyond their limits at a pose.
+    #[error("{end} is beyond the limits of joints: {}", in_si(.joints))]
+    Limits {
+        /// `the start` or `the goal`.
+        end: &'static str,
+        /// Those joints.
+        joints: Vec<BeyondLimits>,
+    },
     /// No pose of the grid around a pose can be reached from it without a singularity.
     #[error(
         "{end} cannot go straight to any pose of the grid around it without a singularity; a finer grid, or one \
@@ -78,6 +87,28 @@ pub enum NoPath {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// A joint coordinate that is beyond its limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BeyondLimits {
+    /// Its name.
+    pub name: String,
+    /// What its value measures.
+    pub quantity: Quantity,
+    /// Its value, radians or metres.
+    pub value: f64,
+    /// Its limits.
+    pub limits: [f64; 2],
+}
+
+fn in_si(joints: &[BeyondLimits]) -> String {
+    let joint = |BeyondLimits { name, quantity, value, limits: [low, high] }: &BeyondLimits| {
+        let [value, low, high] =
+            [value, low, high].map(|value| FileUnits::SI.show(*value, *quantity));
+        format!("{name} is {value}, expected {low} to {high}")
+    };
+    joints.iter().map(joint).collect::<Vec<_>>().join("; ")
 }
 
 /// A path from one pose to another in one working mode, which takes `duration` seconds: straight if that is
@@ -166,7 +197,15 @@ impl Finder<'_> {
         match manipulator.inverse(pose, self.search.mode, &mut solution) {
             Err(error) => wrong(&format!("no pose of this mechanism: {error}")),
             Ok(None) => wrong("out of reach in this working mode"),
-            Ok(Some(at)) if !at.within_limits() => wrong("beyond the limits of joints"),
+            Ok(Some(at)) if !at.within_limits() => {
+                let beyond = manipulator.beyond_limits(at).filter_map(|number| {
+                    let c = &manipulator.coordinates()[number];
+                    let (name, quantity) = (c.name.clone(), c.quantity);
+                    let (value, limits) = (at.joints()[number], c.limits?);
+                    Some(BeyondLimits { name, quantity, value, limits })
+                });
+                Err(NoPath::Limits { end, joints: beyond.collect() })
+            }
             Ok(Some(_)) => match self.levels.at(pose, &mut self.values) {
                 true if !self.levels.singular(&self.values) => Ok(()),
                 _ => wrong("singular"),
