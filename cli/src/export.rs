@@ -86,6 +86,16 @@ impl Files<'_> {
         let Some(path) = path else {
             return print_with(|out| out.write_all(model.as_bytes()));
         };
+        // A file beside a model that is not there yet is somebody else's.
+        if let Some((beside, _)) = self.beside.as_ref().filter(|_| !path.exists())
+            && beside.exists()
+        {
+            let problem = format!(
+                "{}, which goes beside it, is there already: expected another name",
+                beside.display()
+            );
+            return Err(Failure::flag("--output", problem));
+        }
         let files = [Some((path.to_owned(), model)), self.beside];
         let files: Vec<_> = files.into_iter().flatten().collect();
         for (path, _) in &files {

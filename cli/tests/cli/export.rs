@@ -143,6 +143,13 @@ fn a_tree_has_its_closures_beside_it() {
         assert!(joints.contains(&name), "{name}: {joints:?}");
     }
     let tree = |args: &[&str]| opm(&[&["export", "urdf", PLANO], args].concat());
+    // It is written again, but a file of that name that was there before is somebody else's.
+    tree(&["-o", &file]).text();
+    folder.write("own.yaml", "mine");
+    let parts = ["--output: ", "own.yaml, which goes beside it, is there already"];
+    tree(&["-o", &folder.arg("own.urdf")]).fails_with_one_line(2, &parts);
+    assert_eq!(folder.names(), ["own.yaml", "plano.urdf", "plano.yaml"]);
+    assert_eq!(folder.read("own.yaml"), "mine");
     tree(&["-o", &folder.arg("a.xml")]).fails_with_one_line(2, &["--output", "ends in .urdf"]);
     tree(&["--density", "0"]).fails_with_one_line(2, &["--density", "expected a number from"]);
 }
