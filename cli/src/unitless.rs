@@ -159,7 +159,8 @@ pub fn note_values(
 pub fn note_changes(output: &Output, changes: &[Change], loaded: &Loaded) {
     let file = &loaded.file;
     let bare = |change: &&Change| change.numbers().any(|number| number.without_unit().is_some());
-    let given: Vec<&Change> = changes.iter().filter(bare).collect();
+    let place = |change: &&Change| !file.is_of_drive(change.name());
+    let given: Vec<&Change> = changes.iter().filter(place).filter(bare).collect();
     // Without a number that might be misread, nothing has to be compiled.
     let Some(manipulator) =
         (!given.is_empty()).then(|| Manipulator::new(file.mechanism.clone()).ok()).flatten()

@@ -15,11 +15,6 @@ pub struct Sigmas {
     pub given: [Number; 2],
 }
 
-impl Sigmas {
-    /// What is given, in order.
-    pub const NAMES: [&str; 2] = ["LENGTH", "ANGLE"];
-}
-
 impl FromStr for Sigmas {
     type Err = Misread;
 
@@ -34,8 +29,8 @@ impl FromStr for Sigmas {
                 }
             }
         };
-        let [length, angle] = numbers(text, Self::NAMES, of)?;
-        let (first, second) = text.split_once(',').unwrap_or((text, text));
+        let [length, angle] = numbers(text, ["LENGTH", "ANGLE"], of)?;
+        let (first, second) = text.split_once(',').expect("two numbers were read");
         let given = [first.parse()?, second.parse()?];
         Ok(Self { sigma: Sigma { length, angle }, given })
     }

@@ -31,13 +31,16 @@ impl Files {
             return Err(Failure::flag("--output", problem));
         }
         loaded.refuse_as_output(output, &[&args.problem])?;
+        let inputs: Vec<&Path> =
+            loaded.path.as_deref().into_iter().chain([&*args.problem]).collect();
         if problem.objectives.len() > 1 {
-            refuse_front(output, loaded.path.as_deref().into_iter().chain([&*args.problem]))?;
+            refuse_front(output, &inputs, problem.budget)?;
         }
         let evaluations = output.with_extension("csv");
+        loaded.refuse_as_output(&evaluations, &inputs)?;
         if evaluations.exists() && !args.resume && !args.force {
             let problem = format!(
-                "{} is there already, with the evaluations of an earlier run: --resume goes on with it, --force replaces it",
+                "{} is there already: --resume goes on with the evaluations of an earlier run, --force replaces the file",
                 evaluations.display()
             );
             return Err(Failure::flag("--output", problem));
@@ -97,21 +100,23 @@ fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |stem| stem.display().to_string())
 }
 
-/// Refuses an input whose name a design of a front would get.
-fn refuse_front<'p>(output: &Path, inputs: impl Iterator<Item = &'p Path>) -> Result<(), Failure> {
-    let folder = |path: &Path| {
-        let parent = path.parent().filter(|parent| *parent != Path::new(""));
-        parent.unwrap_or(Path::new(".")).canonicalize().ok()
-    };
-    for input in inputs.filter(|input| folder(input) == folder(output)) {
-        let number = stem(input).strip_prefix(&format!("{}-", stem(output))).map(str::to_owned);
-        let is_number =
-            number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()));
-        if is_number && input.extension() == output.extension() {
-            let problem = format!(
-                "{} is also the input, and a design of the front would replace it",
-                input.display()
-            );
+/// Refuses to write a design of a front, of `most` at most, over an input: each has a number behind the name of the output.
+fn refuse_front(output: &Path, inputs: &[&Path], most: u64) -> Result<(), Failure> {
+    let folder = output.parent().filter(|parent| *parent != Path::new(""));
+    // Where there is no folder yet, nothing is in it.
+    let Ok(entries) = folder.unwrap_or(Path::new(".")).read_dir() else { return Ok(()) };
+    let before = format!("{}-", stem(output));
+    for entry in entries.flatten() {
+        let name = entry.file_name().display().to_string();
+        let number = name.strip_prefix(&before).and_then(|rest| rest.strip_suffix(".toml"));
+        let number = number.filter(|digits| digits.bytes().all(|digit| digit.is_ascii_digit()));
+        let is_design = number
+            .and_then(|digits| digits.parse().ok())
+            .is_some_and(|n: u64| (1..=most).contains(&n));
+        let file = entry.path().canonicalize().ok().filter(|_| is_design);
+        if file.is_some() && inputs.iter().any(|input| input.canonicalize().ok() == file) {
+            let problem =
+                format!("{name} is also the input, and a design of the front would replace it");
             return Err(Failure::flag("--output", problem));
         }
     }

@@ -19,7 +19,9 @@ pub fn run(
     output: &Output,
 ) -> Result<(), Failure> {
     let clearance = interference::clearance(args.clearance)?;
-    if let Ok(manipulator) = loaded.compile() {
+    if args.clearance.is_some()
+        && let Ok(manipulator) = loaded.compile()
+    {
         interference::note_clearance(output, args.clearance, (loaded, &manipulator));
     }
     let (units, progress) = (loaded.file.units, interruptible()?);

@@ -387,6 +387,9 @@ fn numbers_without_a_unit_that_look_misread_are_noted() {
         assert_eq!(odd(&[args, &["--quiet"]].concat()), 0, "{args:?}");
     }
     assert_eq!(odd(&["ik", PLANO, "--pose", "x=10mm,y=0.01,xi=15deg,psi=0.2"]), 0);
+    // Rates and accelerations are no places.
+    let limits = ["--set", "leg4.max_rate.phi1=30", "--set", "leg1.max_acceleration.S=20"];
+    assert_eq!(odd(&[&["ik", PLANO, "--pose", "x=0"], &limits[..]].concat()), 0);
     let run = opm(&["ik", PLANO, "--pose", "xi=15"]);
     let expected = "opm: note: --pose: xi=15 has no unit and was read as 15 rad, 859 degrees; if it is in \
                     deg, write xi=15deg\n";

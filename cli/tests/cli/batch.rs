@@ -316,4 +316,9 @@ fn an_output_is_written_through_a_link() {
     assert!(folder.path("link.csv").is_symlink());
     assert!(folder.read("real.csv").starts_with("x,"), "{}", folder.read("real.csv"));
     assert_eq!(folder.names(), ["link.csv", "poses.csv", "real.csv"]);
+    // Also where nothing is there yet.
+    std::fs::remove_file(folder.path("real.csv")).expect("a file");
+    opm(&["ik", PLANO, "--poses", &poses, "-o", &folder.arg("link.csv"), "--quiet"]).text();
+    assert!(folder.path("link.csv").is_symlink());
+    assert_eq!(folder.names(), ["link.csv", "poses.csv", "real.csv"]);
 }

@@ -620,7 +620,11 @@ fn wrong_moves_are_named_by_line_and_column() {
         ("acceleration = 2000\n", "", "`acceleration` is missing"),
         ("to = { x = -20 }", "to = { xi = 3 }", "move 3: the position does not change"),
         ("to = { x = -20 }", "to = { x = -20 }\nblend = 1", "`blend` is given for the last move"),
-        ("feed = 100", "blend = 35\nfeed = 100", "move 2: it is 62.8319 mm long"),
+        (
+            "to = { x = 20, xi = 5 }",
+            "to = { x = 20, xi = 5 }\nblend = 45",
+            "move 1: it is 40 mm long, and the blends at its ends need 45 mm",
+        ),
         (
             "via = { x = 40, y = 0 }",
             "via = { x = 40, xi = 0 }",

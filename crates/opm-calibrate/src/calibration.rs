@@ -328,6 +328,24 @@ pub(crate) fn weights(
     columns.iter().map(of).collect()
 }
 
+/// Refuses measurements that say nothing of the parameters, by their derivatives: those by parameters that no pose makes up
+/// for, and a basis of those by the pose of each row.
+pub(crate) fn refuse_untold(
+    problem: &Problem<'_>,
+    reduced: &DMatrix<f64>,
+    by_pose: &[DMatrix<f64>],
+) -> Result<(), CalibrateError> {
+    // A pose that makes up for every cell of its row leaves only rounding.
+    if by_pose.iter().all(|basis| basis.nrows() <= basis.ncols()) {
+        let pose = problem.nominal.manipulator.task_coordinates().len();
+        return Err(CalibrateError::NoSurplus(pose));
+    }
+    match reduced.amax() == 0.0 {
+        true => Err(CalibrateError::NothingTold),
+        false => Ok(()),
+    }
+}
+
 /// A fit that converged.
 struct Fitted {
     identified: Identified,
@@ -351,14 +369,7 @@ impl Fitted {
         let singular = CalibrateError::NotConverged("a measured pose is singular");
         let derivatives = problem.derivatives(&start).ok_or(singular)?;
         let identified = Identified::new(&derivatives.reduced, least);
-        // A pose that makes up for every cell of its row leaves only rounding.
-        if derivatives.by_pose.iter().all(|basis| basis.nrows() <= basis.ncols()) {
-            let pose = problem.nominal.manipulator.task_coordinates().len();
-            return Err(CalibrateError::NoSurplus(pose));
-        }
-        if derivatives.reduced.amax() == 0.0 {
-            return Err(CalibrateError::NothingTold);
-        }
+        refuse_untold(problem, &derivatives.reduced, &derivatives.by_pose)?;
         if identified.rank() == 0 {
             let error = identified.singular_values[0].recip();
             return Err(CalibrateError::Inaccurate { error, weakest: least.recip() });

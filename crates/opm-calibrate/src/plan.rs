@@ -6,7 +6,7 @@
 //! calibration with the local convergence method and Tabu search", Int. J. Robotics Research 24, 2005). The set starts from
 //! the pose that tells the most, and then the one that adds the most, until there are enough.
 
-use crate::calibration::{CalibrateError, Options, chosen, weights};
+use crate::calibration::{CalibrateError, Options, chosen, refuse_untold, weights};
 use crate::column::Column;
 use crate::fit::{Problem, stacked};
 use crate::identify::Identified;
@@ -60,19 +60,20 @@ pub fn plan(
     let parameters = &parameters[..];
     let problem = Problem { nominal, parameters, columns, rows, weights, mode };
     let derivatives = problem.derivatives_of_rows(&problem.at(candidates));
-    let (numbers, parts): (Vec<usize>, Vec<DMatrix<f64>>) = derivatives
-        .into_iter()
-        .enumerate()
-        .filter_map(|(number, found)| Some((number, found??.0)))
-        .unzip();
+    let (mut numbers, mut parts, mut by_pose) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, found) in derivatives.into_iter().enumerate() {
+        if let Some(Some((part, basis))) = found {
+            numbers.push(number);
+            parts.push(part);
+            by_pose.push(basis);
+        }
+    }
     if parts.is_empty() {
         return Err(CalibrateError::NoPose);
     }
     let all = stacked(&parts, parameters.len());
+    refuse_untold(&problem, &all, &by_pose)?;
     let identified = Identified::new(&all, 0.0);
-    if identified.rank() == 0 || all.amax() == 0.0 {
-        return Err(CalibrateError::NoSurplus(nominal.manipulator.task_coordinates().len()));
-    }
     let own: Vec<DMatrix<f64>> = parts.iter().map(|part| part * &identified.determined).collect();
     let squares: Vec<DMatrix<f64>> = own.iter().map(|part| part.tr_mul(part)).collect();
     let largest = squares.iter().map(DMatrix::trace).fold(0.0, f64::max);

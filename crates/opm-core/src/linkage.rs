@@ -105,7 +105,7 @@ pub enum Obstacle {
     OneSection(&'static str),
     /// Sections that share no motion.
     #[error("a {lower} and a {upper} section that share no motion")]
-    Nothing {
+    NothingShared {
         /// The name of the lower section's subspace.
         lower: &'static str,
         /// The name of the upper section's subspace.
@@ -195,7 +195,7 @@ impl Linkage {
         let subspaces = if decomposition.upper.dimension() == 0 {
             Obstacle::OneSection(lower)
         } else if decomposition.intersection.dimension() == 0 {
-            Obstacle::Nothing { lower, upper }
+            Obstacle::NothingShared { lower, upper }
         } else {
             Obstacle::Subspaces { lower, upper, shared: decomposition.intersection.name() }
         };

@@ -1,5 +1,6 @@
 //! Files that appear under their name only once they are whole.
 
+use std::borrow::Cow;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -31,8 +32,8 @@ impl Sink for io::Cursor<&mut Vec<u8>> {
 
 /// A file being written as `NAME.partial`, which [`Sink::commit`] renames to `NAME`.
 ///
-/// Until then a file `NAME` stays as it is; then it is replaced. Where `NAME` is a symbolic link to a file, that file is
-/// replaced, and the link stays. A run that ends early, for whatever
+/// Until then a file `NAME` stays as it is; then it is replaced. Where `NAME` is a symbolic link, the file that it
+/// leads to is written, and the link stays. A run that ends early, for whatever
 /// reason, leaves the `.partial` file, unless it [discards](Self::discard) it. The next run overwrites it.
 ///
 /// ```
@@ -69,9 +70,7 @@ impl PartialFile {
         if fs::metadata(target).is_ok_and(|found| !found.is_file()) {
             return Err(RecordError::NotAFile { path: target.into() });
         }
-        let linked = fs::symlink_metadata(target).is_ok_and(|found| found.is_symlink());
-        let file = if linked { fs::canonicalize(target).ok() } else { None };
-        let target = file.as_deref().unwrap_or(target);
+        let target = &*followed(target);
         let mut partial = target.as_os_str().to_owned();
         partial.push(".partial");
         let partial = PathBuf::from(partial);
@@ -110,6 +109,19 @@ impl PartialFile {
     pub fn discard(mut self) {
         self.begun = false;
     }
+}
+
+/// The file that a symbolic link leads to, whether it is there yet or not; another name as it is.
+fn followed(target: &Path) -> Cow<'_, Path> {
+    /// As many as the system follows.
+    const LINKS: usize = 40;
+    let mut at = Cow::Borrowed(target);
+    for _ in 0..LINKS {
+        let Ok(next) = fs::read_link(&at) else { break };
+        // A relative link begins in its own folder.
+        at = Cow::Owned(at.parent().unwrap_or(Path::new("")).join(next));
+    }
+    at
 }
 
 impl Write for PartialFile {

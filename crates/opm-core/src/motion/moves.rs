@@ -197,25 +197,32 @@ impl Moves {
             let from = if number == 0 { start } else { &moves[number - 1].to };
             let segment = Segment::new(at, from, next, positions);
             let segment = segment.map_err(|problem| MovesError { number, problem })?;
-            let blends = if number == 0 { 0.0 } else { moves[number - 1].blend } + next.blend;
-            // The last move has no corner at its end.
-            let needed = if number + 1 == moves.len() { blends - next.blend } else { blends };
+            at += segment.length;
+            segments.push(segment);
+        }
+        // Where moves go on in one direction, there is no corner: a blend would leave a line beside an arc.
+        let corners: Vec<Option<f64>> = segments
+            .windows(2)
+            .zip(moves)
+            .map(|(pair, given)| (!is_smooth(&pair[0], &pair[1], positions)).then_some(given.blend))
+            .collect();
+        for (number, segment) in segments.iter().enumerate() {
+            let blend =
+                |corner: Option<usize>| corner.and_then(|i| *corners.get(i)?).unwrap_or(0.0);
+            let needed = blend(number.checked_sub(1)) + blend(Some(number));
             if needed > segment.length {
                 let problem = MoveProblem::Overlap { needed, length: segment.length };
                 return Err(MovesError { number, problem });
             }
-            at += segment.length;
-            segments.push(segment);
         }
         let (mut blends, mut stops) = (Vec::new(), Vec::new());
-        for (pair, given) in segments.windows(2).zip(moves) {
-            // Where moves go on in one direction, there is no corner: a blend would leave a line beside an arc.
-            match is_smooth(&pair[0], &pair[1], positions) {
-                true => {}
-                false if given.blend > 0.0 => {
-                    blends.push(Blend::new(&pair[0], &pair[1], given.blend));
+        for (pair, corner) in segments.windows(2).zip(corners) {
+            match corner {
+                None => {}
+                Some(distance) if distance > 0.0 => {
+                    blends.push(Blend::new(&pair[0], &pair[1], distance));
                 }
-                false => stops.push(pair[1].start),
+                Some(_) => stops.push(pair[1].start),
             }
         }
         Ok((Self { segments, blends }, stops))
@@ -572,6 +579,15 @@ mod tests {
         let start = [-0.2, -0.2, 0.0];
         let (path, stops) = Moves::new(&start, &slot(0.0), &POSITIONS).unwrap();
         assert!(stops.is_empty() && path.blends.is_empty(), "{stops:?} {:?}", path.blends);
+        let timing = path.timing(&slot(0.0), &stops, 2.0).unwrap();
+        assert!(
+            (timing.end() - (path.length() / 0.2 + 0.2 / 2.0)).abs() < 1e-14,
+            "{}",
+            timing.end()
+        );
+        // Nor does what is not rounded need room.
+        let long = slot(0.0).map(|given| Move { blend: 0.3, ..given });
+        assert_eq!(Moves::new(&start, &long, &POSITIONS).unwrap().0, path);
         let mut out = Instant::new(3);
         for i in 0..=1000 {
             path.at(path.length() * f64::from(i) / 1000.0, &mut out);

@@ -204,7 +204,12 @@ impl Finder<'_> {
                     let (value, limits) = (at.joints()[number], c.limits?);
                     Some(BeyondLimits { name, quantity, value, limits })
                 });
-                Err(NoPath::Limits { end, joints: beyond.collect() })
+                let joints: Vec<_> = beyond.collect();
+                // At the very end of a range, its value may be within it, to rounding.
+                if joints.is_empty() {
+                    return wrong("beyond the limits of joints");
+                }
+                Err(NoPath::Limits { end, joints })
             }
             Ok(Some(_)) => match self.levels.at(pose, &mut self.values) {
                 true if !self.levels.singular(&self.values) => Ok(()),

@@ -30,6 +30,13 @@ impl MechanismFile {
         name.split('.').any(|part| part == DriveLimit::Effort.key())
     }
 
+    /// Whether a name that [`MechanismFile::with`] takes is that of a largest rate, acceleration or effort, and not that of a
+    /// length or an angle.
+    pub fn is_of_drive(&self, name: &str) -> bool {
+        let of = |part: &str| DriveLimit::ALL.iter().any(|limit| limit.key() == part);
+        name.split('.').any(of)
+    }
+
     /// The same file with some numbers changed, SI.
     ///
     /// The names are those of [`Family::parameters`] (see [`Family::with`]). In a list of joints, `S1.limits` are the
