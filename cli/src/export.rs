@@ -86,20 +86,21 @@ impl Files<'_> {
         let Some(path) = path else {
             return print_with(|out| out.write_all(model.as_bytes()));
         };
+        let files = [Some((path.to_owned(), model)), self.beside];
+        let files: Vec<_> = files.into_iter().flatten().collect();
+        for (path, _) in &files {
+            loaded.refuse_as_output(path, inputs)?;
+        }
         // A file beside a model that is not there yet is somebody else's.
-        if let Some((beside, _)) = self.beside.as_ref().filter(|_| !path.exists())
+        if let Some((beside, _)) = files.get(1)
             && beside.exists()
+            && !path.exists()
         {
             let problem = format!(
                 "{}, which goes beside it, is there already: expected another name",
                 beside.display()
             );
             return Err(Failure::flag("--output", problem));
-        }
-        let files = [Some((path.to_owned(), model)), self.beside];
-        let files: Vec<_> = files.into_iter().flatten().collect();
-        for (path, _) in &files {
-            loaded.refuse_as_output(path, inputs)?;
         }
         let targets: Result<Vec<_>, _> =
             files.iter().map(|(path, _)| Target::create(path)).collect();
