@@ -41,7 +41,8 @@ pub struct Source {
     pub quantity: Quantity,
     /// The name of the joint that it belongs to; `platform` for the platform's end of a leg, `None` for a family's parameter.
     pub joint: Option<String>,
-    /// The direction of an offset, or the axis of a rotation, at home in base coordinates; `None` for actuators and parameters.
+    /// The direction of an offset or the axis of a rotation, in base coordinates, with the mechanism at home; `None` for
+    /// actuators and parameters.
     pub direction: Option<Vector3<f64>>,
     pub(crate) origin: Origin,
 }

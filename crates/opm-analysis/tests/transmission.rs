@@ -158,7 +158,7 @@ fn symmetric_legs_are_alike() {
             own.iter().all(|(_, i, o)| (i - own[0].1).abs() < 1e-9 && (o - own[0].2).abs() < 1e-9)
         );
     }
-    // A third of a turn of a tilted platform about the vertical takes leg 1 to leg 2.
+    // Rotating a tilted platform by 120 degrees about the vertical puts leg 1 where leg 2 was.
     let [a, b] = [0.2, 0.2 + TAU / 3.0].map(|zeta| of(&[0.0, 0.0, zeta, 0.3, -zeta]));
     for section in [Section::Lower, Section::Upper] {
         for leg in 0..3 {

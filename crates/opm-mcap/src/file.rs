@@ -32,9 +32,9 @@ impl Sink for io::Cursor<&mut Vec<u8>> {
 
 /// A file being written as `NAME.partial`, which [`Sink::commit`] renames to `NAME`.
 ///
-/// Until then a file `NAME` stays as it is; then it is replaced. Where `NAME` is a symbolic link, the file that it
-/// leads to is written, and the link stays. A run that ends early, for whatever
-/// reason, leaves the `.partial` file, unless it [discards](Self::discard) it. The next run overwrites it.
+/// Until then a file `NAME` stays as it is; then it is replaced. Where `NAME` is a symbolic link, the file that it leads to
+/// is written, and the link stays. A run that ends early, for whatever reason, leaves the `.partial` file, unless it
+/// [discards](Self::discard) it. The next run overwrites it.
 ///
 /// ```
 /// use opm_mcap::{PartialFile, Sink};

@@ -26,7 +26,7 @@ pub struct Move {
     /// The speed of the position, metres per second.
     pub feed: f64,
     /// The distance from the corner at its end within which the path is rounded, metres. It is not used where the next move goes
-    /// on in the same direction, nor that of the last move.
+    /// on in the same direction, nor at the end of the last move.
     pub blend: f64,
 }
 

@@ -23,8 +23,9 @@ const COLORS: [[u8; 3]; 7] = [
     [0xf0, 0xe4, 0x42],
 ];
 
-/// The colour of a numbered class of points: a cause that rejects them, or the aspect that they are in. Number 0 are
-/// points of several or of none. The colours of 8 to 14 are darker ones of 1 to 7; from 15 on, they are those of 1 to 14.
+/// The colour of a numbered class of points: a cause that rejects them, or the aspect that they are in. Number 0 is
+/// for points of several classes or of none. Numbers 8 to 14 have the colours of 1 to 7, but darker; from 15 on, these 14
+/// colours are used again.
 pub fn class_color(number: usize) -> [u8; 3] {
     match number.checked_sub(1) {
         None => SEVERAL,

@@ -218,7 +218,7 @@ impl Finder<'_> {
         }
     }
 
-    /// A pose with each angle that may turn fully within half a turn of another pose's.
+    /// The same pose, with each angle that may make full revolutions within π of that of another pose.
     fn within_half_a_turn(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
         let manipulator = self.search.manipulator;
         let coordinates = manipulator.task_coordinates().iter().zip(from).zip(to);
