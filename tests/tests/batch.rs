@@ -17,8 +17,13 @@ struct Tally {
     outside: usize,
 }
 
-/// Compares both ways on these poses.
+/// Compares both ways on these poses in one mode.
 fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut Tally) {
+    check_modes(manipulator, poses, &vec![mode; poses.len()], tally);
+}
+
+/// Compares both ways on these poses, each in a mode of its own, or in one.
+fn check_modes(manipulator: &Manipulator, poses: &[Vec<f64>], modes: &[Mode], tally: &mut Tally) {
     let widths = [manipulator.coordinates().len(), manipulator.imaginary().len()];
     // Values that are not written must not pass for results.
     let mut joints = vec![1e99; poses.len() * widths[0]];
@@ -30,10 +35,15 @@ fn check(manipulator: &Manipulator, poses: &[Vec<f64>], mode: Mode, tally: &mut 
         reachable: &mut reachable,
         within_limits: &mut within,
     };
-    manipulator.inverse_many(&poses.concat(), mode, &mut manipulator.batch(), &mut out).unwrap();
+    let (batch, poses_in_rows) = (&mut manipulator.batch(), poses.concat());
+    if modes.iter().all(|mode| *mode == modes[0]) {
+        manipulator.inverse_many(&poses_in_rows, modes[0], batch, &mut out).unwrap();
+    } else {
+        manipulator.inverse_each(&poses_in_rows, modes, batch, &mut out).unwrap();
+    }
     let mut solution = manipulator.solution();
-    for (row, pose) in poses.iter().enumerate() {
-        let reached = manipulator.inverse(pose, mode, &mut solution).unwrap().is_some();
+    for (row, (pose, mode)) in poses.iter().zip(modes).enumerate() {
+        let reached = manipulator.inverse(pose, *mode, &mut solution).unwrap().is_some();
         let name = &manipulator.mechanism().name;
         assert_eq!(reachable[row], reached, "{name}: {pose:?}");
         assert_eq!(within[row], reached && solution.within_limits(), "{name}: {pose:?}");
@@ -75,6 +85,17 @@ fn poses(rng: &mut Rng, manipulator: &Manipulator, count: usize) -> Vec<Vec<f64>
         .collect()
 }
 
+/// Random modes.
+fn some_modes(rng: &mut Rng, manipulator: &Manipulator, count: usize) -> Vec<Mode> {
+    let sign = |rng: &mut Rng| if rng.bool() { '+' } else { '-' };
+    (0..count)
+        .map(|_| {
+            let signs: String = (0..manipulator.choices()).map(|_| sign(rng)).collect();
+            manipulator.parse_mode(&signs).unwrap()
+        })
+        .collect()
+}
+
 #[test]
 fn many_poses_are_solved_as_one_is() {
     let mut rng = Rng::with_seed(3);
@@ -84,15 +105,13 @@ fn many_poses_are_solved_as_one_is() {
             let (mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
             // Numbers of poses that fill whole blocks, and numbers with a remainder.
-            let count = [1, 63, 64, 65, 150][rng.usize(..5)];
+            let count = [1, 3, 9, 63, 64, 65, 150][rng.usize(..7)];
             let poses = poses(&mut rng, &manipulator, count);
-            let signs = |rng: &mut Rng| -> String {
-                (0..manipulator.choices()).map(|_| if rng.bool() { '+' } else { '-' }).collect()
-            };
-            let some = manipulator.parse_mode(&signs(&mut rng)).unwrap();
-            for mode in [manipulator.home_mode(), some] {
+            let some = some_modes(&mut rng, &manipulator, count);
+            for mode in [manipulator.home_mode(), some[0]] {
                 check(&manipulator, &poses, mode, &mut tally);
             }
+            check_modes(&manipulator, &poses, &some, &mut tally);
         }
         let Tally { reached, beyond, outside } = tally;
         println!("{pair:?}: {reached} in reach, {outside} of them beyond limits, {beyond} not");
@@ -136,12 +155,11 @@ fn poses_with_dependent_coordinates_are_solved_as_one_is() {
             let drawn = constrained(&mut rng, pair, lacks, repeated, OPTIONS);
             let Some((mechanism, decomposition)) = drawn else { continue };
             let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-            let count = [1, 63, 64, 65, 150][rng.usize(..5)];
+            let count = [1, 3, 9, 63, 64, 65, 150][rng.usize(..7)];
             let mut poses = poses(&mut rng, &manipulator, count);
-            let signs: String =
-                (0..manipulator.choices()).map(|_| if rng.bool() { '+' } else { '-' }).collect();
-            let some = manipulator.parse_mode(&signs).unwrap();
-            for mode in [manipulator.home_mode(), some] {
+            let some = some_modes(&mut rng, &manipulator, count);
+            check_modes(&manipulator, &poses, &some, &mut tally);
+            for mode in [manipulator.home_mode(), some[0]] {
                 for _ in 0..5 {
                     let found = edge(&mut rng, &manipulator, mode);
                     edges += usize::from(found.is_some());
@@ -173,6 +191,13 @@ fn shipped_mechanisms_are_solved_as_one_is() {
             let sign = |bit| if number >> bit & 1 == 0 { '+' } else { '-' };
             let signs: String = (0..manipulator.choices()).map(sign).collect();
             check(&manipulator, &close, manipulator.parse_mode(&signs).unwrap(), &mut tally);
+        }
+        // Poses that share all coordinates of the upper section do not share its choices.
+        let mut row = vec![home.clone(); 70];
+        row.iter_mut().for_each(|pose| pose[0] += 0.3 * (rng.f64() - 0.5));
+        for poses in [&close, &row] {
+            let some = some_modes(&mut rng, &manipulator, poses.len());
+            check_modes(&manipulator, poses, &some, &mut tally);
         }
         assert!(tally.reached > 20, "{}: hardly any pose was in reach", example.name);
     }
@@ -239,4 +264,6 @@ fn slices_of_a_wrong_length_are_refused() {
     let mode = manipulator.home_mode();
     let error = manipulator.inverse_many(&poses[1..], mode, &mut manipulator.batch(), &mut out);
     assert_eq!(error, Err(BatchError::Poses { given: poses.len() - 1, width: 5 }));
+    let error = manipulator.inverse_each(&poses, &[mode], &mut manipulator.batch(), &mut out);
+    assert_eq!(error, Err(BatchError::Modes { given: 1, expected: 2 }));
 }

@@ -21,7 +21,7 @@ use super::{Manipulator, Mode};
 pub(crate) use block::Block;
 pub(in crate::manipulator) use block::SolveSection;
 use block::{Status, columns_of};
-use lanes::LANES;
+use lanes::{BranchesOfLeg, LANES, vectors};
 use pulp::{Arch, Simd, WithSimd};
 pub use rows::{RowArcs, RowEnds, SheetRows};
 
@@ -61,6 +61,14 @@ pub enum BatchError {
         /// The number of task coordinates.
         width: usize,
     },
+    /// The number of working modes is not that of the poses.
+    #[error("{given} working mode{}, expected {expected}, one for every pose", if *given == 1 { "" } else { "s" })]
+    Modes {
+        /// The number of modes.
+        given: usize,
+        /// The number of poses.
+        expected: usize,
+    },
     /// A slice of the output does not have one row for every pose.
     #[error("`{slice}` of the output has {given} element{}, expected {expected}", if *given == 1 { "" } else { "s" })]
     Output {
@@ -91,6 +99,9 @@ impl BatchOutput<'_> {
         })
     }
 }
+
+/// Fewer poses than this are solved one by one: it takes longer to begin a block.
+const FEW: usize = 6;
 
 /// Working memory of [`Manipulator::inverse_many`]; made by [`Manipulator::batch`]. See the example there.
 #[derive(Clone, Debug)]
@@ -146,6 +157,53 @@ impl Manipulator {
         batch: &mut Batch,
         out: &mut BatchOutput<'_>,
     ) -> Result<(), BatchError> {
+        self.solve_many(poses, Modes::One(mode), batch, out)
+    }
+
+    /// Does the same as [`Manipulator::inverse_many`] with a working mode for each pose.
+    ///
+    /// # Errors
+    /// As [`Manipulator::inverse_many`], and if there is not one mode for every pose.
+    ///
+    /// ```
+    /// use opm_core::{BatchOutput, Manipulator};
+    ///
+    /// let manipulator = Manipulator::example("planar-3rrr")?;
+    /// let modes = [manipulator.parse_mode("+ + +")?, manipulator.parse_mode("- + -")?];
+    /// let poses = [manipulator.home_pose(), manipulator.home_pose()].concat();
+    /// let mut joints = vec![0.0; 2 * manipulator.coordinates().len()];
+    /// let (mut reachable, mut within_limits) = ([false; 2], [false; 2]);
+    /// let mut output = BatchOutput {
+    ///     joints: &mut joints,
+    ///     imaginary: &mut [],
+    ///     reachable: &mut reachable,
+    ///     within_limits: &mut within_limits,
+    /// };
+    /// manipulator.inverse_each(&poses, &modes, &mut manipulator.batch(), &mut output)?;
+    /// assert_eq!(reachable, [true, true]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn inverse_each(
+        &self,
+        poses: &[f64],
+        modes: &[Mode],
+        batch: &mut Batch,
+        out: &mut BatchOutput<'_>,
+    ) -> Result<(), BatchError> {
+        let expected = poses.len() / self.task_coordinates().len();
+        if modes.len() != expected {
+            return Err(BatchError::Modes { given: modes.len(), expected });
+        }
+        self.solve_many(poses, Modes::Each(modes), batch, out)
+    }
+
+    fn solve_many(
+        &self,
+        poses: &[f64],
+        modes: Modes<'_>,
+        batch: &mut Batch,
+        out: &mut BatchOutput<'_>,
+    ) -> Result<(), BatchError> {
         let width = self.task_coordinates().len();
         let widths = [self.coordinates.len(), self.imaginary.len()];
         let count = poses.len() / width;
@@ -153,13 +211,12 @@ impl Manipulator {
             return Err(BatchError::Poses { given: poses.len(), width });
         }
         out.check(count, widths)?;
-        if !self.decides_many() {
-            // Each pose has chains or legs' heights of its own.
-            for (row, pose) in poses.chunks(width).enumerate() {
-                self.inverse_one(pose, mode, &mut batch.solution, row, out)
-                    .map_err(|error| BatchError::Pose { row, error })?;
-            }
-            return Ok(());
+        let together = match modes {
+            Modes::One(_) => self.decides_many(),
+            Modes::Each(_) => self.solves_each(count),
+        };
+        if !together || count < FEW {
+            return self.solve_alone(poses, modes, &mut batch.solution, out);
         }
         for (number, poses) in poses.chunks(LANES * width).enumerate() {
             let first = number * LANES;
@@ -177,16 +234,61 @@ impl Manipulator {
                 within_limits: &mut out.within_limits[first..][..rows],
             };
             let (block, out) = (&mut *batch.block, &mut block_output);
-            self.complete_block(mode, arch, block);
+            if let Modes::One(mode) = modes {
+                self.complete_block(mode, arch, block);
+            }
+            // Angles are computed for two halves at a time.
+            block.lanes = vectors(rows.next_multiple_of(16));
             block.displace(self, arch);
-            arch.dispatch(Solve { manipulator: self, mode, arch, block, out });
+            let of_rows = modes.from(first);
+            arch.dispatch(Solve { manipulator: self, modes: of_rows, arch, block, out });
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];
+                let mode = of_rows.of(row);
                 self.inverse_one(pose, mode, &mut batch.solution, row, &mut block_output)
                     .map_err(|error| refused((row, error)))?;
             }
         }
         Ok(())
+    }
+
+    /// Solves poses one by one.
+    fn solve_alone(
+        &self,
+        poses: &[f64],
+        modes: Modes<'_>,
+        solution: &mut Solution,
+        out: &mut BatchOutput<'_>,
+    ) -> Result<(), BatchError> {
+        for (row, pose) in poses.chunks(self.task_coordinates().len()).enumerate() {
+            self.inverse_one(pose, modes.of(row), solution, row, out)
+                .map_err(|error| BatchError::Pose { row, error })?;
+        }
+        Ok(())
+    }
+
+    /// Whether so many poses are solved together that have a working mode each. Coordinates that depend on the others are
+    /// found in one mode at a time.
+    fn solves_each(&self, count: usize) -> bool {
+        count >= FEW && self.dependent.is_none() && self.decides_many()
+    }
+
+    /// Does the same as [`Manipulator::inverse_each`]. The memory for poses that are solved together is made when there are
+    /// some.
+    pub(crate) fn inverse_each_in(
+        &self,
+        poses: &[f64],
+        modes: &[Mode],
+        (solution, batch): (&mut Solution, &mut Option<Batch>),
+        out: &mut BatchOutput<'_>,
+    ) -> Result<(), BatchError> {
+        match self.solves_each(modes.len()) {
+            true => {
+                let batch = batch.get_or_insert_with(|| self.batch());
+                self.inverse_each(poses, modes, batch, out)
+            }
+            false => self.solve_alone(poses, Modes::Each(modes), solution, out),
+        }
     }
 
     /// Finds the dependent coordinates of the poses of a block in a mode.
@@ -233,10 +335,47 @@ impl Manipulator {
     }
 }
 
+/// The working modes of poses.
+#[derive(Clone, Copy)]
+enum Modes<'a> {
+    /// One of all poses.
+    One(Mode),
+    /// One of each pose.
+    Each(&'a [Mode]),
+}
+
+impl Modes<'_> {
+    /// That of pose number `row`.
+    fn of(self, row: usize) -> Mode {
+        match self {
+            Self::One(mode) => mode,
+            Self::Each(modes) => modes[row],
+        }
+    }
+
+    /// Those of the poses from number `row` on.
+    fn from(self, row: usize) -> Self {
+        match self {
+            Self::One(mode) => Self::One(mode),
+            Self::Each(modes) => Self::Each(&modes[row..]),
+        }
+    }
+
+    /// The branches of a leg's chains for the poses of a block.
+    #[inline(always)]
+    fn branches(self, manipulator: &Manipulator, leg: usize) -> BranchesOfLeg {
+        let of_mode = |mode: Mode| manipulator.modes.branches(mode, leg);
+        match self {
+            Self::One(mode) => BranchesOfLeg::repeated(of_mode(mode)),
+            Self::Each(modes) => BranchesOfLeg::of_each(modes.iter().map(|&mode| of_mode(mode))),
+        }
+    }
+}
+
 /// Solves a displaced block with the instructions of the processor at hand.
 struct Solve<'a, 'b> {
     manipulator: &'a Manipulator,
-    mode: Mode,
+    modes: Modes<'a>,
     arch: Arch,
     block: &'a mut Block,
     out: &'a mut BatchOutput<'b>,
@@ -247,9 +386,10 @@ impl WithSimd for Solve<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, mode, arch, block, out } = self;
+        let Self { manipulator, modes, arch, block, out } = self;
         for (number, leg) in manipulator.legs.iter().enumerate() {
-            block.solve_leg(manipulator, manipulator.modes.branches(mode, number), number, arch);
+            let branches = modes.branches(manipulator, number);
+            block.solve_leg(manipulator, &branches, number, arch);
             block.report(manipulator, leg);
         }
         block.give(out);

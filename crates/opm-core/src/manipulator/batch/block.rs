@@ -3,13 +3,14 @@
 
 use super::BatchOutput;
 use super::decide::Decided;
-use super::lanes::{self, Column, DisplacementColumns, Displacements, LANES, Mask};
+use super::lanes::{
+    self, Branches, BranchesOfLeg, Column, DisplacementColumns, Displacements, LANES, Mask,
+};
 use super::rows_and_columns::{read_rows, write_rows};
 use super::section::{self, Found, Side, Step};
-use crate::chain::Branch;
 use crate::group::Displacement;
 use crate::manipulator::Manipulator;
-use crate::manipulator::leg::{CompiledLeg, LegBranches};
+use crate::manipulator::leg::CompiledLeg;
 use crate::manipulator::pose::LARGEST;
 use crate::manipulator::section::CompiledSection;
 use crate::mechanism::leg::Section;
@@ -28,8 +29,10 @@ pub struct Block {
     pub pose: Vec<Column>,
     pub v: Displacements,
     pub b: Displacements,
-    /// The number of poses for which the upper section is computed: one if they all have its coordinates in common
-    /// ([`Block::displace`] finds out), otherwise all.
+    /// The number of lanes that are computed; the others are not valid.
+    pub lanes: usize,
+    /// The number of lanes for which the upper section is computed: one if all poses have its coordinates in common
+    /// ([`Block::displace`] finds out), otherwise [`Block::lanes`].
     pub upper_lanes: usize,
     pub lower: Found,
     pub upper: Found,
@@ -106,7 +109,7 @@ impl WithSimd for Displace<'_> {
         let Self { manipulator, section, block } = self;
         let task = &manipulator.task;
         if section.is_some() {
-            block.upper_lanes = LANES;
+            block.upper_lanes = block.lanes;
         } else {
             if manipulator.dependent.is_some() {
                 // Some of the angles were not known before.
@@ -133,11 +136,11 @@ impl WithSimd for Displace<'_> {
 /// Solves a section for a block with the instructions of the processor at hand. There is one copy of this work, too.
 pub struct SolveSection<'a> {
     pub section: &'a CompiledSection,
-    pub branch: Branch,
+    pub branches: &'a Branches,
     /// The displacements of its outer link.
     pub target: &'a Displacements,
     pub found: &'a mut Found,
-    /// The number of poses: one if they all have the target in common, otherwise all.
+    /// The number of poses: one if they all have the target in common.
     pub lanes: usize,
 }
 
@@ -154,9 +157,9 @@ impl WithSimd for SolveSection<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { section, branch, target, found, lanes } = self;
-        section::solve(section, branch, target, found, lanes);
-        if lanes < LANES {
+        let Self { section, branches, target, found, lanes } = self;
+        section::solve(section, branches, target, found, lanes);
+        if lanes == 1 {
             found.repeat();
         }
     }
@@ -170,6 +173,7 @@ impl Block {
             pose: columns(manipulator.task.coordinates.len()),
             v: [[0.0; LANES]; 9],
             b: [[0.0; LANES]; 9],
+            lanes: LANES,
             upper_lanes: LANES,
             lower: Found::new(),
             upper: Found::new(),
@@ -182,9 +186,10 @@ impl Block {
         }
     }
 
-    /// Copies poses into the block, and fills its remaining lanes with the last one. Returns whether all coordinates are
-    /// numbers that are not too large.
+    /// Copies poses into the block, and fills its remaining lanes with the last one, so that all can be computed. Returns
+    /// whether all coordinates are numbers that are not too large.
     pub fn take(&mut self, manipulator: &Manipulator, poses: &[f64], arch: Arch) -> bool {
+        self.lanes = LANES;
         arch.dispatch(Take { manipulator, poses, block: self })
     }
 
@@ -221,13 +226,13 @@ impl Block {
                 differ |= value.to_bits() ^ column[0].to_bits();
             }
         }
-        self.upper_lanes = if differ == 0 { 1 } else { LANES };
+        self.upper_lanes = if differ == 0 { 1 } else { self.lanes };
     }
 
     /// Whether all poses have the coordinates of the upper section in common.
     #[inline(always)]
     pub fn one_upper(&self) -> bool {
-        self.upper_lanes < LANES
+        self.upper_lanes == 1
     }
 
     /// Writes the block's results to rows, including the rows that are still open.
@@ -270,7 +275,7 @@ impl Block {
             Section::Lower => v,
             Section::Upper => b,
         };
-        section::displace(task, section, &at, home, to, LANES);
+        section::displace(task, section, &at, home, to, self.lanes);
     }
 
     /// The displacement of the upper section where all poses have its coordinates in common.
@@ -289,39 +294,43 @@ impl Block {
     pub fn solve_leg(
         &mut self,
         manipulator: &Manipulator,
-        branches: LegBranches,
+        branches: &BranchesOfLeg,
         number: usize,
         arch: Arch,
     ) {
         let (task, leg) = (&manipulator.task, &manipulator.legs[number]);
         for section in leg.order() {
             let is_first = section == leg.split_section;
-            let first_upper = is_first && section == Section::Upper;
-            let lanes = if first_upper { self.upper_lanes } else { LANES };
+            let of_all = self.lanes;
+            let alike = is_first && section == Section::Upper && branches.one_upper(of_all);
+            let lanes = if alike { self.upper_lanes } else { of_all };
             let Self { v, b, lower, upper, tau, shifted, status, .. } = self;
-            let (of_section, branch, found, target) = match section {
-                Section::Lower => (&leg.lower, branches.lower, &mut *lower, &*v),
-                Section::Upper => (&leg.upper, branches.upper, &mut *upper, &*b),
+            let (of_section, found, target) = match section {
+                Section::Lower => (&leg.lower, &mut *lower, &*v),
+                Section::Upper => (&leg.upper, &mut *upper, &*b),
             };
             // Without an intersection motion, neither section moves the other one's target.
             let target = if is_first || task.shared().is_none() { target } else { &*shifted };
-            SolveSection { section: of_section, branch, target, found, lanes }.run(arch);
+            let branches = branches.of(section);
+            SolveSection { section: of_section, branches, target, found, lanes }.run(arch);
             status.note(found);
             if is_first {
                 match leg.imaginary_joint() {
-                    Some(joint) => section::unwind(leg.unwinds, &found.displacements[joint], tau),
+                    Some(joint) => {
+                        section::unwind(leg.unwinds, &found.displacements[joint], tau, of_all);
+                    }
                     None => tau.clear(),
                 }
                 match section {
                     _ if task.shared().is_none() => {}
                     Section::Lower => {
                         let step = Step { motion: task.upper_intersection, side: Side::Before };
-                        section::shift(step, b, tau, shifted, LANES);
-                        section::invert(tau);
+                        section::shift(step, b, tau, shifted, of_all);
+                        section::invert(tau, of_all);
                     }
                     Section::Upper => {
                         let step = Step { motion: task.lower_intersection, side: Side::After };
-                        section::shift(step, v, tau, shifted, LANES);
+                        section::shift(step, v, tau, shifted, of_all);
                     }
                 }
             }
@@ -357,12 +366,13 @@ impl Block {
                     displacements,
                     &mut self.joints[number],
                     &mut self.status.within_limits,
+                    self.lanes,
                 );
             }
         }
         if let Some(number) = leg.imaginary {
             let joint = &manipulator.imaginary[number];
-            section::imaginary(joint, &self.tau, &mut self.imaginary[number]);
+            section::imaginary(joint, &self.tau, &mut self.imaginary[number], self.lanes);
         }
     }
 }

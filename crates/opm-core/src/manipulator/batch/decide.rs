@@ -1,7 +1,7 @@
 //! Which of many poses are in reach within all limits, in one working mode or in any: the steps of
 //! [`Manipulator::inverse_many`] without the joints' values.
 
-use super::lanes::{Column, LANES, Mask};
+use super::lanes::{BranchesOfLeg, Column, LANES, Mask};
 use super::{Batch, Block, Status, section};
 use crate::manipulator::{Choices, CompiledLeg, Dependent, LegBranches, Manipulator, Mode};
 use crate::mechanism::leg::Section;
@@ -152,7 +152,7 @@ impl WithSimd for Reach<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, leg, branches, arch, block } = self;
         block.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
-        block.solve_leg(manipulator, branches, leg, arch);
+        block.solve_leg(manipulator, &BranchesOfLeg::repeated(branches), leg, arch);
         for section in [Section::Lower, Section::Upper] {
             block.admit(manipulator, &manipulator.legs[leg], section, LANES);
         }
@@ -259,6 +259,11 @@ impl Block {
         }
         let of_branch = &mut noted[number];
         (of_branch.number, of_branch.reaches) = (imaginary, reaches);
-        section::imaginary(&manipulator.imaginary[imaginary], &self.tau, &mut of_branch.values);
+        section::imaginary(
+            &manipulator.imaginary[imaginary],
+            &self.tau,
+            &mut of_branch.values,
+            LANES,
+        );
     }
 }

@@ -1,10 +1,19 @@
 //! Columns of numbers, one for each pose of a block, so that one loop works on all poses.
 
+use crate::chain::Branch;
 use crate::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplacement};
+use crate::manipulator::leg::LegBranches;
+use crate::mechanism::leg::Section;
 use nalgebra::{Complex, Matrix3, Vector3};
 
 /// The number of poses in a block.
 pub const LANES: usize = 64;
+
+/// So many lanes, and some more, so that they are whole vectors of every processor.
+#[inline(always)]
+pub fn vectors(lanes: usize) -> usize {
+    lanes.next_multiple_of(8).min(LANES)
+}
 
 /// One number for each pose.
 pub type Column = [f64; LANES];
@@ -12,6 +21,9 @@ pub type Column = [f64; LANES];
 /// Zero or one for each pose. It is as wide as the numbers it is computed from, so that loops need no
 /// packing.
 pub type Mask = [u64; LANES];
+
+/// The branch of a chain for each pose.
+pub type Branches = [Branch; LANES];
 
 /// One displacement for each pose, in as many of the columns as it has numbers.
 pub type Displacements = [Column; 9];
@@ -96,6 +108,48 @@ impl Lane for Matrix3<f64> {
 pub fn repeat(columns: &mut [Column]) {
     for column in columns {
         *column = [column[0]; LANES];
+    }
+}
+
+/// The branches of a leg's two chains for each pose.
+#[derive(Clone, Copy, Debug)]
+pub struct BranchesOfLeg {
+    pub lower: Branches,
+    pub upper: Branches,
+}
+
+impl BranchesOfLeg {
+    /// The same branches for all poses.
+    #[inline(always)]
+    pub fn repeated(LegBranches { lower, upper }: LegBranches) -> Self {
+        Self { lower: [lower; LANES], upper: [upper; LANES] }
+    }
+
+    /// The branches for poses that have one each. The remaining lanes get the last one.
+    #[inline(always)]
+    pub fn of_each(mut branches: impl Iterator<Item = LegBranches>) -> Self {
+        let mut last = LegBranches { lower: Branch::Plus, upper: Branch::Plus };
+        let mut of_leg = Self::repeated(last);
+        for lane in 0..LANES {
+            last = branches.next().unwrap_or(last);
+            (of_leg.lower[lane], of_leg.upper[lane]) = (last.lower, last.upper);
+        }
+        of_leg
+    }
+
+    /// Whether the upper chain has the same branch for so many poses.
+    #[inline(always)]
+    pub fn one_upper(&self, lanes: usize) -> bool {
+        self.upper[..lanes.min(LANES)].iter().all(|branch| *branch == self.upper[0])
+    }
+
+    /// The branches of a section's chain.
+    #[inline(always)]
+    pub fn of(&self, section: Section) -> &Branches {
+        match section {
+            Section::Lower => &self.lower,
+            Section::Upper => &self.upper,
+        }
     }
 }
 

@@ -12,9 +12,9 @@ mod scale;
 pub use arcs::RowArcs;
 pub use ends::RowEnds;
 
-use super::lanes::{LANES, Lane};
+use super::lanes::{LANES, Lane, vectors};
 use super::section::{self, FirstOfRows, OfSheet, Side, Step};
-use super::{Batch, Block, Status, columns_of};
+use super::{Batch, Block, FEW, Status, columns_of};
 use crate::group::{Displacement, PlanarDisplacement};
 use crate::manipulator::{LegBranch, Manipulator};
 use crate::mechanism::leg::Section;
@@ -104,15 +104,6 @@ enum Shared {
     AllButTwo,
 }
 
-/// So many lanes, and some more, so that they are whole vectors of every processor.
-#[inline(always)]
-fn vectors(lanes: usize) -> usize {
-    lanes.next_multiple_of(8).min(LANES)
-}
-
-/// Fewer poses than this are asked for one by one: it takes longer to begin a block.
-const FEW: usize = 6;
-
 /// Solves the lower section of a branch for a block of poses, with the instructions of the processor at hand.
 struct ReachLower<'a> {
     manipulator: &'a Manipulator,
@@ -133,7 +124,8 @@ impl WithSimd for ReachLower<'_> {
         let leg = &manipulator.legs[branch.leg];
         block.aim(manipulator, branch, Shared::AllButTwo, lanes);
         let Block { shifted, lower, status, .. } = &mut *block;
-        section::solve_chain(&leg.lower.chain, branch.branches.lower, shifted, lower, lanes);
+        let branches = &[branch.branches.lower; LANES];
+        section::solve_chain(&leg.lower.chain, branches, shifted, lower, lanes);
         status.note(lower);
         block.admit(manipulator, leg, Section::Lower, lanes);
     }
@@ -159,6 +151,7 @@ impl Block {
     /// Takes poses of a section of so many coordinates: the first and second ones, and those that they share. The remaining
     /// lanes are filled with the last pose.
     fn take_rows(&mut self, width: usize, first: &[f64], second: &[f64], others: &[f64]) {
+        self.lanes = LANES;
         for (column, values) in self.pose[..width].iter_mut().zip([first, second]) {
             column[..values.len()].copy_from_slice(values);
             column[values.len()..].fill(values.last().copied().unwrap_or_default());

@@ -1,12 +1,12 @@
 //! The steps of inverse kinematics, each a loop over the poses of a block. The kind of chain, intersection
 //! motion or limits is decided outside of the loop; the loop does the same arithmetic as for one pose.
 
-use super::lanes::{Column, DisplacementColumns, Displacements, LANES, Lane, Mask};
+use super::lanes::{Branches, Column, DisplacementColumns, Displacements, LANES, Lane, Mask};
 use crate::chain::cylindrical::WithRevolute;
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
 use crate::chain::planar::PlanarChain;
-use crate::chain::{Attempt, Branch, Chain, ClosedForm};
+use crate::chain::{Attempt, Chain, ClosedForm};
 use crate::group::{
     Cylindrical, CylindricalDisplacement, CylindricalMotion, Displacement, IntersectionMotion,
     JointDisplacement, MotionType, Planar, PlanarDisplacement, PlanarMotion, SpatialMotion,
@@ -22,8 +22,11 @@ use crate::task::{
 };
 use nalgebra::{Complex, Matrix3, Vector3};
 
-/// Half a block. Where angles are computed, two halves at a time load the constants once.
-const HALF: usize = LANES / 2;
+/// Half of the lanes. Where angles are computed, two halves at a time load the constants once.
+#[inline(always)]
+fn half_of(lanes: usize) -> usize {
+    lanes.min(LANES) / 2
+}
 
 /// The result of a section's chain for every pose of a block.
 #[derive(Clone, Debug)]
@@ -183,13 +186,13 @@ impl Displacement {
 #[inline(always)]
 pub fn solve(
     section: &CompiledSection,
-    branch: Branch,
+    branches: &Branches,
     targets: &Displacements,
     found: &mut Found,
     lanes: usize,
 ) {
     match &section.partial {
-        None => solve_chain(&section.chain, branch, targets, found, lanes),
+        None => solve_chain(&section.chain, branches, targets, found, lanes),
         Some(partial) => solve_partial(partial, &section.chain, targets, found, lanes),
     }
 }
@@ -198,28 +201,28 @@ pub fn solve(
 #[inline(always)]
 pub fn solve_chain(
     chain: &Chain,
-    branch: Branch,
+    branches: &Branches,
     targets: &Displacements,
     found: &mut Found,
     lanes: usize,
 ) {
     match chain {
         Chain::Rigid => (found.holds, found.beyond) = ([1; LANES], [0; LANES]),
-        Chain::Planar(PlanarChain::Rrr(chain)) => attempt(chain, branch, targets, found, lanes),
-        Chain::Planar(PlanarChain::Prr(chain)) => attempt(chain, branch, targets, found, lanes),
-        Chain::Planar(PlanarChain::Rrp(chain)) => attempt(chain, branch, targets, found, lanes),
-        Chain::Planar(PlanarChain::Rpr(chain)) => attempt(chain, branch, targets, found, lanes),
-        Chain::Planar(PlanarChain::Rpp(chain)) => attempt(chain, branch, targets, found, lanes),
-        Chain::Planar(PlanarChain::Ppr(chain)) => attempt(chain, branch, targets, found, lanes),
-        Chain::Planar(PlanarChain::Prp(chain)) => attempt(chain, branch, targets, found, lanes),
-        Chain::Spherical(chain) => attempt(chain, branch, targets, found, lanes),
-        Chain::Ball(chain) => attempt(chain, branch, targets, found, lanes),
-        Chain::Translational(chain) => attempt(chain, branch, targets, found, lanes),
-        Chain::Spatial(chain) => attempt(chain, branch, targets, found, lanes),
+        Chain::Planar(PlanarChain::Rrr(chain)) => attempt(chain, branches, targets, found, lanes),
+        Chain::Planar(PlanarChain::Prr(chain)) => attempt(chain, branches, targets, found, lanes),
+        Chain::Planar(PlanarChain::Rrp(chain)) => attempt(chain, branches, targets, found, lanes),
+        Chain::Planar(PlanarChain::Rpr(chain)) => attempt(chain, branches, targets, found, lanes),
+        Chain::Planar(PlanarChain::Rpp(chain)) => attempt(chain, branches, targets, found, lanes),
+        Chain::Planar(PlanarChain::Ppr(chain)) => attempt(chain, branches, targets, found, lanes),
+        Chain::Planar(PlanarChain::Prp(chain)) => attempt(chain, branches, targets, found, lanes),
+        Chain::Spherical(chain) => attempt(chain, branches, targets, found, lanes),
+        Chain::Ball(chain) => attempt(chain, branches, targets, found, lanes),
+        Chain::Translational(chain) => attempt(chain, branches, targets, found, lanes),
+        Chain::Spatial(chain) => attempt(chain, branches, targets, found, lanes),
         Chain::Cylindrical(chain) => match chain.revolute() {
-            Some(0) => attempt(&WithRevolute::<0>(*chain), branch, targets, found, lanes),
-            Some(_) => attempt(&WithRevolute::<1>(*chain), branch, targets, found, lanes),
-            None => attempt(&WithRevolute::<2>(*chain), branch, targets, found, lanes),
+            Some(0) => attempt(&WithRevolute::<0>(*chain), branches, targets, found, lanes),
+            Some(_) => attempt(&WithRevolute::<1>(*chain), branches, targets, found, lanes),
+            None => attempt(&WithRevolute::<2>(*chain), branches, targets, found, lanes),
         },
     }
 }
@@ -272,14 +275,19 @@ fn solve_partial(
 }
 
 #[inline(always)]
-fn attempt<C>(chain: &C, branch: Branch, targets: &Displacements, found: &mut Found, lanes: usize)
-where
+fn attempt<C>(
+    chain: &C,
+    branches: &Branches,
+    targets: &Displacements,
+    found: &mut Found,
+    lanes: usize,
+) where
     C: ClosedForm + Copy,
     C::Target: Lane,
 {
     let chain = *chain;
     // The variants of the displacements depend on the chain alone.
-    let first = chain.attempt(&C::Target::load(targets, 0), branch);
+    let first = chain.attempt(&C::Target::load(targets, 0), branches[0]);
     let [a, b, c] = &mut found.displacements;
     for (displacements, displacement) in
         [&mut *a, &mut *b, &mut *c].into_iter().zip(first.displacements)
@@ -296,7 +304,7 @@ where
     if lanes == 1 {
         return take(0, first);
     }
-    for lane in 0..lanes.min(LANES) {
+    for (lane, &branch) in branches.iter().enumerate().take(lanes) {
         take(lane, chain.attempt(&C::Target::load(targets, lane), branch));
     }
 }
@@ -428,16 +436,18 @@ pub fn report(
     displacements: &DisplacementColumns,
     values: &mut Column,
     within: &mut Mask,
+    lanes: usize,
 ) {
+    let half = half_of(lanes);
     macro_rules! each {
         ($limits:expr, $read:ident) => {{
             let limits = $limits;
-            for lane in 0..HALF {
+            for lane in 0..half {
                 let (value, admitted) = limits.place(displacements.$read(lane), None);
-                let (other, also) = limits.place(displacements.$read(lane + HALF), None);
-                (values[lane], values[lane + HALF]) = (home + value, home + other);
+                let (other, also) = limits.place(displacements.$read(lane + half), None);
+                (values[lane], values[lane + half]) = (home + value, home + other);
                 within[lane] &= u64::from(admitted);
-                within[lane + HALF] &= u64::from(also);
+                within[lane + half] &= u64::from(also);
             }
         }};
     }
@@ -485,13 +495,19 @@ pub fn admit(
 
 /// Computes an imaginary joint's values for displacements along the intersection motion.
 #[inline(always)]
-pub fn imaginary(joint: &ImaginaryJoint, tau: &DisplacementColumns, values: &mut Column) {
+pub fn imaginary(
+    joint: &ImaginaryJoint,
+    tau: &DisplacementColumns,
+    values: &mut Column,
+    lanes: usize,
+) {
     let (home, sign) = (joint.home, joint.sign);
     let value = |displacement: JointDisplacement| home + sign * displacement.value();
     if tau.are_directions {
-        for lane in 0..HALF {
-            let two = [tau.direction(lane), tau.direction(lane + HALF)];
-            (values[lane], values[lane + HALF]) = (value(two[0]), value(two[1]));
+        let half = half_of(lanes);
+        for lane in 0..half {
+            let two = [tau.direction(lane), tau.direction(lane + half)];
+            (values[lane], values[lane + half]) = (value(two[0]), value(two[1]));
         }
     } else {
         for (lane, to) in values.iter_mut().enumerate() {
@@ -506,10 +522,11 @@ pub fn unwind(
     counts_revolutions: bool,
     found: &DisplacementColumns,
     tau: &mut DisplacementColumns,
+    lanes: usize,
 ) {
     if counts_revolutions && found.are_directions {
         tau.are_directions = false;
-        for lane in 0..LANES {
+        for lane in 0..lanes.min(LANES) {
             tau.set(lane, JointDisplacement::Value(found.direction(lane).value()));
         }
     } else {
@@ -519,13 +536,13 @@ pub fn unwind(
 
 /// Replaces the displacements by their inverses.
 #[inline(always)]
-pub fn invert(tau: &mut DisplacementColumns) {
+pub fn invert(tau: &mut DisplacementColumns, lanes: usize) {
     if tau.are_directions {
-        for lane in 0..LANES {
+        for lane in 0..lanes.min(LANES) {
             tau.set(lane, tau.direction(lane).inverse());
         }
     } else {
-        for lane in 0..LANES {
+        for lane in 0..lanes.min(LANES) {
             tau.set(lane, tau.value(lane).inverse());
         }
     }

@@ -79,9 +79,9 @@ impl Complete<'_> {
         block.displace_only(manipulator, bridge, arch);
         let Block { v, b, lower: found, status, .. } = &mut *block;
         let target = if bridge == Section::Lower { &*v } else { &*b };
-        let branch = manipulator.branches(mode, number).of(bridge);
+        let branches = &[manipulator.branches(mode, number).of(bridge); LANES];
         let bridge = leg.section(bridge);
-        SolveSection { section: bridge, branch, target, found, lanes: LANES }.run(arch);
+        SolveSection { section: bridge, branches, target, found, lanes: LANES }.run(arch);
         status.note(found);
         self.part(block, Part::Tau(leg, joint));
     }
@@ -140,9 +140,9 @@ impl Block {
     #[inline(always)]
     fn take_tau(&mut self, leg: &CompiledLeg, joint: usize) {
         let Self { lower: found, tau, .. } = self;
-        section::unwind(leg.unwinds, &found.displacements[joint], tau);
+        section::unwind(leg.unwinds, &found.displacements[joint], tau, LANES);
         if leg.split_section == Section::Lower {
-            section::invert(tau);
+            section::invert(tau, LANES);
         }
     }
 
@@ -165,9 +165,9 @@ impl Block {
                 }
                 Section::Upper => {
                     let step = Step { motion: task.upper_intersection, side: Side::Before };
-                    section::invert(tau);
+                    section::invert(tau, LANES);
                     section::shift(step, own, tau, shifted, LANES);
-                    section::invert(tau);
+                    section::invert(tau, LANES);
                 }
             }
             targets = shifted;

@@ -300,7 +300,7 @@ impl LegRows {
             height.fill(lift.displacement(1.0));
         }
         if let Some((imaginary, values)) = &mut out.imaginary {
-            section::imaginary(&manipulator.imaginary()[*imaginary], &block.tau, values);
+            section::imaginary(&manipulator.imaginary()[*imaginary], &block.tau, values, LANES);
         }
     }
 
@@ -316,7 +316,7 @@ impl LegRows {
         let [n_upper, n_lower] = self.counts;
         if leg.split_section == Section::Lower {
             self.back.clone_from(&block.tau);
-            section::invert(&mut self.back);
+            section::invert(&mut self.back, LANES);
             let motion = manipulator.task().upper_intersection;
             let kind = motion.kind();
             if !kind.commutes() {
