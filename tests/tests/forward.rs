@@ -180,6 +180,29 @@ fn joints_of_a_pose_lead_back_to_it() {
     assert!(most <= 64, "{most}: more than 8 rotations for 8 sets of imaginary joints");
 }
 
+/// A buffer that was used for other joints, in reach or not, gives the same assemblies.
+#[test]
+fn buffers_are_used_again() {
+    let mut rng = Rng::with_seed(12);
+    for name in ["plano-spherical-5dof", "planar-3rrr", "agile-eye", "five-bar", "orbita"] {
+        let m = example(name);
+        let mut buffer = m.forward_buffer();
+        let (mut found, mut none) = (0, 0);
+        for round in 0..100 {
+            let mut actuated = Reached::random(&mut rng, &m, [0.7, 0.1]).actuated;
+            if round % 4 == 3 {
+                actuated.iter_mut().for_each(|joint| *joint += 4.0 * (rng.f64() - 0.5));
+            }
+            let alone = m.forward(&actuated).unwrap();
+            assert_eq!(m.forward_into(&actuated, &mut buffer).unwrap(), &alone, "{name}");
+            found += usize::from(!alone.list.is_empty());
+            none += usize::from(alone.list.is_empty());
+        }
+        println!("{name}: {found} assembled, {none} not");
+        assert!(found >= 75, "{name}");
+    }
+}
+
 /// Every shipped mechanism that has closed-form forward kinematics.
 #[test]
 fn shipped_mechanisms_are_solved() {

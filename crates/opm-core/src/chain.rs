@@ -361,18 +361,18 @@ impl Chain {
         Ok(())
     }
 
-    /// The joints' displacements that move the outer link by `target`, with a known displacement of the first joint, and
-    /// their branch: cheaper than to solve for it. `None` where that displacement misses one with which the chain closes by
-    /// more than `within` radians, and for chains that are not spherical.
+    /// The branch on which the chain moves the outer link by `target` with a known displacement of the first joint: cheaper
+    /// than to solve for it. `None` where that displacement misses one with which the chain closes by more than `within`
+    /// radians, and for chains that are not spherical.
     #[inline(always)]
-    pub(crate) fn completed(
+    pub(crate) fn branch_with(
         &self,
         target: &Displacement,
         first: Complex<f64>,
         within: f64,
-    ) -> Option<([JointDisplacement; 3], Branch)> {
+    ) -> Option<Branch> {
         match self {
-            Self::Spherical(chain) => chain.completed(target.spherical(), first, within),
+            Self::Spherical(chain) => chain.branch_with(target.spherical(), first, within),
             Self::Rigid
             | Self::Planar(_)
             | Self::Ball(_)

@@ -45,6 +45,7 @@
 
 mod accept;
 mod along;
+mod candidates;
 mod distance;
 mod held;
 mod matches;
@@ -61,7 +62,7 @@ pub use near::{NearError, NotFound, Stop};
 pub use newton::NearBuffer;
 
 use crate::manipulator::{LARGEST, Manipulator, Mode, Section, Unreachable};
-use search::Search;
+use search::{Memory, Search};
 
 /// The largest residual of an assembly, in radians and shares of the mechanism's size, where the joints are
 /// exactly in their subspaces. A candidate with a larger residual does not close, and is rejected. Where joints
@@ -110,6 +111,13 @@ pub struct Assemblies {
     /// The sections that can move while the actuated joints are held, because they are at a singularity.
     /// The poses of that motion are not listed.
     pub loose: Vec<Section>,
+}
+
+/// Working memory of [`Manipulator::forward_into`]; made by [`Manipulator::forward_buffer`]. See the example there.
+pub struct ForwardBuffer {
+    /// The displacements of the actuated joints from home, radians and metres.
+    displacements: Vec<f64>,
+    memory: Memory,
 }
 
 /// Why the mechanism cannot be assembled.
@@ -184,21 +192,49 @@ impl Manipulator {
     /// If there are too few or too many values, if one is not a finite number, or if the mechanism has no
     /// closed form.
     pub fn forward(&self, actuated: &[f64]) -> Result<Assemblies, ForwardError> {
-        let displacements = self.actuated_displacements(actuated)?;
+        let mut buffer = self.forward_buffer();
+        self.forward_into(actuated, &mut buffer)?;
+        Ok(buffer.memory.outcome.assemblies)
+    }
+
+    /// A buffer for [`Manipulator::forward_into`].
+    pub fn forward_buffer(&self) -> ForwardBuffer {
+        ForwardBuffer { displacements: Vec::new(), memory: Memory::new(self) }
+    }
+
+    /// Does the same as [`Manipulator::forward`] with a buffer, which gets the assemblies. To use it again for many sets of
+    /// joints saves most allocations.
+    ///
+    /// # Errors
+    /// As [`Manipulator::forward`].
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    ///
+    /// let manipulator = Manipulator::example("planar-3rrr")?;
+    /// let mut buffer = manipulator.forward_buffer();
+    /// let home: Vec<f64> =
+    ///     manipulator.actuated().iter().map(|&i| manipulator.coordinates()[i].home).collect();
+    /// for step in 0..10 {
+    ///     let actuated = [home[0] + 0.01 * f64::from(step), home[1], home[2]];
+    ///     let assemblies = manipulator.forward_into(&actuated, &mut buffer)?;
+    ///     assert!(assemblies.list.iter().all(|assembly| assembly.residual < 1e-12));
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn forward_into<'a>(
+        &self,
+        actuated: &[f64],
+        buffer: &'a mut ForwardBuffer,
+    ) -> Result<&'a Assemblies, ForwardError> {
+        let ForwardBuffer { displacements, memory } = buffer;
+        self.write_displacements(actuated, displacements)?;
         let plan = self.plan.as_ref().map_err(|error| *error)?;
-        let mut search = Search::new(self, plan, &displacements);
-        search.run();
-        Ok(search.finish())
+        Search::new(self, plan, displacements, memory).run();
+        Ok(&memory.outcome.assemblies)
     }
 
-    /// The displacements of the actuated joints from home, radians and metres.
-    fn actuated_displacements(&self, actuated: &[f64]) -> Result<Vec<f64>, ForwardError> {
-        let mut displacements = Vec::with_capacity(actuated.len());
-        self.write_displacements(actuated, &mut displacements)?;
-        Ok(displacements)
-    }
-
-    /// Writes them to a buffer.
+    /// Writes the displacements of the actuated joints from home, radians and metres.
     fn write_displacements(
         &self,
         actuated: &[f64],

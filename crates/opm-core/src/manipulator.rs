@@ -68,7 +68,6 @@ use crate::numeric::four_wide::FourWide;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 pub(crate) use closure::ClosureBuffer;
-pub(crate) use inverse::LowerValues;
 use leg::CompileContext;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 pub(crate) use mode::Choices;

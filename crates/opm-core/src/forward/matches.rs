@@ -1,4 +1,4 @@
-//! The solutions of a leg at the pose of a candidate that have the given values of its actuated joints.
+//! The choices with which a leg closes at a candidate, its actuated joints at the given values.
 //!
 //! A leg's lower section depends on the candidate by `v · exp(I τ)` alone. The search has solved for both, and finds
 //! many candidates `b` for them: the lower section is solved once for all of these.
@@ -9,7 +9,7 @@ use crate::chain::Branch;
 use crate::chain::condition::length;
 use crate::group::{Displacement, JointDisplacement, SubspaceKind};
 use crate::manipulator::{
-    ChainCoordinate, CompiledSection, LegBranches, LegSolution, LowerValues, Mode, Section,
+    ChainCoordinate, CompiledSection, LegBranches, LegSolution, Mode, Section,
 };
 use crate::numeric::Quantity;
 use nalgebra::Complex;
@@ -18,21 +18,11 @@ use nalgebra::Complex;
 /// far from a singularity.
 const ROUNDING: f64 = 1e-13;
 
-/// A solution of a leg.
-pub(super) struct Match {
-    /// The signs of its choices.
-    pub mode: Mode,
-    pub solution: LegSolution,
-    /// The values of its lower joints.
-    pub lower: LowerValues,
-    /// The largest error of an actuated joint, in radians or shares of the size.
-    error: f64,
-}
-
-/// The solutions of a leg that match.
+/// The choices with which a leg closes.
 pub(super) struct Matches {
-    pub list: Vec<Match>,
-    /// The smallest error of any solution, in radians or shares of the size.
+    /// Each as a mode with plus for all other choices.
+    pub list: Vec<Mode>,
+    /// The smallest error of an actuated joint with other choices, in radians or shares of the size.
     pub least: f64,
 }
 
@@ -42,40 +32,15 @@ impl Matches {
         Self { list: Vec::with_capacity(4), least: f64::INFINITY }
     }
 
-    /// Notes a solution, if its actuated joints have their values.
+    /// Notes choices, if the actuated joints then have their values.
     #[inline(always)]
-    fn note(&mut self, mode: Mode, found: &Found<'_>, error: f64) {
-        self.least = self.least.min(error);
+    fn note(&mut self, mode: Mode, error: f64) {
         if error <= MATCH {
-            // Written in its place: to copy it takes as long as to find it.
-            let lower = found.lower.values;
-            self.list.push(Match { mode, solution: LegSolution::HOME, lower, error });
-            if let Some(Match { solution, .. }) = self.list.last_mut() {
-                solution.lower = found.lower.displacements;
-                solution.upper = *found.upper;
-                solution.tau = found.tau;
-            }
+            self.list.push(mode);
+        } else {
+            self.least = self.least.min(error);
         }
     }
-}
-
-/// A solution of a leg.
-struct Found<'a> {
-    lower: &'a SolvedLower,
-    upper: &'a [JointDisplacement; 3],
-    /// The displacement along the intersection motion.
-    tau: JointDisplacement,
-}
-
-/// A solution of a leg's lower section.
-#[derive(Clone, Copy)]
-struct SolvedLower {
-    displacements: [JointDisplacement; 3],
-    tau: JointDisplacement,
-    /// The same as numbers.
-    values: LowerValues,
-    /// The largest error of an actuated joint.
-    error: f64,
 }
 
 /// The solutions of a leg's lower section at some `v` and τ that have the given values of its actuated joints.
@@ -83,9 +48,9 @@ pub(super) struct LowerSection {
     v: Displacement,
     /// Where the section has the imaginary joint, it gives τ.
     tau: Option<JointDisplacement>,
-    /// The solution on each branch.
-    branches: [Option<SolvedLower>; 2],
-    /// The smallest error of the others, in radians or shares of the size.
+    /// The τ of the solution on each branch.
+    branches: [Option<JointDisplacement>; 2],
+    /// The smallest error of an actuated joint of the others, in radians or shares of the size.
     least: f64,
 }
 
@@ -97,53 +62,120 @@ impl LowerSection {
         Self { v, tau, branches: [None; 2], least: f64::INFINITY }
     }
 
-    /// The solutions, with their branches.
-    fn solutions(&self) -> impl Iterator<Item = (Branch, &SolvedLower)> {
-        let solved = Branch::BOTH.into_iter().zip(&self.branches);
-        solved.filter_map(|(branch, solved)| Some((branch, solved.as_ref()?)))
+    /// The branches of the solutions, with their τ.
+    #[inline(always)]
+    fn solutions(&self) -> impl Iterator<Item = (Branch, JointDisplacement)> {
+        let solved = Branch::BOTH.into_iter().zip(self.branches);
+        solved.filter_map(|(branch, tau)| Some((branch, tau?)))
     }
 }
 
+/// What is known of a leg at all candidates with one `v` and one τ of each leg.
+pub(super) enum KnownLeg {
+    /// It closes with these choices at each.
+    Closed([Option<Mode>; 2]),
+    /// Its upper section closes with this rotation of its first joint, τ, on one branch. It then has these choices, and
+    /// another one, if that is the branch minus.
+    Rotated { tau: Complex<f64>, plus: [Option<Mode>; 2], minus: Mode },
+    /// Nothing.
+    Open,
+}
+
 impl Search<'_> {
-    /// Finds the solutions of a leg at a pose that have the given values of its actuated joints.
+    /// Finds out what is known of the legs at the candidates `v · b`, whatever `b`.
+    pub(super) fn know_legs(&mut self, v: &Displacement) {
+        self.memory.known.clear();
+        for leg in 0..self.held.legs.len() {
+            let known = self.known_leg(leg, v);
+            self.memory.known.push(known);
+        }
+    }
+
+    fn known_leg(&mut self, leg: usize, v: &Displacement) -> KnownLeg {
+        let (compiled, tau) = (&self.held.legs[leg], self.memory.taus[leg]);
+        if compiled.lean.is_some() {
+            return KnownLeg::Open;
+        }
+        let upper_tested = compiled.upper.has_choice() || compiled.upper.driven;
+        let bridged = compiled.bridge().is_some();
+        let tau = match compiled.split_section {
+            Section::Lower if upper_tested => return KnownLeg::Open,
+            Section::Lower => None,
+            Section::Upper => match tau {
+                Some(tau @ JointDisplacement::Direction(_)) if bridged => Some(tau),
+                _ => return KnownLeg::Open,
+            },
+        };
+        self.solve_lower(leg, v, tau);
+        let [section, _] = &self.memory.lowers[leg];
+        let mode = |lower, upper| self.manipulator.leg_mode(leg, LegBranches { lower, upper });
+        let mut solutions = section.solutions().map(|(lower, _)| mode(lower, Branch::Plus));
+        let choices = [solutions.next(), solutions.next()];
+        match (choices, tau) {
+            ([None, _], _) => KnownLeg::Open,
+            (plus, Some(tau)) => {
+                let minus = mode(Branch::Plus, Branch::Minus);
+                KnownLeg::Rotated { tau: tau.unit_direction(), plus, minus }
+            }
+            (choices, None) => KnownLeg::Closed(choices),
+        }
+    }
+
+    /// Finds the choices with which a leg closes at a candidate. Whether a passive upper section without a choice reaches
+    /// that is not tested.
     #[inline(always)]
     pub(super) fn match_leg(
         &mut self,
         leg: usize,
-        pose: [&Displacement; 2],
+        candidate: [&Displacement; 2],
         rise: f64,
         found: &mut Matches,
     ) {
         found.list.clear();
         found.least = f64::INFINITY;
         let compiled = &self.held.legs[leg];
-        if compiled.lean.is_some() {
-            self.match_leaning(leg, pose, rise, found);
-        } else if compiled.split_section == Section::Lower {
-            self.match_lower_first(leg, pose, rise, found);
-        } else {
-            self.match_upper_first(leg, pose, rise, found);
+        match self.memory.known[leg] {
+            KnownLeg::Closed(choices) => {
+                return found.list.extend(choices.into_iter().flatten());
+            }
+            // A leg that closes has the τ that was solved for.
+            KnownLeg::Rotated { tau, plus, minus } => {
+                if let Some(branch) = compiled.upper.branch_with(candidate[1], tau, ROUNDING) {
+                    let upper = if branch == Branch::Plus { Mode::default() } else { minus };
+                    return found
+                        .list
+                        .extend(plus.into_iter().flatten().map(|mode| mode.with(upper)));
+                }
+            }
+            KnownLeg::Open => {}
         }
-        if found.list.len() > 1 {
-            self.keep_distinct(leg, &mut found.list);
+        if compiled.lean.is_some() {
+            self.match_leaning(leg, candidate, rise, found);
+        } else if compiled.split_section == Section::Lower {
+            self.match_lower_first(leg, candidate, rise, found);
+        } else {
+            self.match_upper_first(leg, candidate, rise, found);
         }
     }
 
     /// Tries every combination of branches of a leg whose sections depend on its own height.
     #[cold]
     #[inline(never)]
-    fn match_leaning(&self, leg: usize, pose: [&Displacement; 2], rise: f64, found: &mut Matches) {
+    fn match_leaning(
+        &self,
+        leg: usize,
+        candidate: [&Displacement; 2],
+        rise: f64,
+        found: &mut Matches,
+    ) {
         let m = self.manipulator;
         for mode in m.leg_modes(leg) {
-            let branches = m.branches(mode, leg);
-            let solved = self.held.legs[leg].solve_seldom(m.task(), pose, rise, branches, 0.0);
-            if let Ok(solution) = solved {
-                let LegSolution { lower: displacements, upper, tau } = solution;
-                let error = self.section_error(&self.held.legs[leg].lower, &displacements);
-                let values = m.lower_values(leg, &displacements, tau);
-                let lower = &SolvedLower { displacements, tau, values, error };
-                let solution = Found { lower, upper: &upper, tau };
-                found.note(m.leg_mode(leg, branches), &solution, self.error(leg, &solution, rise));
+            let (compiled, branches) = (&self.held.legs[leg], m.branches(mode, leg));
+            let solved = compiled.solve_seldom(m.task(), candidate, rise, branches, 0.0);
+            if let Ok(LegSolution { lower, upper, tau }) = solved {
+                let error = self.section_error(&compiled.lower, &lower);
+                let error = error.max(self.upper_error(leg, &upper, tau, rise));
+                found.note(m.leg_mode(leg, branches), error);
             }
         }
     }
@@ -157,30 +189,20 @@ impl Search<'_> {
         rise: f64,
         found: &mut Matches,
     ) {
-        // A leg that closes has the τ that was solved for.
-        if let Some(tau @ JointDisplacement::Direction(direction)) = self.taus[leg]
-            && self.held.legs[leg].bridge().is_some()
-            && let Some((upper, branch)) =
-                self.held.legs[leg].upper.completed(b, direction, ROUNDING)
-        {
-            self.note_with_lower(leg, v, (branch, upper, tau), rise, found);
-            if !found.list.is_empty() {
-                return;
-            }
-        }
-        // Near a singularity that is less certain. Another τ only tells by how much a leg that does not close is off.
+        // Near a singularity τ is less certain. Another τ only tells by how much a leg that does not close is off.
         for expected in [true, false] {
             for &branch in self.held.legs[leg].upper.branches() {
                 let compiled = &self.held.legs[leg];
                 let Ok(upper) = compiled.upper.inverse(b, branch) else { continue };
                 let tau = compiled.unwound(compiled.step(&upper), 0.0);
-                let known = self.taus[leg].filter(|&known| comparable(known, tau));
+                let known = self.memory.taus[leg].filter(|&known| comparable(known, tau));
                 if expected != known.is_none_or(|known| agrees(known, tau, APART)) {
                     continue;
                 }
                 let exact = known.filter(|&known| agrees(known, tau, ROUNDING));
                 let tau = exact.unwrap_or(tau);
-                self.note_with_lower(leg, v, (branch, upper, tau), rise, found);
+                let error = self.upper_error(leg, &upper, tau, rise);
+                self.note_with_lower(leg, v, branch, tau, error, found);
                 // Another branch with this τ would be the same solution, at a singularity.
                 if exact.is_some() && !found.list.is_empty() {
                     return;
@@ -192,24 +214,23 @@ impl Search<'_> {
         }
     }
 
-    /// Notes the solutions of a leg with one of its upper section, of which the branch, the displacements and τ are given.
+    /// Notes the choices of a leg with a branch of its upper section, of which τ and the error of an actuated joint are
+    /// given.
     #[inline(always)]
     fn note_with_lower(
         &mut self,
         leg: usize,
         v: &Displacement,
-        (branch, upper, tau): (Branch, [JointDisplacement; 3], JointDisplacement),
-        rise: f64,
+        upper: Branch,
+        tau: JointDisplacement,
+        error: f64,
         found: &mut Matches,
     ) {
         self.solve_lower(leg, v, Some(tau));
-        let [section, _] = &self.lowers[leg];
+        let [section, _] = &self.memory.lowers[leg];
         found.least = found.least.min(section.least);
-        for (lower_branch, lower) in section.solutions() {
-            let solution = Found { lower, upper: &upper, tau };
-            let branches = LegBranches { lower: lower_branch, upper: branch };
-            let mode = self.manipulator.leg_mode(leg, branches);
-            found.note(mode, &solution, self.error(leg, &solution, rise));
+        for (lower, _) in section.solutions() {
+            found.note(self.manipulator.leg_mode(leg, LegBranches { lower, upper }), error);
         }
     }
 
@@ -223,18 +244,22 @@ impl Search<'_> {
         found: &mut Matches,
     ) {
         self.solve_lower(leg, v, None);
-        let (compiled, [section, _]) = (&self.held.legs[leg], &self.lowers[leg]);
+        let (compiled, [section, _]) = (&self.held.legs[leg], &self.memory.lowers[leg]);
+        let tested = compiled.upper.has_choice() || compiled.upper.driven;
         found.least = section.least;
-        for (lower_branch, lower) in section.solutions() {
+        for (lower, tau) in section.solutions() {
             // U = exp(−I τ) · b
-            let step = lower.tau.inverse();
-            let target = self.manipulator.task().upper_intersection.before(b, step);
-            for &branch in compiled.upper.branches() {
-                let Ok(upper) = compiled.upper.inverse(&target, branch) else { continue };
-                let solution = Found { lower, upper: &upper, tau: lower.tau };
-                let branches = LegBranches { lower: lower_branch, upper: branch };
-                let mode = self.manipulator.leg_mode(leg, branches);
-                found.note(mode, &solution, self.error(leg, &solution, rise));
+            let step = tau.inverse();
+            let target = || self.manipulator.task().upper_intersection.before(b, step);
+            for &upper in compiled.upper.branches() {
+                let error = match tested {
+                    true => match compiled.upper.inverse(&target(), upper) {
+                        Ok(solved) => self.upper_error(leg, &solved, tau, rise),
+                        Err(_) => continue,
+                    },
+                    false => 0.0,
+                };
+                found.note(self.manipulator.leg_mode(leg, LegBranches { lower, upper }), error);
             }
         }
     }
@@ -244,12 +269,12 @@ impl Search<'_> {
     #[inline(always)]
     fn solve_lower(&mut self, leg: usize, v: &Displacement, tau: Option<JointDisplacement>) {
         let same = |lower: &LowerSection| lower.tau == tau && lower.v == *v;
-        if same(&self.lowers[leg][0]) {
+        if same(&self.memory.lowers[leg][0]) {
             return;
         }
-        self.lowers[leg].swap(0, 1);
-        if !same(&self.lowers[leg][0]) {
-            self.lowers[leg][0] = self.lower_section(leg, v, tau);
+        self.memory.lowers[leg].swap(0, 1);
+        if !same(&self.memory.lowers[leg][0]) {
+            self.memory.lowers[leg][0] = self.lower_section(leg, v, tau);
         }
     }
 
@@ -271,9 +296,7 @@ impl Search<'_> {
             if error <= MATCH {
                 // L · exp(I c) = v, with c the imaginary joint's displacement: τ = −c.
                 let step = || compiled.unwound(compiled.step(&displacements), 0.0);
-                let tau = tau.unwrap_or_else(|| step().inverse());
-                let values = self.manipulator.lower_values(leg, &displacements, tau);
-                *solved = Some(SolvedLower { displacements, tau, values, error });
+                *solved = Some(tau.unwrap_or_else(|| step().inverse()));
             } else {
                 section.least = section.least.min(error);
             }
@@ -281,37 +304,28 @@ impl Search<'_> {
         section
     }
 
-    /// The largest error of an actuated joint of a leg's solution.
+    /// The largest error of an actuated joint of a leg's upper section and of its lift, where that depends on τ.
     #[inline(always)]
-    fn error(&self, leg: usize, found: &Found<'_>, rise: f64) -> f64 {
+    fn upper_error(
+        &self,
+        leg: usize,
+        upper: &[JointDisplacement; 3],
+        tau: JointDisplacement,
+        rise: f64,
+    ) -> f64 {
         let m = self.manipulator;
         let compiled = &m.legs[leg];
-        let mut error = found.lower.error.max(self.section_error(&compiled.upper, found.upper));
+        let mut error = self.section_error(&compiled.upper, upper);
         // All lifts have one height, unless each leg has its own.
         let lift = compiled.lift.filter(|lift| lift.slope != 0.0);
         if let Some((lift, actuated)) =
             lift.and_then(|lift| Some((lift, lift.coordinate.actuated?)))
         {
             let own = lift.rise(self.held.displacements[actuated]);
-            let off = own - m.task().rise_of_leg(rise, found.tau);
+            let off = own - m.task().rise_of_leg(rise, tau);
             error = error.max(off.abs() / m.closure.size);
         }
         error
-    }
-
-    /// Of solutions that are the same near a singularity, keeps the one with the smallest error.
-    #[inline(never)]
-    fn keep_distinct(&self, leg: usize, found: &mut Vec<Match>) {
-        found.sort_by(|a, b| a.error.total_cmp(&b.error));
-        let mut kept = 0;
-        for next in 0..found.len() {
-            let same = |other: &Match| self.same(leg, &other.solution, &found[next].solution);
-            if !found[..kept].iter().any(same) {
-                found.swap(kept, next);
-                kept += 1;
-            }
-        }
-        found.truncate(kept);
     }
 
     /// The largest error of an actuated joint in one section, in radians or shares of the size.
@@ -327,29 +341,11 @@ impl Search<'_> {
         for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
             if let Some(ChainCoordinate { number, actuated: Some(actuated), .. }) = *coordinate {
                 let (value, direction) =
-                    (self.held.displacements[actuated], self.directions[actuated]);
+                    (self.held.displacements[actuated], self.memory.directions[actuated]);
                 error = error.max(self.distance(number, displacement, value, direction));
             }
         }
         error
-    }
-
-    /// Whether two solutions of a leg are the same, up to rounding near a singularity.
-    fn same(&self, leg: usize, one: &LegSolution, other: &LegSolution) -> bool {
-        let compiled = &self.manipulator.legs[leg];
-        let sections = [
-            (&compiled.lower, &one.lower, &other.lower),
-            (&compiled.upper, &one.upper, &other.upper),
-        ];
-        sections.iter().all(|(section, one, other)| {
-            section.coordinates.iter().zip(one.iter().zip(*other)).all(
-                |(coordinate, (one, other))| {
-                    let Some(coordinate) = coordinate else { return true };
-                    self.distance(coordinate.number, *one, other.value(), other.unit_direction())
-                        < APART
-                },
-            )
-        })
     }
 
     /// The distance of a joint's displacement from a value, or from the direction of that angle: in radians

@@ -1,7 +1,7 @@
 //! The assembly near a pose: the sections one after the other, or else the steps of Newton's method; and the buffers of
 //! both.
 
-use super::accept::{MATCH, Place, SETTLED};
+use super::accept::{MATCH, Place, SETTLED, Solved};
 use super::held::Held;
 use super::near::{NotFound, Stop};
 use super::nearest::{NearestBuffer, distance};
@@ -188,7 +188,7 @@ impl Manipulator {
     }
 
     /// What an error of a joint coordinate counts as: one for an angle, one over the size for a length.
-    fn weight(&self, coordinate: usize) -> f64 {
+    pub(super) fn weight(&self, coordinate: usize) -> f64 {
         match self.coordinates()[coordinate].quantity {
             Quantity::Angle => 1.0,
             Quantity::Length => self.closure.size.recip(),
@@ -196,7 +196,7 @@ impl Manipulator {
     }
 
     /// For every actuated coordinate, whether it is an angle modulo 2π.
-    fn modulo_revolutions(&self) -> Vec<bool> {
+    pub(super) fn modulo_revolutions(&self) -> Vec<bool> {
         let rotates = |kind: JointKind| match kind {
             JointKind::Revolute | JointKind::Universal { .. } | JointKind::Cylindrical => true,
             JointKind::Prismatic | JointKind::Helical { .. } | JointKind::Spherical => false,
@@ -411,9 +411,17 @@ impl Newton<'_> {
         self.write_pose(at);
         let NearBuffer { displacements, pose, solution, closure, assembly, .. } = at;
         m.write_closed(solution);
+        m.set_actuated(displacements, &mut solution.joints);
         let target = solution.displacement(m);
+        let residual = m.closure.residual(&solution.joints, &target);
         let place = Place { pose, target: &target, mode: self.mode };
-        m.write_assembly(place, displacements, solution, closure, assembly);
+        let solved = Solved {
+            dependent: solution.dependent(),
+            joints: solution.joints(),
+            imaginary: solution.imaginary(),
+            within_limits: solution.within_limits(),
+        };
+        m.write_assembly(place, solved, residual, closure, assembly);
     }
 }
 

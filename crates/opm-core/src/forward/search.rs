@@ -1,95 +1,121 @@
 //! The search for assemblies: it tries every combination of the solutions of the two sections.
 
-use super::accept::MATCH;
+use super::accept::{MATCH, Outcome};
+use super::candidates::Candidates;
 use super::held::{Held, Taus};
-use super::matches::{LowerSection, Matches};
-use super::{Assemblies, Unmet, solve};
+use super::matches::{KnownLeg, LowerSection, Matches};
+use super::{Unmet, solve};
 use crate::chain::ReachDeficit;
 use crate::chain::condition::Condition;
 use crate::group::{Displacement, JointDisplacement};
 use crate::manipulator::plan::{Anchor, Plan};
-use crate::manipulator::{ClosureBuffer, Manipulator, Section, Solution};
+use crate::manipulator::{Manipulator, Section};
 use crate::numeric::angle::unit;
-use nalgebra::{Complex, Isometry3};
+use nalgebra::Complex;
 
 /// One run of the forward kinematics.
 pub(super) struct Search<'a> {
     pub manipulator: &'a Manipulator,
     pub held: Held<'a>,
-    /// The displacements of the actuated joints as unit complex numbers `e(angle)`.
-    pub directions: Vec<Complex<f64>>,
     /// The height above home, metres: that of the first actuated lift. Where legs have heights of their own, it follows
     /// for each candidate.
     pub rise: f64,
-    /// A buffer for the conditions on a section.
+    /// Whether the conditions on the upper section had no solution for some solution of the lower one.
+    pub upper_failed: bool,
+    pub memory: &'a mut Memory,
+}
+
+/// The memory of a search, which the next one uses again.
+pub(super) struct Memory {
+    /// The displacements of the actuated joints as unit complex numbers `e(angle)`.
+    pub directions: Vec<Complex<f64>>,
+    /// The conditions on a section.
     conditions: Vec<Condition>,
     /// For each leg, the τ for which candidates are being tried, in terms of `v` as the pose gives it, a unit vector where it
     /// is a direction; `None` where it was not solved for.
     pub taus: Vec<Option<JointDisplacement>>,
     /// For each leg, its lower section as it was solved last, and before that for another τ.
     pub lowers: Vec<[LowerSection; 2]>,
-    /// The lower section's displacement at the last candidate, and the same in base coordinates.
-    pub lower: Option<(Displacement, Isometry3<f64>)>,
-    /// A buffer for the solutions of each leg at a candidate.
+    /// What is known of each leg at all candidates with the present `v` and τ.
+    pub known: Vec<KnownLeg>,
+    /// The choices of each leg at a candidate.
     pub matches: Vec<Matches>,
-    /// Buffers for the pose of a candidate: all of its coordinates, and the independent ones.
+    /// The pose of a candidate: all of its coordinates, and the independent ones.
     pub poses: [Vec<f64>; 2],
-    /// A buffer for inverse kinematics.
-    pub solution: Solution,
-    /// A buffer for closure errors.
-    pub closure: ClosureBuffer,
-    /// The assemblies found so far.
-    pub out: Assemblies,
-    /// The smallest error of a joint or a leg among the rejected candidates, in radians or shares of the
-    /// size.
-    pub least: Option<f64>,
-    /// Whether the conditions on the upper section had no solution for some solution of the lower one.
-    pub upper_failed: bool,
+    pub candidates: Candidates,
+    pub outcome: Outcome,
     /// For each leg, the smallest deficit by which it was out of reach.
     pub deficits: Vec<Option<ReachDeficit>>,
 }
 
-impl<'a> Search<'a> {
-    pub fn new(manipulator: &'a Manipulator, plan: &'a Plan, displacements: &'a [f64]) -> Self {
-        let held = Held::new(manipulator, plan, displacements);
+impl Memory {
+    pub fn new(manipulator: &Manipulator) -> Self {
+        let legs = manipulator.legs();
         Self {
-            manipulator,
-            rise: held.rise,
-            held,
-            directions: displacements.iter().map(|&value| unit(value)).collect(),
+            directions: Vec::new(),
             conditions: Vec::new(),
-            taus: vec![None; manipulator.legs()],
-            lowers: (0..manipulator.legs())
-                .map(|_| [LowerSection::new(), LowerSection::new()])
-                .collect(),
-            lower: None,
-            matches: (0..manipulator.legs()).map(|_| Matches::new()).collect(),
+            taus: vec![None; legs],
+            lowers: (0..legs).map(|_| [LowerSection::new(), LowerSection::new()]).collect(),
+            known: Vec::with_capacity(legs),
+            matches: (0..legs).map(|_| Matches::new()).collect(),
             poses: Default::default(),
-            solution: manipulator.solution(),
-            closure: manipulator.closure.buffer(),
-            out: Assemblies::default(),
-            least: None,
-            upper_failed: false,
-            deficits: vec![None; manipulator.legs()],
+            candidates: Candidates::new(manipulator),
+            outcome: Outcome::new(manipulator),
+            deficits: vec![None; legs],
         }
     }
 
+    /// Forgets all but the room.
+    fn clear(&mut self) {
+        self.taus.fill(None);
+        self.lowers.fill_with(|| [LowerSection::new(), LowerSection::new()]);
+        self.candidates.clear();
+        self.outcome.clear();
+        self.deficits.fill(None);
+    }
+}
+
+impl<'a> Search<'a> {
+    pub fn new(
+        manipulator: &'a Manipulator,
+        plan: &'a Plan,
+        displacements: &'a [f64],
+        memory: &'a mut Memory,
+    ) -> Self {
+        let held = Held::new(manipulator, plan, displacements);
+        memory.clear();
+        memory.directions.clear();
+        memory.directions.extend(displacements.iter().map(|&value| unit(value)));
+        Self { manipulator, rise: held.rise, held, upper_failed: false, memory }
+    }
+
     /// Finds all candidates, and accepts those that close.
-    pub fn run(&mut self) {
+    pub fn run(mut self) {
+        self.find();
+        self.check_candidates();
+        self.give_reasons();
+    }
+
+    /// Finds all candidates.
+    fn find(&mut self) {
         let (m, plan) = (self.manipulator, self.held.plan);
         let apart = self.held.contradiction_of_heights();
         if apart > MATCH && !m.shares_height() {
-            self.reject(apart);
+            self.memory.outcome.reject(apart);
             return;
         }
         let mut known = vec![None; m.legs.len()];
         match &plan.anchor {
             Anchor::Sections | Anchor::CoupledLegs { .. } => {
-                self.held.write_lower_conditions(&mut known, &mut self.conditions);
-                match solve::all(m.task().lower.kind, &self.conditions, m.closure.size) {
+                self.held.write_lower_conditions(&mut known, &mut self.memory.conditions);
+                match solve::all(m.task().lower.kind, &self.memory.conditions, m.closure.size) {
                     Some(vs) => {
                         if vs.is_empty() {
-                            self.out.unmet.push(Unmet::Section(Section::Lower));
+                            self.memory
+                                .outcome
+                                .assemblies
+                                .unmet
+                                .push(Unmet::Section(Section::Lower));
                         }
                         for v in vs {
                             match plan.anchor {
@@ -103,7 +129,7 @@ impl<'a> Search<'a> {
             }
             Anchor::Flat(flat) => {
                 let [v, b] = flat.solve(m.task(), self.held.displacements);
-                self.assemble(&v, &b);
+                self.assemble(&v, &[b]);
             }
             Anchor::Leg(leg) => {
                 let v = self.held.actuated_lower_section(*leg);
@@ -113,7 +139,11 @@ impl<'a> Search<'a> {
             Anchor::Tracks(tracked) => match self.held.meetings(tracked) {
                 None => self.loose(Section::Lower),
                 Some([None, None]) => {
-                    self.out.unmet.push(Unmet::Legs(tracked.map(|tracked| tracked.leg)));
+                    self.memory
+                        .outcome
+                        .assemblies
+                        .unmet
+                        .push(Unmet::Legs(tracked.map(|tracked| tracked.leg)));
                 }
                 Some(vs) => {
                     for v in vs.into_iter().flatten() {
@@ -142,9 +172,10 @@ impl<'a> Search<'a> {
                     Taus::At(taus) => taus,
                     Taus::Free => [None; 2],
                     Taus::None(deficit) => {
-                        let least = self.deficits[leg].map_or(f64::INFINITY, |least| least.excess);
+                        let least =
+                            self.memory.deficits[leg].map_or(f64::INFINITY, |least| least.excess);
                         if deficit.excess < least {
-                            self.deficits[leg] = Some(deficit);
+                            self.memory.deficits[leg] = Some(deficit);
                         }
                         all_reach = false;
                         continue;
@@ -172,12 +203,12 @@ impl<'a> Search<'a> {
     /// Finds `b` from the legs' conditions, with `v` and every τ known.
     fn with_taus(&mut self, v: &Displacement, taus: &[Option<JointDisplacement>]) {
         let m = self.manipulator;
-        self.held.write_upper_conditions(taus, &mut self.conditions);
-        match solve::all(m.task().upper.kind, &self.conditions, m.closure.size) {
+        self.held.write_upper_conditions(taus, &mut self.memory.conditions);
+        match solve::all(m.task().upper.kind, &self.memory.conditions, m.closure.size) {
             None => self.loose(Section::Upper),
             Some(bs) => {
                 self.upper_failed |= bs.is_empty();
-                for (known, tau) in self.taus.iter_mut().zip(taus) {
+                for (known, tau) in self.memory.taus.iter_mut().zip(taus) {
                     *known = tau.map(|tau| match tau {
                         JointDisplacement::Direction(_) => {
                             JointDisplacement::Direction(tau.unit_direction())
@@ -185,17 +216,16 @@ impl<'a> Search<'a> {
                         JointDisplacement::Value(_) => tau,
                     });
                 }
-                for b in bs {
-                    self.assemble(v, &b);
-                }
+                self.assemble(v, &bs);
             }
         }
     }
 
     /// Notes that a section can move while the actuated joints are held.
     fn loose(&mut self, section: Section) {
-        if !self.out.loose.contains(&section) {
-            self.out.loose.push(section);
+        let loose = &mut self.memory.outcome.assemblies.loose;
+        if !loose.contains(&section) {
+            loose.push(section);
         }
     }
 }

@@ -1,35 +1,33 @@
 //! The closure error of the legs: the products of exponentials of their joints, without any decomposition,
 //! compared with the pose of the platform.
 
-mod abreast;
+mod products;
 
 use crate::decomposition::mobility::frame;
 use crate::group::screw::Screw;
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointKind;
 use crate::numeric::four_wide::FourWide;
-use abreast::{Abreast, Products};
 use nalgebra::{Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
-use pulp::{Simd, WithSimd};
+use products::{Displacements, Exponents, Targets};
+use pulp::{Arch, Simd, WithSimd};
 
 /// The legs' joints, for products of exponentials.
 #[derive(Clone, Debug)]
 pub struct Closure {
     legs: Vec<Vec<LegJoint>>,
-    abreast: Vec<Abreast>,
     platform: Point3<f64>,
     /// The characteristic length of the mechanism, metres.
     pub size: f64,
     /// The rounding of a residual. Products of exponentials lose more digits, the farther away the axes are from the origin.
     pub rounding: f64,
     arch: FourWide,
+    arch_of_many: Arch,
 }
 
 /// The buffer of [`Closure::residual`] and [`Closure::settle`].
 #[derive(Clone, Debug)]
 pub struct ClosureBuffer {
-    /// The products of exponentials of every group of legs.
-    products: Vec<Products>,
     /// Joint values that are tried.
     tried: Vec<f64>,
 }
@@ -39,6 +37,7 @@ pub struct ClosureBuffer {
 enum LegJoint {
     Screw {
         screw: Screw,
+        exponent: Exponents<1>,
         home: f64,
         actuated: bool,
     },
@@ -94,13 +93,14 @@ impl Closure {
                         let home = Vector3::from_fn(|i, _| c[i].home);
                         joints.push(LegJoint::Ball { point: joint.point.coords, home, actuated });
                     } else {
-                        joints.extend(
-                            joint.screws().into_iter().zip(c).map(|(screw, c)| LegJoint::Screw {
+                        joints.extend(joint.screws().into_iter().zip(c).map(|(screw, c)| {
+                            LegJoint::Screw {
                                 screw,
+                                exponent: Exponents::of_screw(&screw),
                                 home: c.home,
                                 actuated,
-                            }),
-                        );
+                            }
+                        }));
                     }
                 }
                 joints
@@ -111,36 +111,67 @@ impl Closure {
         let farthest = away.fold(platform.coords.norm(), f64::max);
         let size = frame(mechanism).length;
         Self {
-            abreast: Abreast::of_legs(&legs),
             legs,
             platform,
             size,
             rounding: ROUNDING * farthest / size,
             arch: FourWide::new(),
+            arch_of_many: Arch::new(),
         }
     }
 
     /// The largest closure error of a leg, with the platform displaced from home by `target`: the angle in
     /// radians plus the distance of the reference point over the size.
-    pub fn residual(
+    pub fn residual(&self, joints: &[f64], target: &Isometry3<f64>) -> f64 {
+        self.arch.dispatch(Residual { closure: self, joints, target })
+    }
+
+    /// The same for many sets of joint values, row after row, each with a displacement of the platform: `out` gets one
+    /// number for each.
+    pub fn write_residuals(&self, joints: &[f64], targets: &[Isometry3<f64>], out: &mut Vec<f64>) {
+        out.clear();
+        self.arch_of_many.dispatch(Residuals { closure: self, joints, targets, out });
+    }
+
+    /// The largest distances of legs' ends from the targets, for some sets of joint values.
+    #[inline(always)]
+    fn largest<const N: usize>(
         &self,
-        joints: &[f64],
-        target: &Isometry3<f64>,
-        buffer: &mut ClosureBuffer,
-    ) -> f64 {
-        self.arch.dispatch(Residual {
-            closure: self,
-            joints,
-            target,
-            products: &mut buffer.products,
-        })
+        joints: [&[f64]; N],
+        targets: [&Isometry3<f64>; N],
+    ) -> [f64; N] {
+        let targets = Targets::new(targets, &self.platform);
+        let (mut largest, mut first) = ([0.0; N], 0);
+        for leg in &self.legs {
+            let mut ends = Displacements::<N>::IDENTITY;
+            for joint in leg {
+                match joint {
+                    LegJoint::Screw { exponent, home, .. } => {
+                        let by = std::array::from_fn(|i| joints[i][first] - home);
+                        ends = ends.followed(&exponent.repeated(), &by);
+                    }
+                    LegJoint::Ball { point, home, .. } => {
+                        let component =
+                            |k: usize| std::array::from_fn(|i| joints[i][first + k] - home[k]);
+                        let vectors = [component(0), component(1), component(2)];
+                        let (exponents, angles) = Exponents::of_ball(point, &vectors);
+                        ends = ends.followed(&exponents, &angles);
+                    }
+                }
+                first += joint.values();
+            }
+            let distances = ends.apart(&targets, &self.platform, self.size);
+            for i in 0..N {
+                largest[i] = f64::max(largest[i], distances[i]);
+            }
+        }
+        largest
     }
 
     /// A buffer for the closure errors.
     pub fn buffer(&self) -> ClosureBuffer {
-        let products = self.abreast.iter().map(Abreast::products).collect();
         let values = self.legs.iter().flatten().map(LegJoint::values).sum();
-        ClosureBuffer { products, tried: Vec::with_capacity(values) }
+        ClosureBuffer { tried: Vec::with_capacity(values) }
     }
 
     /// Moves the passive joints of every leg so that it closes, with the actuated joints held, by Newton's
@@ -165,9 +196,7 @@ impl Closure {
                 self.step(leg, &mut buffer.tried[first..first + values], target);
                 first += values;
             }
-            let tried = std::mem::take(&mut buffer.tried);
-            let after = self.residual(&tried, target, buffer);
-            buffer.tried = tried;
+            let after = self.residual(&buffer.tried, target);
             if after.is_nan() || after >= residual {
                 break;
             }
@@ -235,12 +264,11 @@ impl Closure {
     }
 }
 
-/// The closure error, with the instructions of the processor at hand.
+/// A closure error, with the instructions of the processor at hand.
 struct Residual<'a> {
     closure: &'a Closure,
     joints: &'a [f64],
     target: &'a Isometry3<f64>,
-    products: &'a mut [Products],
 }
 
 impl WithSimd for Residual<'_> {
@@ -248,12 +276,46 @@ impl WithSimd for Residual<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
-        let Self { closure, joints, target, products } = self;
-        let Closure { abreast, platform, size, .. } = closure;
-        let mut largest = 0.0;
-        for (legs, products) in abreast.iter().zip(products) {
-            largest = f64::max(largest, legs.residual(joints, target, platform, *size, products));
+        let [residual] = self.closure.largest([self.joints], [self.target]);
+        residual
+    }
+}
+
+/// Many closure errors, with the instructions of the processor at hand.
+struct Residuals<'a> {
+    closure: &'a Closure,
+    joints: &'a [f64],
+    targets: &'a [Isometry3<f64>],
+    out: &'a mut Vec<f64>,
+}
+
+impl WithSimd for Residuals<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        /// One vector of every processor, or more.
+        const TOGETHER: usize = 8;
+        /// Fewer are computed one by one.
+        const FEW: usize = 3;
+        let Self { closure, joints, targets, out } = self;
+        let rows = targets.len();
+        let width = joints.len() / rows.max(1);
+        for first in (0..rows).step_by(TOGETHER) {
+            if rows - first < FEW {
+                for row in first..rows {
+                    let joints = &joints[row * width..][..width];
+                    out.extend(closure.largest([joints], [&targets[row]]));
+                }
+                break;
+            }
+            // The last ones are computed as often as there is room.
+            let row = |i: usize| (first + i).min(rows - 1);
+            let largest = closure.largest::<TOGETHER>(
+                std::array::from_fn(|i| &joints[row(i) * width..][..width]),
+                std::array::from_fn(|i| &targets[row(i)]),
+            );
+            out.extend(largest.into_iter().take(rows - first));
         }
-        largest
     }
 }

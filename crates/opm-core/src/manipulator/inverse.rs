@@ -16,7 +16,6 @@ use super::{Manipulator, Mode};
 use pulp::{Simd, WithSimd};
 pub(super) use revolutions::Revolutions;
 pub(super) use values::AngleOf;
-pub(crate) use values::LowerValues;
 
 impl Manipulator {
     /// Every joint at a pose in one working mode, angles within half a revolution of home; `None` where

@@ -126,16 +126,16 @@ impl CompiledSection {
         }
     }
 
-    /// The joints' displacements with a known one of the first joint: see [`Chain::completed`].
+    /// The branch with a known displacement of the first joint: see [`Chain::branch_with`].
     #[inline(always)]
-    pub fn completed(
+    pub fn branch_with(
         &self,
         target: &Displacement,
         first: Complex<f64>,
         within: f64,
-    ) -> Option<([JointDisplacement; 3], Branch)> {
+    ) -> Option<Branch> {
         match (&self.partial, &self.offset) {
-            (None, None) => self.chain.completed(target, first, within),
+            (None, None) => self.chain.branch_with(target, first, within),
             _ => None,
         }
     }

@@ -119,13 +119,6 @@ impl Solution {
         }
     }
 
-    /// Takes a pose, with its dependent coordinates, as the one that was solved.
-    pub(crate) fn take_pose(&mut self, manipulator: &Manipulator, all: &[f64]) {
-        self.solved.pose.copy_from_slice(all);
-        (self.solved.v, self.solved.b) = manipulator.task.sections(all);
-        manipulator.divide(self);
-    }
-
     /// This solution, if every leg closes.
     #[inline]
     pub(super) fn reached(&self) -> Option<&Self> {

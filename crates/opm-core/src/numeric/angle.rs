@@ -104,15 +104,18 @@ pub(crate) fn sin_cos_of_each([a, b, c]: [f64; 3]) -> [(f64, f64); 3] {
     [(sines[0], cosines[0]), (sines[1], cosines[1]), (sines[2], cosines[2])]
 }
 
-/// The sines of four angles, and their cosines.
+/// The sines of some angles, and their cosines.
 #[inline(always)]
-pub(crate) fn sin_cos_of_all(angles: &[f64; 4]) -> [[f64; 4]; 2] {
-    let [a, b, c, d] = angles.map(f64::abs);
-    if a.max(b).max(c.max(d)) > MOST_REDUCED {
+pub(crate) fn sin_cos_of_all<const N: usize>(angles: &[f64; N]) -> [[f64; N]; 2] {
+    let mut large = 0;
+    for angle in angles {
+        large |= u64::from(angle.abs() > MOST_REDUCED);
+    }
+    if large != 0 {
         return large_sin_cos_of_all(angles);
     }
-    let (mut sines, mut cosines) = ([0.0; 4], [0.0; 4]);
-    for i in 0..4 {
+    let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
+    for i in 0..N {
         (sines[i], cosines[i]) = sin_cos_reduced(angles[i]);
     }
     [sines, cosines]
@@ -120,7 +123,7 @@ pub(crate) fn sin_cos_of_all(angles: &[f64; 4]) -> [[f64; 4]; 2] {
 
 #[cold]
 #[inline(never)]
-fn large_sin_cos_of_all(angles: &[f64; 4]) -> [[f64; 4]; 2] {
+fn large_sin_cos_of_all<const N: usize>(angles: &[f64; N]) -> [[f64; N]; 2] {
     let each = angles.map(sin_cos);
     [each.map(|(sin, _)| sin), each.map(|(_, cos)| cos)]
 }

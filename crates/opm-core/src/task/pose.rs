@@ -6,13 +6,19 @@ use crate::group::{
     PlanarMotion, SpatialMotion, SphericalMotion, SubspaceKind, TranslationalMotion,
 };
 use crate::mechanism::OrientationCoordinates;
+use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 use crate::numeric::angle::{atan2, atan2_of_each, near, sin_cos};
+use crate::numeric::four_wide::FourWide;
 use nalgebra::{Complex, Matrix3, Vector3};
+use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
 
 /// The sine of an angle between two axes that counts as zero: the rounding of a rotation.
 const POLE: f64 = 1e-13;
+
+/// The number of poses whose angles are computed together.
+const TOGETHER: usize = 8;
 
 impl Task {
     /// The coordinates of `v · b`, however the displacement along the intersection motion is distributed
@@ -40,13 +46,58 @@ impl Task {
         pose: &mut Vec<f64>,
     ) {
         pose.clear();
+        self.append(&self.described_factors(v, b, rise), |r, home| self.angles(r, home), pose);
+    }
+
+    /// Writes the coordinates of `v · b` for each `b`, row after row. Their angles are computed together.
+    pub(crate) fn write_poses(
+        &self,
+        v: &Displacement,
+        bs: &[Displacement],
+        rise: f64,
+        arch: FourWide,
+        poses: &mut Vec<f64>,
+    ) {
+        poses.clear();
+        for bs in bs.chunks(TOGETHER) {
+            let mut described = [self.described_factors(v, &bs[0], rise); TOGETHER];
+            for (described, b) in described.iter_mut().zip(bs).skip(1) {
+                *described = self.described_factors(v, b, rise);
+            }
+            let together = match (self.angles, self.euler_section()) {
+                (OrientationCoordinates::EulerAngles, Some(Section::Upper)) => {
+                    let rotations = described.map(|(_, b, _)| self.orientation(b.spherical()));
+                    let first = self.coordinates.len() - 3;
+                    let home = [0, 1, 2].map(|i| self.coordinates[first + i].home);
+                    Some(arch.dispatch(EulerAngles { rotations: &rotations, home }))
+                }
+                _ => None,
+            };
+            for (i, described) in described[..bs.len()].iter().enumerate() {
+                let angles = |r: &Matrix3<f64>, home| {
+                    together.as_ref().map_or_else(|| self.angles(r, home), |angles| angles[i])
+                };
+                self.append(described, angles, poses);
+            }
+        }
+    }
+
+    /// Appends the coordinates of factors as these describe them. `angles` gives those of a displacement of a sphere from
+    /// home.
+    #[inline(always)]
+    fn append(
+        &self,
+        (v, b, rise): &(Displacement, Displacement, f64),
+        angles: impl Fn(&Matrix3<f64>, [f64; 3]) -> [f64; 3],
+        pose: &mut Vec<f64>,
+    ) {
+        let start = pose.len();
         // The height is put in its place at last: until then, the coordinates after it are one place before theirs.
         let height = self.height.as_ref().map_or(usize::MAX, |height| height.coordinate);
         let number = |i: usize| i + usize::from(i >= height);
         let lower_count = self.lower_count - usize::from(height < self.lower_count);
         let home = |i: usize| self.coordinates[number(i)].home;
         let rotation = self.shared() == Some(MotionType::Rotation);
-        let (v, b, rise) = self.described_factors(v, b, rise);
         match v {
             Displacement::Identity(_) => {}
             Displacement::Planar(g) => {
@@ -56,7 +107,7 @@ impl Task {
                 }
             }
             Displacement::Spherical(r) if self.shared().is_none() => {
-                pose.extend(self.angles(&r, [home(0), home(1), home(2)]));
+                pose.extend(angles(r, [home(0), home(1), home(2)]));
             }
             Displacement::Spherical(r) => {
                 let [mu, nu] = tilt_angles(&r.column(2).into_owned());
@@ -82,7 +133,7 @@ impl Task {
                 home(2) + g.rotation.arg(),
             ]),
             Displacement::Spherical(r) => {
-                pose.extend(self.angles(&r, [home(0), home(1), home(2)]));
+                pose.extend(angles(r, [home(0), home(1), home(2)]));
             }
             Displacement::Cylindrical(g) if translation => pose.push(home(0) + g.angle),
             Displacement::Cylindrical(g) => {
@@ -106,7 +157,7 @@ impl Task {
             | SubspaceKind::TranslationalPlane
             | SubspaceKind::TranslationalSpace => false,
         };
-        for (i, q) in pose.iter_mut().enumerate() {
+        for (i, q) in pose[start..].iter_mut().enumerate() {
             let c = &self.coordinates[number(i)];
             let section = if i < lower_count { &self.lower } else { &self.upper };
             if c.quantity == Quantity::Angle && !counted(section.kind) {
@@ -114,7 +165,7 @@ impl Task {
             }
         }
         if height < self.coordinates.len() {
-            pose.insert(height, self.coordinates[height].home + rise);
+            pose.insert(start + height, self.coordinates[height].home + rise);
         }
     }
 
@@ -144,13 +195,18 @@ impl Task {
 
     /// The angles of a displacement of a sphere from home, those nearest to the values at home.
     fn angles(&self, r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
-        let orientation = match &self.home_orientation_inverse {
-            Some(inverse) => r * inverse.transpose(),
-            None => *r,
-        };
+        let orientation = self.orientation(r);
         match self.angles {
             OrientationCoordinates::EulerAngles => euler_angles(&orientation, home),
             OrientationCoordinates::TiltTorsion => tilt_and_torsion(&orientation, home),
+        }
+    }
+
+    /// The orientation after a displacement of a sphere from home.
+    fn orientation(&self, r: &Matrix3<f64>) -> Matrix3<f64> {
+        match &self.home_orientation_inverse {
+            Some(inverse) => r * inverse.transpose(),
+            None => *r,
         }
     }
 
@@ -246,12 +302,19 @@ pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
 
 /// The angles `zeta xi psi` of a rotation, where this is the sine of `xi`, which is not zero.
 fn with_sine(r: &Matrix3<f64>, sine: f64) -> [f64; 3] {
+    let (y, x) = directions(r, sine);
+    atan2_of_each(&y, &x)
+}
+
+/// The directions of these angles: their sines and their cosines, times some factor.
+#[inline(always)]
+fn directions(r: &Matrix3<f64>, sine: f64) -> ([f64; 3], [f64; 3]) {
     // Near the singularity the error of zeta is the rounding over the sine, but zeta ± psi is accurate: psi
     // is computed from what this zeta leaves of the rotation.
     let (cos, sin) = (r[(0, 2)] / sine, r[(1, 2)] / sine);
     let y = [r[(1, 2)], sine, cos * r[(1, 0)] - sin * r[(0, 0)]];
     let x = [r[(0, 2)], r[(2, 2)], cos * r[(1, 1)] - sin * r[(0, 1)]];
-    atan2_of_each(&y, &x)
+    (y, x)
 }
 
 /// The angles `azimuth tilt torsion` with `Rz(azimuth) Ry(tilt) Rz(torsion - azimuth) = r`, the tilt in [0, π]. Where
@@ -282,13 +345,93 @@ fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         let extra = 0.5 * (sum - home[0] - up * home[2]);
         return [home[0] + extra, xi, home[2] + up * extra];
     }
-    let plain = with_sine(r, sine);
-    let other = [plain[0] + PI, -plain[1], plain[2] + PI];
-    let placed =
-        |angles: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| near(angles[i], home[i])) };
-    let distance = |angles: &[f64; 3]| -> f64 {
-        angles.iter().zip(&home).map(|(angle, home)| (angle - home) * (angle - home)).sum()
+    nearer_triple(with_sine(r, sine), home)
+}
+
+/// Of the two triples of Euler angles of a rotation, of which one is given, the one nearest to `home`.
+#[inline(always)]
+fn nearer_triple([zeta, xi, psi]: [f64; 3], home: [f64; 3]) -> [f64; 3] {
+    let placed = |[a, b, c]: [f64; 3]| [near(a, home[0]), near(b, home[1]), near(c, home[2])];
+    let distance = |angles: &[f64; 3]| {
+        let [a, b, c] = [angles[0] - home[0], angles[1] - home[1], angles[2] - home[2]];
+        a * a + b * b + c * c
     };
-    let (plain, other) = (placed(plain), placed(other));
-    if distance(&other) < distance(&plain) { other } else { plain }
+    let (plain, other) = (placed([zeta, xi, psi]), placed([zeta + PI, -xi, psi + PI]));
+    let nearer = distance(&other) < distance(&plain);
+    let chosen = |i: usize| if nearer { other[i] } else { plain[i] };
+    [chosen(0), chosen(1), chosen(2)]
+}
+
+/// [`euler_angles`] of several rotations, with the instructions of the processor at hand.
+struct EulerAngles<'a> {
+    rotations: &'a [Matrix3<f64>; TOGETHER],
+    home: [f64; 3],
+}
+
+impl WithSimd for EulerAngles<'_> {
+    type Output = [[f64; 3]; TOGETHER];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Self { rotations, home } = self;
+        let (mut y, mut x) = ([[0.0; TOGETHER]; 3], [[0.0; TOGETHER]; 3]);
+        let mut sines = [0.0; TOGETHER];
+        for (i, r) in rotations.iter().enumerate() {
+            sines[i] = (r[(0, 2)] * r[(0, 2)] + r[(1, 2)] * r[(1, 2)]).sqrt();
+            let of_one = directions(r, sines[i]);
+            for k in 0..3 {
+                (y[k][i], x[k][i]) = (of_one.0[k], of_one.1[k]);
+            }
+        }
+        let [zeta, xi, psi] = [0, 1, 2].map(|k| atan2_of_each(&y[k], &x[k]));
+        let mut angles = [[0.0; 3]; TOGETHER];
+        for i in 0..TOGETHER {
+            angles[i] = nearer_triple([zeta[i], xi[i], psi[i]], home);
+        }
+        for i in (0..TOGETHER).filter(|&i| sines[i] < POLE) {
+            angles[i] = euler_angles(&rotations[i], home);
+        }
+        angles
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Manipulator;
+    use crate::group::{Spherical, Subgroup};
+    use std::f64::consts::FRAC_PI_2;
+
+    /// Poses are written together as each alone: random rotations, half turns, quarter turns, and the poles of Euler angles.
+    #[test]
+    fn many_poses_are_written_as_one_is() {
+        let mut rng = fastrand::Rng::with_seed(1);
+        for name in ["plano-spherical-5dof", "agile-eye", "planar-3rrr", "cartesian-wrist-6dof"] {
+            let m = Manipulator::example(name).unwrap();
+            let mut written = Vec::new();
+            for count in (0..30).chain(1..4) {
+                let mut some = |lower: bool| {
+                    let home = m.home_pose();
+                    let pose: Vec<f64> = home
+                        .iter()
+                        .map(|home| match rng.u32(..4) {
+                            0 => *home,
+                            1 => FRAC_PI_2 * f64::from(rng.i32(-2..=2)),
+                            _ => home + 3.0 * (rng.f64() - 0.5),
+                        })
+                        .collect();
+                    let (v, b) = m.task().sections(&pose);
+                    if lower { v } else { b }
+                };
+                let v = some(true);
+                let mut bs: Vec<Displacement> = (0..count).map(|_| some(false)).collect();
+                if let Some(Displacement::Spherical(b)) = bs.first_mut() {
+                    *b = Spherical::exponential(&Vector3::new(0.0, 0.0, 0.3));
+                }
+                m.task().write_poses(&v, &bs, 0.01, m.arch, &mut written);
+                let each = bs.iter().flat_map(|b| m.task().pose(&v, b, 0.01));
+                assert_eq!(written, each.collect::<Vec<f64>>(), "{name}");
+            }
+        }
+    }
 }

@@ -26,52 +26,6 @@ impl Manipulator {
         angles.answer(|of, angle| self.take(of, angle, out, Revolutions::NearHome));
     }
 
-    /// Does the same where the values of every leg's lower joints are known.
-    #[inline(always)]
-    pub(crate) fn write_upper_sections<'a>(
-        &self,
-        lower: impl Iterator<Item = &'a LowerValues>,
-        out: &mut Solution,
-    ) {
-        let home = Revolutions::NearHome;
-        let mut angles = Angles::new(AngleOf::Leg(0));
-        for ((number, leg), known) in self.legs.iter().enumerate().zip(lower) {
-            angles.make_room(|of, angle| self.take(of, angle, out, home));
-            for (coordinate, value) in leg.lower.coordinates.iter().zip(known.joints) {
-                if let Some(joint) = coordinate {
-                    out.joints[joint.number] = value;
-                }
-            }
-            out.within_limits &= known.within_limits;
-            self.take_tau(number, known.tau, out);
-            Self::write_section(&leg.upper, (number, Section::Upper), out, home, &mut angles);
-        }
-        angles.answer(|of, angle| self.take(of, angle, out, home));
-    }
-
-    /// The values of a leg's lower joints with these displacements, and of τ, with angles within π of home.
-    pub(crate) fn lower_values(
-        &self,
-        number: usize,
-        lower: &[JointDisplacement; 3],
-        tau: JointDisplacement,
-    ) -> LowerValues {
-        let mut values = LowerValues { joints: [0.0; 3], tau: tau.value(), within_limits: true };
-        let section = &self.legs[number].lower;
-        for (i, joint) in section.coordinates.iter().enumerate() {
-            let Some(joint) = joint else { continue };
-            values.joints[i] = joint.home
-                + match lower[i] {
-                    JointDisplacement::Value(value) => value,
-                    angle @ JointDisplacement::Direction(_) => {
-                        joint.limits.report_angle(angle.value())
-                    }
-                };
-            values.within_limits &= joint.limits.admits(lower[i]);
-        }
-        values
-    }
-
     /// Writes the values of the lifts at the pose and the legs' solutions that `out` holds.
     #[inline(never)]
     pub(crate) fn write_lifts(&self, out: &mut Solution) {
@@ -177,15 +131,6 @@ impl Manipulator {
             }
         }
     }
-}
-
-/// The values of a leg's lower joints, radians and metres; zero for what is no joint.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LowerValues {
-    joints: [f64; 3],
-    /// The leg's displacement along the intersection motion.
-    tau: f64,
-    within_limits: bool,
 }
 
 /// What an angle is that was asked for.
