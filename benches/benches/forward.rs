@@ -33,6 +33,7 @@ fn main() {
         .collect();
     let n = poses.len() as u64;
     let (home, mut buffer) = (manipulator.home_pose(), manipulator.near_buffer());
+    let mut every = manipulator.forward_buffer();
     let timings = compare(vec![
         Contender::new("inverse kinematics, all joints", n, || {
             for pose in &poses {
@@ -40,6 +41,11 @@ fn main() {
             }
         }),
         Contender::new("forward kinematics, every assembly", n, || {
+            for actuated in &joints {
+                let _ = black_box(manipulator.forward_into(black_box(actuated), &mut every));
+            }
+        }),
+        Contender::new("forward kinematics, every assembly, in new memory", n, || {
             for actuated in &joints {
                 let _ = black_box(manipulator.forward(black_box(actuated)));
             }

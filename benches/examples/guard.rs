@@ -92,6 +92,7 @@ fn solve(work: &str, manipulator: &Manipulator) {
         })
         .collect();
     let mut buffer = manipulator.near_buffer();
+    let mut every = manipulator.forward_buffer();
     let mut motion = manipulator.joint_motion();
     let rates = [0.1, -0.2, 0.5, 0.3, -0.4];
     counted(&mut || {
@@ -103,7 +104,9 @@ fn solve(work: &str, manipulator: &Manipulator) {
                 "inverse-drives" => {
                     let _ = black_box(manipulator.inverse_actuated(&poses[i], mode, &mut drives));
                 }
-                "forward" => drop(black_box(manipulator.forward(&actuated[i]))),
+                "forward" => {
+                    let _ = black_box(manipulator.forward_into(&actuated[i], &mut every));
+                }
                 "forward-near" => {
                     let found =
                         manipulator.forward_near_into(&actuated[i], &near[i], mode, &mut buffer);
