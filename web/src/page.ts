@@ -245,11 +245,13 @@ export class Page {
     this.solved = key;
     try {
       const { value, bytes } = await this.poser.engine.ask<Posture>({ do: "pose", pose, mode, clearance });
+      // What is said below the view takes room from it.
+      this.panels.setPosture(value, this.description);
       if (value.reached) {
         [this.posture, this.reached] = [value, pose];
         this.stage.setPosture(value, bytes);
       }
-      this.showPosture(value);
+      this.showPosture();
       this.tell("pose", []);
     } catch (error) {
       this.fail("pose", error);
@@ -312,11 +314,10 @@ export class Page {
     byId<HTMLButtonElement>("reset").disabled = Object.keys(changes).length === 0;
   }
 
-  /** Shows a posture. One out of reach leaves the last one that was reached, and says what is missing. */
-  private showPosture(posture: Posture): void {
+  /** Shows the last posture that was reached: one out of reach leaves it. */
+  private showPosture(): void {
     const { description } = this;
     if (!description) return;
-    this.panels.setPosture(posture, description);
     this.placeBody();
     description.dependent.forEach(({ name }, number) => {
       const value = this.posture?.dependent[number];
