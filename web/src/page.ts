@@ -46,6 +46,7 @@ export class Page {
     drive: (name, value, final) => void this.driver.drive({ name, value, final }),
     assemble: (assembly, final) => this.assemble(assembly, final),
     follow: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
+    refused: (why) => this.tell("field", why === null ? [] : [{ message: why }]),
     unknownMotion: (name) => {
       this.state = { ...this.state, motion: null };
       this.problems.add("link", [{ message: `In the link, motion=${name}: opm ships no such motion for this mechanism.` }]);
