@@ -159,6 +159,12 @@ export class Page {
     this.set({ ...initial(), source }, true);
   }
 
+  /** Another file is opened: what was wrong before is told no more, but for a dimension that is refused. */
+  private forget(): void {
+    for (const source of ["link", "file", "field", "motion"] as const) this.problems.set(source, []);
+    if (!this.refused()) this.problems.set("mechanism", []);
+  }
+
   /** Takes the state of the address to which the browser has gone. */
   private async recall(hash: string): Promise<void> {
     await this.take(hash);
@@ -398,10 +404,15 @@ export class Page {
         if (description) void saveEntry(entry, { description, engine, slice, stage, posture, reached });
       },
       opened: (name, text) => {
+        this.forget();
         // A motion has a duration, or is a table.
         const motion = /\.csv$/i.test(name) || /^\s*(duration|points|moves)\s*=|^\s*\[+\s*(coordinates|points|moves)/m.test(text);
         if (motion && this.description) this.panels.player.open({ name, text });
         else this.open({ kind: "text", name, text });
+      },
+      unreadable: (message) => {
+        this.forget();
+        this.tell("file", [{ message }]);
       },
     });
   }
