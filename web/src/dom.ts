@@ -49,9 +49,20 @@ export function numberIn(input: HTMLInputElement): number | undefined {
   return input.value.trim() === "" || Number.isNaN(input.valueAsNumber) ? undefined : input.valueAsNumber;
 }
 
+/** The field in which something was typed that is not entered yet. */
+let typed: EventTarget | null = null;
+// Before the fields themselves hear of it.
+window.addEventListener("input", ({ target }) => (typed = target), true);
+for (const end of ["change", "focusout"]) window.addEventListener(end, () => (typed = null), true);
+
+/** Whether somebody is typing in an element. */
+export function typing(element: EventTarget | null): boolean {
+  return element !== null && element === typed && element === document.activeElement;
+}
+
 /** Sets a field, unless somebody is typing in it. */
 export function show(input: HTMLInputElement, value: number | undefined): void {
-  if (document.activeElement === input && input.type === "number") return;
+  if (typing(input)) return;
   const text = value === undefined ? "" : field(value);
   if (input.value !== text) input.value = text;
 }

@@ -1,7 +1,7 @@
 // Buttons, menus, keys, and files that are opened or dropped.
 
 import type { PartName } from "./colours";
-import { byId } from "./dom";
+import { byId, typing } from "./dom";
 import { connectLegend } from "./legend";
 
 export interface ToolbarEvents {
@@ -52,7 +52,8 @@ export function connectToolbar(events: ToolbarEvents): void {
   chosen("examples", events.example);
   chosen("save", events.save);
   window.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target instanceof HTMLInputElement) return;
+    // What is being typed in a field, the browser undoes.
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || typing(event.target)) return;
     event.preventDefault();
     events.undo(!event.shiftKey);
   });
