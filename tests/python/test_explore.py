@@ -873,6 +873,121 @@ def test_a_body_that_is_larger_than_the_mechanism_is_seen_from_outside(explore):
         assert edge() == 0
 
 
+# How many pixels of the drawing are at its edge, or under what is laid over it.
+HIDDEN = """async (bytes) => {
+    const picture = await createImageBitmap(new Blob([new Uint8Array(bytes)], { type: "image/png" }));
+    const { width, height } = picture;
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context.drawImage(picture, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    const view = document.getElementById("view").getBoundingClientRect();
+    const boxes = ["legend", "viewing", "status"].map((id) => document.getElementById(id).getBoundingClientRect());
+    let hidden = 0;
+    for (let y = 0; y < height; y++) for (let x = 0; x < width; x++) {
+        if (!data[4 * (y * width + x) + 3]) continue;
+        const [across, down] = [view.left + (x * view.width) / width, view.top + (y * view.height) / height];
+        const under = boxes.some((box) => across > box.left && across < box.right && down > box.top && down < box.bottom);
+        hidden += under || x === 0 || y === 0 || x === width - 1 || y === height - 1;
+    }
+    return hidden;
+}"""
+
+
+@pytest.mark.parametrize("width, height", [(1280, 900), (360, 740)])
+def test_the_view_shows_all_of_it(explore, width, height):
+    """At first, and from another side: joints and handles too, beside the legend, the buttons and the text."""
+    for name in ["double-spherical-5dof", "sarrus", "planar-3rrr"]:
+        explorer = explore(f"#example={name}", viewport={"width": width, "height": height})
+        hidden = lambda: explorer.page.evaluate(HIDDEN, list(explorer.bodies()))  # noqa: B023, E731
+        assert hidden() == 0, name
+        explorer.page.focus("#view")
+        for key in ["ArrowLeft"] * 8 + ["+"] * 8:
+            explorer.page.keyboard.press(key)
+        assert hidden() > 0, name
+        explorer.page.keyboard.press("f")
+        assert hidden() == 0, name
+
+
+# The fields whose numbers and the dimensions whose names are cut.
+CUT = """() => [...document.querySelectorAll("input[type=number], #dimensions label")]
+    .filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => `${one.id} ${one.value ?? one.textContent}`)"""
+
+
+def test_numbers_and_names_are_not_cut(explore):
+    """A number that is cut reads as another, and names that are cut are all the same."""
+    explorer = explore("#example=plano-spherical-5dof-joints")
+    # Rounding of the home pose.
+    assert [explorer.value(f"pose-{name}") for name in ("x", "y")] == ["0", "0"]
+    for width, height in [(1280, 900), (1050, 800), (360, 740)]:
+        explorer.page.set_viewport_size({"width": width, "height": height})
+        assert explorer.page.evaluate(CUT) == [], width
+    # What a field does not show of a number is kept where its neighbour is changed.
+    assert explorer.value("param-S1.point.x") == "103.923048"
+    explorer.enter("param-S1.point.y", 61)
+    [x] = re.findall(r"set\.S1\.point=([\d.]+)%3A61%3A", explorer.page.evaluate("location.hash"))
+    assert float(x) == pytest.approx(60 * math.sqrt(3), abs=1e-9)
+
+
+def test_a_slice_has_as_many_values_as_its_fields_say(explore):
+    explorer = explore()
+    before = explorer.count()
+    for wrong in ["100000", "0", "1.5"]:
+        explorer.page.fill("#slice-nx", wrong)
+        explorer.page.keyboard.press("Enter")
+        explorer.ready()
+        assert f"{wrong}, expected a whole number from 1 to 2001" in explorer.text("problems")
+        assert (explorer.value("slice-nx"), explorer.count()) == ("201", before)
+    explorer.fill(slice_nx=101)
+    assert explorer.page.locator("#problems").is_hidden() and explorer.count().endswith(f" of {101 * 201}")
+    assert "slice.nx=2002: expected a whole number from 1 to 2001" in explore("#slice.nx=2002").text("problems")
+
+
+def test_a_mechanism_with_one_coordinate_has_no_slice(explore):
+    explorer = explore("#example=sarrus")
+    assert "A slice needs two coordinates" in explorer.text("slice")
+    assert not explorer.page.locator("#slice-canvas").is_visible() and not explorer.page.locator("#slice-nx").is_visible()
+    assert " of " in explorer.text("whole-count")
+
+
+def test_messages_are_about_the_file_that_was_opened_last(explore, opm, tmp_path):
+    explorer = explore()
+    names = ["binary.mcap", "broken.toml", "latin.csv", "motion.toml"]
+    contents = [b"\x89MCAP0\r\n\x01\xff", b"format = 1\nname = 3\n", b"time,x\n0,\xe9\n", b"format = 1\nduration = -1\n"]
+    for name, content in zip(names, contents, strict=True):
+        (tmp_path / name).write_bytes(content)
+        explorer.page.set_input_files("#file", tmp_path / name)
+        explorer.page.wait_for_function("(name) => document.querySelector('#problems').textContent.includes(name)", arg=name)
+        explorer.ready()
+        told = explorer.page.locator("#problems div").inner_text().splitlines()
+        assert all(line.startswith(f"{name}:") for line in told), told
+        if "UTF-8" in told[0]:
+            # On the line that the command names.
+            run = subprocess.run([opm, "decompose", tmp_path / name], capture_output=True, text=True)
+            assert told[0].partition(",")[0] in run.stderr and len(told) == 1
+    assert explorer.text("title") == PLANO
+
+
+def test_dimensions_are_undone_from_every_field(explore):
+    explorer = explore()
+    height = lambda: explorer.value("param-leg1.h")  # noqa: E731
+    press = lambda key: (explorer.page.keyboard.press(key), explorer.ready())  # noqa: E731
+    explorer.page.fill("[id='param-leg1.h']", "140")
+    press("Enter")
+    # In the field itself, and in one of the pose, in which nothing is being typed.
+    press("Control+z")
+    assert height() == "120"
+    explorer.page.focus("#pose-x")
+    press("Control+Shift+Z")
+    assert height() == "140"
+    press("Control+z")
+    assert height() == "120"
+    # What is being typed is undone alone.
+    press("Control+Shift+Z")
+    explorer.page.keyboard.type("37")
+    press("Control+z")
+    assert height() == "140" and explorer.value("pose-x") != "37"
+
+
 def test_a_saved_pose_of_dependent_coordinates_is_read_back(explore, opm, tmp_path):
     explorer = explore("#example=five-bar&pose.x=20&pose.y=300")
     saved = tmp_path / "pose.csv"

@@ -1,6 +1,6 @@
 // The numbers of the mechanism that can be changed, each with a slider.
 
-import { byId, element, numberIn, show } from "./dom";
+import { byId, element, field, numberIn, show } from "./dom";
 import { rounded } from "./pose";
 import type { Description, Dimension } from "./types";
 import { halfTurn } from "./units";
@@ -12,6 +12,8 @@ export interface DimensionEvents {
 
 interface Row {
   dimension: Dimension;
+  /** The numbers that the fields show, with all their digits. */
+  shown: number[];
   numbers: HTMLInputElement[];
   sliders: HTMLInputElement[];
 }
@@ -39,7 +41,7 @@ export class DimensionPanel {
   private fields(dimension: Dimension, others: Dimension[]): HTMLElement[] {
     const { name, group, unit, parts, values } = dimension;
     const label = dimension.label.startsWith(`${group}.`) ? dimension.label.slice(group.length + 1) : dimension.label;
-    const row: Row = { dimension, numbers: [], sliders: [] };
+    const row: Row = { dimension, shown: values, numbers: [], sliders: [] };
     this.rows.set(name, row);
     // A length may be zero at first: the slider then goes as far as the other lengths of its leg.
     const same = others.filter((other) => other.unit === unit).flatMap((other) => other.values.map(Math.abs));
@@ -53,12 +55,12 @@ export class DimensionPanel {
       const reach = turn || unit === "" ? typical : Math.abs(value) || typical;
       [slider.min, slider.max, slider.value] = [String(value - reach), String(value + reach), String(value)];
       const report = (final: boolean) => {
-        const all = row.numbers.map(numberIn);
+        const all = row.numbers.map((_, place) => numberOf(row, place));
         if (all.every((one) => one !== undefined)) this.events.changed(name, all as number[], final);
         else if (final && parts[0] === "min" && all.every((one) => one === undefined)) this.events.changed(name, [], true);
       };
       const slide = (final: boolean) => {
-        const other = row.numbers.map((field, place) => numberIn(field) ?? Number(row.sliders[place]!.value));
+        const other = row.sliders.map((slider, place) => numberOf(row, place) ?? Number(slider.value));
         other[index] = rounded(slider);
         this.events.changed(name, other, final);
       };
@@ -68,7 +70,9 @@ export class DimensionPanel {
       number.addEventListener("change", () => report(true));
       row.numbers.push(number);
       row.sliders.push(slider);
-      const head = element("label", { for: id, title: text }, text);
+      // A name may go on below behind a dot.
+      const pieces = text.split(/(?<=\.)/).flatMap((piece) => [piece, element("wbr")]);
+      const head = element("label", { for: id, title: text }, ...pieces);
       return element("div", { className: "quantity" }, head, slider, number, element("span", { className: "unit" }, unit));
     });
   }
@@ -79,10 +83,17 @@ export class DimensionPanel {
       const row = this.rows.get(name);
       if (!row) return;
       const shown = changes[name] ?? values;
+      row.shown = shown;
       row.numbers.forEach((input, part) => show(input, shown[part]));
       row.sliders.forEach((slider, part) => {
         if (shown[part] !== undefined && slider.valueAsNumber !== shown[part]) slider.value = String(shown[part]);
       });
     });
   }
+}
+
+/** The number in a field of a row: that which it shows, unless another one was typed. */
+function numberOf({ numbers, shown }: Row, place: number): number | undefined {
+  const [input, known] = [numbers[place]!, shown[place]];
+  return known !== undefined && input.value === field(known) ? known : numberIn(input);
 }

@@ -24,8 +24,9 @@ export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   return found as T;
 }
 
-/** What is nearer to zero than this, in the units of any file, is rounding. */
-const ROUNDING = 1e-9;
+/** How many places after the point are told of a number, in the units of any file: what is nearer to zero is rounding. */
+const PLACES = 9;
+const ROUNDING = 10 ** -PLACES;
 
 /** A number to at most six significant digits, without trailing zeros. */
 export function short(value: number): string {
@@ -33,9 +34,9 @@ export function short(value: number): string {
   return Math.abs(value) >= 1e7 ? value.toExponential(4) : String(Number(value.toPrecision(6)) + 0);
 }
 
-/** A number as a field shows it: to nine significant digits. */
+/** A number as a field shows it, which has room for it: to nine significant digits, and no finer than rounding. */
 export function field(value: number): string {
-  return String(Number(value.toPrecision(9)) + 0);
+  return String(Number(Number(value.toPrecision(9)).toFixed(PLACES)) + 0);
 }
 
 /** A whole number with its digits in groups of three. */
@@ -48,9 +49,20 @@ export function numberIn(input: HTMLInputElement): number | undefined {
   return input.value.trim() === "" || Number.isNaN(input.valueAsNumber) ? undefined : input.valueAsNumber;
 }
 
+/** The field in which something was typed that is not entered yet. */
+let typed: EventTarget | null = null;
+// Before the fields themselves hear of it.
+window.addEventListener("input", ({ target }) => (typed = target), true);
+for (const end of ["change", "focusout"]) window.addEventListener(end, () => (typed = null), true);
+
+/** Whether somebody is typing in an element. */
+export function typing(element: EventTarget | null): boolean {
+  return element !== null && element === typed && element === document.activeElement;
+}
+
 /** Sets a field, unless somebody is typing in it. */
 export function show(input: HTMLInputElement, value: number | undefined): void {
-  if (document.activeElement === input && input.type === "number") return;
+  if (typing(input)) return;
   const text = value === undefined ? "" : field(value);
   if (input.value !== text) input.value = text;
 }

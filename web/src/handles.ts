@@ -5,6 +5,7 @@ import {
   type Ray, type ShaderMaterial,
 } from "three";
 import { lit } from "./materials";
+import { corners } from "./sight";
 import type { Coordinate, Handles, Move } from "./types";
 import type { View } from "./view";
 
@@ -85,6 +86,11 @@ export class HandleSet {
         handle.object.scale.setScalar(size * REACH * (handle.turns ? 0.55 + 0.1 * rings++ : 1));
       }
     });
+  }
+
+  /** The ends of the handles that are shown. */
+  ends(): Vector3[] {
+    return corners(this.group);
   }
 
   private make({ moves, turns }: Pick<Handle, "moves" | "turns">): Handle {

@@ -1,6 +1,6 @@
 // Links: the state of the page lives in its address, and what a link asks for may not be there.
 
-import { ENDS, initial, POINTS, type State } from "./state";
+import { countable, ENDS, initial, MOST_POINTS, POINTS, type State } from "./state";
 import type { Description, Kind, Problem } from "./types";
 
 /** The state as the part of an address after the `#`. */
@@ -80,7 +80,7 @@ export async function fromAddress(hash: string, { examples }: Known): Promise<Li
   const { slice } = state;
   slice.x = query.get("slice.x");
   slice.y = query.get("slice.y");
-  const points = (key: string) => number(key, (value) => Number.isInteger(value) && value > 0, "a whole number from 1 on") ?? POINTS;
+  const points = (key: string) => number(key, countable, `a whole number from 1 to ${MOST_POINTS}`) ?? POINTS;
   [slice.nx, slice.ny] = [points("slice.nx"), points("slice.ny")];
   for (const end of ENDS) {
     const value = number(`slice.${end}`);

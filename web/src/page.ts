@@ -46,6 +46,7 @@ export class Page {
     drive: (name, value, final) => void this.driver.drive({ name, value, final }),
     assemble: (assembly, final) => this.assemble(assembly, final),
     follow: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
+    refused: (why) => this.tell("field", why === null ? [] : [{ message: why }]),
     unknownMotion: (name) => {
       this.state = { ...this.state, motion: null };
       this.problems.add("link", [{ message: `In the link, motion=${name}: opm ships no such motion for this mechanism.` }]);
@@ -158,6 +159,12 @@ export class Page {
     this.set({ ...initial(), source }, true);
   }
 
+  /** Another file is opened: what was wrong before is told no more, but for a dimension that is refused. */
+  private forget(): void {
+    for (const source of ["link", "file", "field", "motion"] as const) this.problems.set(source, []);
+    if (!this.refused()) this.problems.set("mechanism", []);
+  }
+
   /** Takes the state of the address to which the browser has gone. */
   private async recall(hash: string): Promise<void> {
     await this.take(hash);
@@ -245,11 +252,13 @@ export class Page {
     this.solved = key;
     try {
       const { value, bytes } = await this.poser.engine.ask<Posture>({ do: "pose", pose, mode, clearance });
+      // What is said below the view takes room from it.
+      this.panels.setPosture(value, this.description);
       if (value.reached) {
         [this.posture, this.reached] = [value, pose];
         this.stage.setPosture(value, bytes);
       }
-      this.showPosture(value);
+      this.showPosture();
       this.tell("pose", []);
     } catch (error) {
       this.fail("pose", error);
@@ -312,11 +321,10 @@ export class Page {
     byId<HTMLButtonElement>("reset").disabled = Object.keys(changes).length === 0;
   }
 
-  /** Shows a posture. One out of reach leaves the last one that was reached, and says what is missing. */
-  private showPosture(posture: Posture): void {
+  /** Shows the last posture that was reached: one out of reach leaves it. */
+  private showPosture(): void {
     const { description } = this;
     if (!description) return;
-    this.panels.setPosture(posture, description);
     this.placeBody();
     description.dependent.forEach(({ name }, number) => {
       const value = this.posture?.dependent[number];
@@ -396,10 +404,15 @@ export class Page {
         if (description) void saveEntry(entry, { description, engine, slice, stage, posture, reached });
       },
       opened: (name, text) => {
+        this.forget();
         // A motion has a duration, or is a table.
         const motion = /\.csv$/i.test(name) || /^\s*(duration|points|moves)\s*=|^\s*\[+\s*(coordinates|points|moves)/m.test(text);
         if (motion && this.description) this.panels.player.open({ name, text });
         else this.open({ kind: "text", name, text });
+      },
+      unreadable: (message) => {
+        this.forget();
+        this.tell("file", [{ message }]);
       },
     });
   }

@@ -31,6 +31,8 @@ export interface PanelEvents {
   assemble(assembly: Assembly, final: boolean): void;
   /** A motion places the platform. */
   follow(pose: Pose, mode: string, final: boolean): void;
+  /** A field has something that it cannot have, with the reason; nothing where that is right again. */
+  refused(why: string | null): void;
   /** A link names a motion that is not there. */
   unknownMotion(name: string): void;
   /** Every coordinate of the pose. */
@@ -57,7 +59,7 @@ export class Panels {
     this.joints = new JointTable({ driven: events.drive });
     this.contacts = new ContactPanel((clearance) => events.set({ clearance }, true));
     this.dimensions = new DimensionPanel({ changed: events.change });
-    this.slice = new SlicePanel({ sliced: (slice, final) => events.set({ slice }, final), placed: events.move });
+    this.slice = new SlicePanel({ sliced: (slice, final) => events.set({ slice }, final), placed: events.move, refused: events.refused });
     this.body = new BodyPanel((body) => events.set({ body }, true));
     this.kinds = new KindPanel((kind) => events.set({ kind }, true));
     this.player = new Player({

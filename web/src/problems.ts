@@ -4,7 +4,7 @@ import { byId, element } from "./dom";
 import type { Problem } from "./types";
 
 /** Where problems are from. */
-export type Source = "link" | "mechanism" | "pose" | "joint" | "fit" | "slice" | "whole" | "body" | "colours" | "kind" | "motion" | "page";
+export type Source = "link" | "file" | "field" | "mechanism" | "pose" | "joint" | "fit" | "slice" | "whole" | "body" | "colours" | "kind" | "motion" | "page";
 
 export class ProblemBox {
   private readonly box = byId("problems");

@@ -2,7 +2,7 @@
 
 import { beyond } from "./beyond";
 import { byId, element, grouped, numberIn, short, show } from "./dom";
-import { POINTS, type SliceState } from "./state";
+import { countable, MOST_POINTS, POINTS, type SliceState } from "./state";
 import type { AxisRequest, Colours, Counted, Description, KindCount, Slice } from "./types";
 
 export interface SliceEvents {
@@ -10,6 +10,8 @@ export interface SliceEvents {
   sliced(slice: SliceState, final: boolean): void;
   /** The platform is to move to this place of the slice. */
   placed(values: Record<string, number>, final: boolean): void;
+  /** A number was entered that a slice cannot have, with the reason; nothing where another one is right. */
+  refused(why: string | null): void;
 }
 
 /** A slice as it was asked for, and the answer. */
@@ -88,11 +90,12 @@ export class SlicePanel {
       return input;
     };
     const points = (name: "nx" | "ny", label: string) => {
-      const input = element("input", { type: "number", min: "1", max: "2001", step: "1", id: `slice-${name}`, "aria-label": label });
+      const input = element("input", { type: "number", min: "1", max: String(MOST_POINTS), step: "1", id: `slice-${name}`, "aria-label": label });
       input.addEventListener("change", () => {
-        const value = numberIn(input);
-        const whole = value === undefined ? POINTS : Math.min(2001, Math.max(1, Math.round(value)));
-        this.events.sliced({ ...this.state, [name]: whole }, true);
+        const value = numberIn(input) ?? POINTS;
+        const right = countable(value);
+        this.events.refused(right ? null : `${label}: ${value}, expected a whole number from 1 to ${MOST_POINTS}. The slice is as before.`);
+        this.events.sliced({ ...this.state, [name]: right ? value : this.state[name] }, true);
       });
       this.fields.set(`slice-${name}`, input);
       return input;
@@ -103,16 +106,22 @@ export class SlicePanel {
     colour.addEventListener("change", () => this.events.sliced({ ...this.state, colour: colour.value }, true));
     this.fields.set("slice-colour", colour);
     const fact = (name: string, value: HTMLElement) => [element("dt", {}, name), element("dd", {}, value)];
+    const axis = (arrow: string, name: HTMLElement, ...numbers: HTMLElement[]) =>
+      element("div", { className: "axis" }, element("span", {}, arrow), name, element("div", {}, ...numbers));
+    const facts = (...all: HTMLElement[][]) => element("dl", { className: "facts" }, ...all.flat());
+    const one = names.length < 2;
     byId("slice").replaceChildren(
-      element("div", { className: "axes" }, element("span", {}, "→"), choice("slice-x", "Coordinate across"),
-        end("xmin", "Lowest value across"), end("xmax", "Highest value across"), points("nx", "Number of values across"),
-        element("span", {}, "↑"), choice("slice-y", "Coordinate upwards"), end("ymin", "Lowest value upwards"),
-        end("ymax", "Highest value upwards"), points("ny", "Number of values upwards")),
-      this.canvas,
-      element("p", { className: "row" }, element("label", { for: "slice-colour" }, "Colour"), colour),
-      this.scale,
-      element("dl", { className: "facts" }, ...fact("Poses of the slice", this.count), ...fact("Share", this.share),
-        ...fact("Measure", this.area), ...fact("Poses of the whole", this.whole), ...fact("Measure of the whole", this.wholeShare)),
+      element("p", { className: "unit", hidden: !one }, "A slice needs two coordinates: this mechanism has one."),
+      element("div", { hidden: one },
+        axis("→", choice("slice-x", "Coordinate across"), end("xmin", "Lowest value across"), end("xmax", "Highest value across"),
+          points("nx", "Number of values across")),
+        axis("↑", choice("slice-y", "Coordinate upwards"), end("ymin", "Lowest value upwards"), end("ymax", "Highest value upwards"),
+          points("ny", "Number of values upwards")),
+        this.canvas,
+        element("p", { className: "row" }, element("label", { for: "slice-colour" }, "Colour"), colour),
+        this.scale,
+        facts(fact("Poses of the slice", this.count), fact("Share", this.share), fact("Measure", this.area))),
+      facts(fact("Poses of the whole", this.whole), fact("Measure of the whole", this.wholeShare)),
       this.beyond,
     );
     this.whole.textContent = "counting…";

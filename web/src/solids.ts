@@ -98,7 +98,7 @@ export class Solids {
     return this.bodies[number];
   }
 
-  /** The ends of the solids, for the view to hold all of them. */
+  /** The ends of the solids of bodies: those of imaginary joints do not count for its size. */
   ends(): Vector3[] {
     const measured = this.solids.filter(({ part }) => part !== "imaginary");
     return measured.flatMap(({ body, local }) => [-0.5, 0.5].map((end) =>

@@ -1,5 +1,6 @@
 // The stage: the mechanism in space, the handles of its platform, and the workspace as a body.
 
+import type { Vector3 } from "three";
 import { BodyMesh, type BodyPanel } from "./body";
 import { byId } from "./dom";
 import { HandleSet, type HandleEvents } from "./handles";
@@ -24,7 +25,7 @@ export class Stage {
 
   connect(): void {
     connectView({
-      fit: () => this.view.fit(this.body.ends()),
+      fit: () => this.view.fit(this.others()),
       orbit: (across, upwards, nearer) => this.view.orbit(across, upwards, nearer),
       highlight: (part) => this.view.highlight(part),
     });
@@ -42,7 +43,8 @@ export class Stage {
     if (another) {
       this.posture = null;
       this.body.clear();
-      this.view.first();
+      this.view.measure();
+      this.view.first([]);
     }
   }
 
@@ -53,8 +55,14 @@ export class Stage {
     this.posture = posture;
     view.place(bytes);
     view.setNear(posture.contacts?.near ?? []);
-    if (first) view.first();
+    if (first) view.measure();
     if (description && posture.handles) this.handles.set(description.coordinates, posture.handles, view.size);
+    if (first) view.first(this.others());
+  }
+
+  /** The ends of what is shown beside the mechanism: handles and body. */
+  private others(): Vector3[] {
+    return [...(this.posture?.handles ? this.handles.ends() : []), ...this.body.ends()];
   }
 
   /** Takes the surface of a body; nothing where it was refused. */
@@ -77,7 +85,7 @@ export class Stage {
     if (handles && description) {
       panel.setNote(body.place(panel.chosen(), description, pose, handles, view.size));
       // One that is larger than the mechanism would be seen from inside.
-      if (body.mesh.visible && !before) view.takeIn(body.ends());
+      if (body.mesh.visible && !before) view.takeIn(this.others());
     }
     view.draw();
   }

@@ -47,7 +47,9 @@ export interface KindState {
   turn: number | null;
 }
 
+/** How many values of a coordinate a slice has, if nothing else is said, and at most. */
 export const POINTS = 201;
+export const MOST_POINTS = 2001;
 export const ENDS = ["xmin", "xmax", "ymin", "ymax"] as const;
 
 export function initial(): State {
@@ -62,4 +64,9 @@ export function initial(): State {
     motion: null,
     clearance: null,
   };
+}
+
+/** Whether a slice can have so many values of a coordinate. */
+export function countable(points: number): boolean {
+  return Number.isInteger(points) && points >= 1 && points <= MOST_POINTS;
 }

@@ -1,7 +1,7 @@
 // Buttons, menus, keys, and files that are opened or dropped.
 
 import type { PartName } from "./colours";
-import { byId } from "./dom";
+import { byId, typing } from "./dom";
 import { connectLegend } from "./legend";
 
 export interface ToolbarEvents {
@@ -14,6 +14,8 @@ export interface ToolbarEvents {
   example(name: string): void;
   save(what: string): void;
   opened(name: string, text: string): void;
+  /** A file that is no text was to be opened. */
+  unreadable(message: string): void;
 }
 
 /** What the buttons of the view do. */
@@ -50,11 +52,31 @@ export function connectToolbar(events: ToolbarEvents): void {
   chosen("examples", events.example);
   chosen("save", events.save);
   window.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target instanceof HTMLInputElement) return;
+    // What is being typed in a field, the browser undoes.
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || typing(event.target)) return;
     event.preventDefault();
     events.undo(!event.shiftKey);
   });
-  connectFiles(async (file) => events.opened(file.name, await file.text()));
+  connectFiles(async (file) => {
+    const bytes = await file.arrayBuffer();
+    const text = decoded(bytes);
+    if (text !== null) events.opened(file.name, text);
+    else events.unreadable(`${file.name}:${wrongLine(bytes)}: not UTF-8, expected a mechanism file or a motion`);
+  });
+}
+
+/** The text that bytes are; nothing where they are none. */
+function decoded(bytes: ArrayBuffer): string | null {
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    return null;
+  }
+}
+
+/** The line of the first byte that is no text: in its place stands a sign for it. */
+function wrongLine(bytes: ArrayBuffer): number {
+  return new TextDecoder().decode(bytes).split("\uFFFD", 1)[0]!.split("\n").length;
 }
 
 function connectFiles(open: (file: File) => Promise<void>): void {

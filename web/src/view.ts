@@ -6,14 +6,15 @@ import type { PartName } from "./colours";
 import { Materials } from "./materials";
 import { nameLinks, showParts } from "./legend";
 import { Motions } from "./motions";
+import { corners, rooms, sight, type Room } from "./sight";
 import { Solids } from "./solids";
 import type { Description } from "./types";
 
 /** The direction from which a mechanism is seen first. */
 const FIRST = new Vector3(0.55, -0.75, 0.5).normalize();
 
-/** The share of the width and the height of the view that what it fits has. */
-const ROOM = 0.94;
+/** The share of the width and the height of its room that what the view fits has. */
+const SHARE = 0.94;
 
 export class View {
   readonly scene = new Scene();
@@ -26,6 +27,8 @@ export class View {
   /** The radius of the mechanism, metres. */
   size = 1;
   private drawn = false;
+  /** The part of the view in whose middle the camera looks. */
+  private room: Room = { x: 0, y: 0, wide: 1, high: 1 };
 
   constructor(private readonly host: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: !drawnByProcessor(), alpha: true });
@@ -64,12 +67,15 @@ export class View {
     this.draw();
   }
 
-  /** Looks at the whole mechanism from the first direction. */
-  first(): void {
+  /** Measures the mechanism as it is now. */
+  measure(): void {
     const points = this.solids.ends();
-    if (!points.length) return;
-    this.size = around(points).radius;
-    this.look([], FIRST);
+    if (points.length) this.size = radius(points);
+  }
+
+  /** Looks at the whole mechanism and these points from the first direction. */
+  first(others: Vector3[]): void {
+    this.look(others, FIRST);
   }
 
   /** Looks at the whole mechanism and these points from the direction of the camera. */
@@ -77,36 +83,36 @@ export class View {
     this.look(others, this.camera.position.clone().sub(this.controls.target).normalize());
   }
 
-  /** Moves back until the mechanism and these points are seen, if they are not. */
+  /** Looks at the mechanism and these points, if they are not all seen. */
   takeIn(others: Vector3[]): void {
-    const arm = this.camera.position.clone().sub(this.controls.target);
-    const points = [...this.solids.ends(), ...others];
-    if (this.distance(points, around(points).centre, arm.clone().normalize()) > arm.length()) this.fit(others);
+    this.camera.updateMatrixWorld();
+    const seen = (point: Vector3) => {
+      const { x, y } = point.clone().project(this.camera);
+      return Math.max(Math.abs(x), Math.abs(y)) <= 1;
+    };
+    if (![...this.corners(), ...others].every(seen)) this.fit(others);
   }
 
-  /** How far from a centre the camera, in a direction from it, sees all points. */
-  private distance(points: Vector3[], centre: Vector3, from: Vector3): number {
-    const across = new Vector3().crossVectors(this.camera.up, from).normalize();
-    const upwards = new Vector3().crossVectors(from, across);
-    const high = ROOM * Math.tan((this.camera.fov * Math.PI) / 360);
-    const wide = high * this.camera.aspect;
-    const least = (point: Vector3) => {
-      const arm = point.clone().sub(centre);
-      return arm.dot(from) + Math.max(Math.abs(arm.dot(across)) / wide, Math.abs(arm.dot(upwards)) / high);
-    };
-    return points.reduce((distance, point) => Math.max(distance, least(point)), 1e-9);
+  private corners(): Vector3[] {
+    return corners(this.solids.group, this.motions.fixed, this.motions.carried);
   }
 
   private look(others: Vector3[], from: Vector3): void {
-    const points = [...this.solids.ends(), ...others];
+    const points = [...this.corners(), ...others];
     if (!points.length) return;
-    const { centre } = around(points);
-    const distance = this.distance(points, centre, from);
-    this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(from, distance);
+    const { clientWidth, clientHeight } = this.host;
+    const tangent = SHARE * Math.tan((this.camera.fov * Math.PI) / 360);
+    const aspect = clientWidth && clientHeight ? clientWidth / clientHeight : 1;
+    const sights = rooms(this.host).map((room) =>
+      ({ room, ...sight(points, from, this.camera.up, [tangent * aspect * room.wide, tangent * room.high]) }));
+    // What is seen from nearer is larger.
+    const { room, eye, target, distance } = sights.reduce((best, one) => (one.distance < best.distance ? one : best));
+    this.room = room;
+    this.controls.target.copy(target);
+    this.camera.position.copy(eye);
     this.camera.near = distance / 100;
     this.camera.far = distance * 100;
-    this.camera.updateProjectionMatrix();
+    this.project();
     this.controls.update();
     this.draw();
   }
@@ -156,20 +162,26 @@ export class View {
     document.body.dataset["frameMs"] = (performance.now() - start).toFixed(2);
   }
 
+  /** Puts what the camera looks at into the middle of its room. */
+  private project(): void {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (!width || !height) return;
+    this.camera.setViewOffset(width, height, (-this.room.x * width) / 2, (this.room.y * height) / 2, width, height);
+  }
+
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.project();
     this.renderer.setSize(width, height);
     this.draw();
   }
 }
 
-/** A ball that holds all points. */
-function around(points: Vector3[]): { centre: Vector3; radius: number } {
+/** The radius of a ball about the middle of points that holds them all. */
+function radius(points: Vector3[]): number {
   const centre = new Box3().setFromPoints(points).getCenter(new Vector3());
-  return { centre, radius: points.reduce((radius, point) => Math.max(radius, point.distanceTo(centre)), 1e-9) };
+  return points.reduce((radius, point) => Math.max(radius, point.distanceTo(centre)), 1e-9);
 }
 
 /** Whether there is no graphics card: smooth edges would take four times as long. */
