@@ -298,11 +298,14 @@ impl Family {
         let mut body = String::new();
         for group in family.groups() {
             let entry = |p: &Parameter<'_>| {
-                let factor = p.quantity().map_or(1.0, |quantity| units.factor(quantity));
+                let number = |value: f64| match p.quantity() {
+                    Some(quantity) => units.number_of(value, quantity),
+                    None => value,
+                };
                 let value = match p.value()? {
                     ParameterValue::None => return None,
-                    ParameterValue::Number(value) => format!("{:?}", value / factor),
-                    ParameterValue::Pair([a, b]) => format!("[{:?}, {:?}]", a / factor, b / factor),
+                    ParameterValue::Number(value) => format!("{:?}", number(value)),
+                    ParameterValue::Pair([a, b]) => format!("[{:?}, {:?}]", number(a), number(b)),
                 };
                 Some(format!("{} = {value}", p.key))
             };
