@@ -83,6 +83,7 @@ mod writer;
 
 pub use change::text;
 pub(crate) use checks::LARGEST;
+pub(crate) use columns::is_column;
 pub use heading::Heading;
 pub(super) use hint::nearest;
 pub use problem::{FileErrors, Location, Locations, Problem};

@@ -46,3 +46,8 @@ pub(super) const RESERVED: &[&str] = &[
 
 /// What is before the name of a joint or a coordinate in the column of its rate, acceleration or effort.
 pub(super) const PREFIXES: [&str; 3] = ["d.", "dd.", "effort."];
+
+/// Whether a name is that of a column, and not of a joint.
+pub(crate) fn is_column(name: &str) -> bool {
+    RESERVED.contains(&name) || PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+}
