@@ -195,7 +195,9 @@ fn coordinates() -> impl TypedValueParser<Value = OrientationCoordinates> {
 /// the joints that are off, and by how much. Missing or redundant actuators are a warning.
 ///
 /// JSON also has the mechanism as data: the platform's `reference_point` at home, and `joints` with the keys of a list of
-/// joints in a mechanism file, in metres and radians, whatever the form of the file.
+/// joints in a mechanism file, in metres and radians, whatever the form of the file. `imaginary_joints` there, and in the
+/// table of --vary, is J: the number of motions of the upper section with its imaginary joints, not of these joints, whose
+/// names are in `legs`.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -365,12 +365,14 @@ impl Report<'_> {
         }
         if d.upper_mobility > 0 && d.intersection != SubspaceClass::Identity {
             line(&format_args!(
-                "The upper section is not passive: with the imaginary joints locked, {} motions are left.",
-                d.upper_mobility
+                "The upper section is not passive: with the imaginary joints locked, {} {} left.",
+                text::plural(d.upper_mobility as u64, "motion"),
+                if d.upper_mobility == 1 { "is" } else { "are" }
             ));
         }
         if d.redundancy > 0 {
-            line(&format_args!("Of the imaginary joints, {} are redundant.", d.redundancy));
+            let verb = if d.redundancy == 1 { "is" } else { "are" };
+            line(&format_args!("Of the imaginary joints, {} {verb} redundant.", d.redundancy));
         }
 
         if let Some(task) = way.task() {

@@ -104,9 +104,8 @@ impl Files<'_> {
         }
         let targets: Result<Vec<_>, _> =
             files.iter().map(|(path, _)| Target::create(path)).collect();
-        for (target, (_, text)) in targets?.into_iter().zip(&files) {
-            target.commit(text.as_bytes())?;
-        }
+        let texts = files.iter().map(|(_, text)| text.as_bytes());
+        Target::commit_all(targets?.into_iter().zip(texts))?;
         let names: Vec<_> = files.iter().map(|(path, _)| path.display().to_string()).collect();
         output.note(format_args!("{}: {note}", names.join(", ")));
         Ok(())

@@ -3,6 +3,7 @@
 use crate::args::{CodeArgs, GenerateArgs, Language, Output};
 use crate::failure::Failure;
 use crate::load;
+use crate::output::is_stdout;
 use crate::target::Target;
 use opm_core::Manipulator;
 use opm_generate::{GenerateError, Package};
@@ -25,6 +26,10 @@ fn write(
     generate: impl Fn(&Manipulator) -> Result<Package, GenerateError>,
     output: &Output,
 ) -> Result<(), Failure> {
+    if is_stdout(&args.output) {
+        let problem = format!("{}: expected a folder", args.output.display());
+        return Err(Failure::flag("--output", problem));
+    }
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let code = generate(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
@@ -37,9 +42,8 @@ fn write(
     }
     // All of them can be written before the first one is.
     let targets: Result<Vec<_>, _> = files.iter().map(|(path, _)| Target::create(path)).collect();
-    for (target, (_, text)) in targets?.into_iter().zip(&files) {
-        target.commit(text.as_bytes())?;
-    }
+    let texts = files.iter().map(|(_, text)| text.as_bytes());
+    Target::commit_all(targets?.into_iter().zip(texts))?;
     let names: Vec<&str> = code.files.iter().map(|(name, _)| &**name).collect();
     output.note(format_args!("{}: {}", folder.display(), names.join(", ")));
     Ok(())

@@ -108,6 +108,9 @@ struct JsonSolution {
     /// The dependent coordinates, which may differ from mode to mode.
     #[serde(skip_serializing_if = "Map::is_empty")]
     dependent: Map<String, Value>,
+    /// Where the platform is, which follows from the pose alone where no coordinate is dependent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transform: Option<Value>,
     /// The two bodies that are nearest to each other.
     nearest: Value,
 }
@@ -208,6 +211,7 @@ impl<'a> Answer<'a> {
                 joints: named(joints.zip(solution.joints().iter().copied())),
                 imaginary: named(imaginary.zip(solution.imaginary().iter().copied())),
                 dependent: named(dependent().zip(solution.dependent().iter().copied())),
+                transform: dependent().next().map(|_| transform::at(self.manipulator, solution)),
                 nearest: interference::nearest_json(&self.interference, self.nearest(solution)),
             }
         };

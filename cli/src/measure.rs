@@ -222,12 +222,10 @@ impl Run<'_> {
             results.row([name, &value, &lower, &upper, unit]);
         }
         let _ = write!(text, "{results}");
-        let (boxes, seconds) = (count(found.boxes), short(seconds));
+        let (boxes, seconds) = (boxes(found.boxes), short(seconds));
         let certain = percent(found.uncertainty());
-        let _ = writeln!(
-            text,
-            "\n{boxes} boxes in {seconds} s; the value is certain to within {certain}"
-        );
+        let _ =
+            writeln!(text, "\n{boxes} in {seconds} s; the value is certain to within {certain}");
         text
     }
 
@@ -238,10 +236,10 @@ impl Run<'_> {
             SectionName::Upper | SectionName::Lower => "",
         };
         format!(
-            "the --budget of {} boxes ended before --tolerance was met: the value is certain to within \
+            "the --budget of {} ended before --tolerance was met: the value is certain to within \
              {}, and {} was asked for; the bounds hold, and narrower ranges of --over, {section}or a \
              larger --budget bring them closer",
-            count(self.args.budget),
+            boxes(self.args.budget),
             percent(found.uncertainty()),
             percent(self.args.tolerance),
         )
@@ -280,6 +278,11 @@ fn rounded([value, lower, upper]: [f64; 3], decimals: i32) -> [String; 3] {
         x => format!("{x:.*}", decimals.max(0) as usize),
     };
     [shown((value * power).round()), shown((lower * power).floor()), shown((upper * power).ceil())]
+}
+
+/// A number of boxes with its noun.
+fn boxes(number: u64) -> String {
+    format!("{} {}", count(number), if number == 1 { "box" } else { "boxes" })
 }
 
 #[cfg(test)]

@@ -7,11 +7,13 @@ use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::plural;
 use crate::unitless::Plausible;
+use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
 use opm_mcap::csv::{Line, Lines, Rows};
 use opm_mcap::{PartialFile, Sink};
+use opm_study::effort_names;
 use opm_workspace::Progress;
 use std::fmt::Display;
 use std::fs::File;
@@ -331,8 +333,9 @@ pub fn other_columns(manipulator: &Manipulator) -> Vec<String> {
     let rates = names.iter().copied().chain(tasks.map(|c| c.name));
     let rates = rates.flat_map(|name| [format!("d.{name}"), format!("dd.{name}")]);
     let known = ["reachable", "within_limits", MODE, "valid", "inverse_condition"];
-    let known = known.map(str::to_owned);
-    names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).collect()
+    let known = known.into_iter().chain(Index::ALL.map(Index::name)).map(str::to_owned);
+    let efforts = effort_names(manipulator);
+    names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).chain(efforts).collect()
 }
 
 /// The failure for a problem in a line of the input.

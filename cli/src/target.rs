@@ -19,17 +19,29 @@ impl Target {
     }
 
     /// Writes it, and gives it its name.
-    pub fn commit(mut self, bytes: &[u8]) -> Result<(), Failure> {
-        let Some(mut file) = self.file.take() else { return Ok(()) };
+    pub fn commit(self, bytes: &[u8]) -> Result<(), Failure> {
+        Self::commit_all([(self, bytes)])
+    }
+
+    /// Writes several files, and gives them their names once all of them are written.
+    pub fn commit_all<'a>(
+        files: impl IntoIterator<Item = (Self, &'a [u8])>,
+    ) -> Result<(), Failure> {
+        let write = |(mut target, bytes): (Self, &[u8])| target.write(bytes).map(|()| target);
+        let written: Vec<Self> = files.into_iter().map(write).collect::<Result<_, _>>()?;
+        written.into_iter().try_for_each(Self::place)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let Some(file) = &mut self.file else { return Ok(()) };
         // A small file is on the disk only once it is flushed.
-        let written = match file.write_all(bytes).and_then(|()| file.flush()) {
-            Ok(()) => file.commit(),
-            Err(error) => {
-                file.discard();
-                Err(error)
-            }
-        };
+        let written = file.write_all(bytes).and_then(|()| file.flush());
         written.map_err(|error| Failure::at(self.path.display(), error))
+    }
+
+    fn place(mut self) -> Result<(), Failure> {
+        let Some(file) = self.file.take() else { return Ok(()) };
+        file.commit().map_err(|error| Failure::at(self.path.display(), error))
     }
 }
 

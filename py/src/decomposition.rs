@@ -18,7 +18,7 @@ pub struct Decomposition {
     rank: usize,
     /// Mobility of the mechanism, N.
     mobility: usize,
-    /// Independent motions of the imaginary joints, J.
+    /// Motions of the upper section with its imaginary joints, J; the number of these joints may be another.
     imaginary_joints: usize,
     /// Motions of the lower section with the imaginary joints held, M = N - J.
     first_section_motions: usize,
@@ -132,7 +132,9 @@ impl Decomposition {
         };
         let shared = match &self.intersection {
             Some(shared) => {
-                format!(", {} in common, {} imaginary joints", shared.kind, self.imaginary_joints)
+                let count = self.legs.iter().filter(|leg| leg.imaginary.is_some()).count();
+                let joints = if count == 1 { "joint" } else { "joints" };
+                format!(", {} in common, {count} imaginary {joints}", shared.kind)
             }
             None => String::new(),
         };

@@ -149,3 +149,22 @@ def test_a_full_disk_leaves_nothing_of_a_file_that_is_written_at_once(opm, tmp_p
         message = done.stderr.decode()
         assert done.returncode == 1 and name in message and "File too large" in message, message
         assert [path.name for path in tmp_path.iterdir()] == [name] and target.read_bytes() == BEFORE
+
+
+def test_a_full_disk_changes_no_file_of_several(opm, tmp_path):
+    """A model and the table beside it, which is longer: the table does not fit, and the model stays what it was."""
+    model, table = tmp_path / "out.xml", tmp_path / "out.csv"
+    run = [opm, "export", "mjcf", MECHANISM, "--trajectory", "plano-spherical-sinusoids", "-o", model]
+    subprocess.run(run, check=True, capture_output=True)
+    size = model.stat().st_size + 1000
+    assert size < table.stat().st_size
+    for before in ({}, {model: BEFORE, table: BEFORE}):
+        for path in (model, table):
+            path.unlink()
+        for path, text in before.items():
+            path.write_bytes(text)
+        done = subprocess.run(run, capture_output=True, preexec_fn=lambda: limit(size))
+        assert done.returncode == 1 and "out.csv" in done.stderr.decode(), done.stderr
+        assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+        for path in (model, table):
+            path.touch()

@@ -58,10 +58,16 @@ pub struct MjcfArgs {
     #[arg(short, long, value_name = "OUT.xml", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Density of all bodies without a mass in the file, kilograms per cubic metre, instead of that in the file, or 2700
-    #[arg(long, value_name = "KG/M3", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG/M3", value_parser = density, allow_negative_numbers = true)]
     pub density: Option<f64>,
     /// Time step of the simulation, seconds; the loops are held as stiffly as it allows
-    #[arg(long, value_name = "SECONDS", default_value_t = MjcfOptions::TIME_STEP, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = MjcfOptions::TIME_STEP,
+        value_parser = seconds,
+        allow_negative_numbers = true
+    )]
     pub time_step: f64,
     /// Motion to be written as a table beside the model: a TOML or CSV file, or the name of a shipped one
     #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
@@ -93,6 +99,16 @@ pub struct UrdfArgs {
     #[arg(short, long, value_name = "OUT.urdf", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Density of all bodies without a mass in the file, kilograms per cubic metre, instead of that in the file, or 2700
-    #[arg(long, value_name = "KG/M3", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG/M3", value_parser = density, allow_negative_numbers = true)]
     pub density: Option<f64>,
+}
+
+/// Parses a density; its range is checked with that of the file.
+fn density(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "expected a number of kg/m^3, without a unit".to_owned())
+}
+
+/// Parses a time step.
+fn seconds(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "expected a number of seconds, without a unit".to_owned())
 }

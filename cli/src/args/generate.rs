@@ -34,7 +34,7 @@ pub enum Language {
     /// NAME_test.c compares the code with poses that opm solved, in NAME_golden.h; CMakeLists.txt builds both. NAME_linuxcnc.c is
     /// a kinematics module for LinuxCNC. Files that are there already are replaced.
     ///
-    /// Nothing is printed; --format has no effect.
+    /// A note names the files; standard output stays empty, and --format has no effect.
     #[command(after_long_help = "\
 Examples:
   opm generate c plano-spherical-5dof -o controller
@@ -49,7 +49,7 @@ Examples:
     ///
     /// tests/golden.rs compares the code with poses that opm solved. Files that are there already are replaced.
     ///
-    /// Nothing is printed; --format has no effect.
+    /// A note names the files; standard output stays empty, and --format has no effect.
     #[command(after_long_help = "\
 Examples:
   opm generate rust plano-spherical-5dof -o kinematics
@@ -65,7 +65,7 @@ Examples:
     /// test_NAME.py compares the module with poses that opm solved; pyproject.toml makes it a package. Files that are there
     /// already are replaced.
     ///
-    /// Nothing is printed; --format has no effect.
+    /// A note names the files; standard output stays empty, and --format has no effect.
     #[command(after_long_help = "\
 Examples:
   opm generate python plano-spherical-5dof -o kinematics
@@ -79,7 +79,7 @@ Examples:
     ///
     /// NAME_test.m compares the package with poses that opm solved. Files that are there already are replaced.
     ///
-    /// Nothing is printed; --format has no effect.
+    /// A note names the files; standard output stays empty, and --format has no effect.
     #[command(after_long_help = "\
 Examples:
   opm generate matlab plano-spherical-5dof -o kinematics
@@ -95,7 +95,7 @@ Examples:
     /// NAME_test.st has a function block that compares the code with poses that opm solved, one in each cycle. Files that are
     /// there already are replaced.
     ///
-    /// Nothing is printed; --format has no effect.
+    /// A note names the files; standard output stays empty, and --format has no effect.
     #[command(after_long_help = "\
 Examples:
   opm generate st plano-spherical-5dof -o plc")]

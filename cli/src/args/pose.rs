@@ -15,7 +15,9 @@ use std::path::PathBuf;
 /// --transform takes the platform's pose in SE(3) instead: the position of its reference point and the
 /// quaternion of its orientation, both in base coordinates. The orientation at home is the identity, or
 /// that of the Euler angles at home. If the manipulator cannot move the platform there at all, the answer
-/// says by how much and in which direction (exit status 0). JSON has `transform` for every pose.
+/// says by how much and in which direction (exit status 0). JSON has `transform` for every pose. Coordinates that depend on
+/// the others may differ from mode to mode: then every solution has them as `dependent`, and a `transform` of its own; those
+/// of the whole are those of the first solution.
 ///
 /// The two bodies that are nearest to each other are named, with their distance: links as rods between their joints, the
 /// platform, and the obstacles of the file. With --all-modes, a column has that distance for each mode. Pairs that overlap

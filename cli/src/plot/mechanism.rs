@@ -11,7 +11,7 @@ use crate::unitless;
 use nalgebra::{Isometry3, Point3};
 use opm_core::decomposition::Decomposition;
 use opm_core::linkage::Linkage;
-use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::Mechanism;
 use opm_core::skeleton::{
     Body, Configuration, ImaginaryJoints, Material, SeatMotion, Skeleton, Solid,
@@ -61,7 +61,7 @@ pub fn figure(loaded: &Loaded, at: &At<'_>, output: &Output) -> Result<ViewFigur
     let posed = at.pose.is_some() || at.mode.is_some();
     match Manipulator::new(mechanism.clone()) {
         Ok(manipulator) => {
-            let solution = solve(loaded, &manipulator, at, output)?;
+            let (solution, mode) = solve(loaded, &manipulator, at, output)?;
             if !solution.within_limits() {
                 output.warn(format_args!("the pose is beyond the limits of a joint"));
             }
@@ -72,7 +72,7 @@ pub fn figure(loaded: &Loaded, at: &At<'_>, output: &Output) -> Result<ViewFigur
                 platform: solution.displacement(&manipulator),
             };
             let mut lines =
-                vec![pose_line(loaded, &manipulator, &solution), split_line(decomposition)];
+                vec![pose_line(loaded, &manipulator, (&solution, mode)), split_line(decomposition)];
             let joints = ImaginaryJoints { decomposition, imaginary };
             let interference = Interference::new(manipulator.mechanism());
             let mut distances = Distances::new(&interference);
@@ -118,13 +118,13 @@ pub fn figure(loaded: &Loaded, at: &At<'_>, output: &Output) -> Result<ViewFigur
     }
 }
 
-/// The solution at the pose that was asked for.
+/// The solution at the pose that was asked for, and its working mode.
 fn solve(
     loaded: &Loaded,
     manipulator: &Manipulator,
     at: &At<'_>,
     output: &Output,
-) -> Result<Solution, Failure> {
+) -> Result<(Solution, Mode), Failure> {
     let pose = match at.pose {
         Some(pose) => {
             unitless::note_pose(output, "--pose", pose, loaded, manipulator);
@@ -136,7 +136,7 @@ fn solve(
     let mut buffer = manipulator.solution();
     let found = manipulator.inverse(&pose, mode, &mut buffer);
     if let Some(found) = found.map_err(|error| Failure::flag("--pose", error))? {
-        return Ok(found.clone());
+        return Ok((found.clone(), mode));
     }
     let units = loaded.file.units;
     let legs = &manipulator.mechanism().legs;
@@ -146,7 +146,12 @@ fn solve(
     Err(Failure::work(format!("{}: the pose is out of reach: {each}", loaded.label)))
 }
 
-fn pose_line(loaded: &Loaded, manipulator: &Manipulator, solution: &Solution) -> String {
+/// The pose, and the working mode unless it is that of home.
+fn pose_line(
+    loaded: &Loaded,
+    manipulator: &Manipulator,
+    (solution, mode): (&Solution, Mode),
+) -> String {
     let units = loaded.file.units;
     let coordinates = manipulator.task_coordinates().iter().zip(solution.pose());
     let pose = coordinates.map(|(c, &value)| {
@@ -156,7 +161,11 @@ fn pose_line(loaded: &Loaded, manipulator: &Manipulator, solution: &Solution) ->
         format!("{} = {value} {}", c.name, units.symbol(c.quantity))
     });
     let pose = pose.collect::<Vec<_>>().join(", ");
-    if solution.pose() == manipulator.home_pose() { format!("at home: {pose}") } else { pose }
+    match (mode == manipulator.home_mode(), solution.pose() == manipulator.home_pose()) {
+        (true, true) => format!("at home: {pose}"),
+        (true, false) => pose,
+        (false, _) => format!("{pose}; mode {}", manipulator.format_mode(mode)),
+    }
 }
 
 fn split_line(decomposition: &Decomposition) -> String {
@@ -198,11 +207,12 @@ fn assemble(
             used.insert(paint);
             bodies.push((solid(&part.solid, place, point, factor), paint.color()));
         }
-        // Each joint is named once, at the body on its base side.
+        // Each joint is named once. Its body on the platform side comes last; with that one, a slider's block moves.
         for seat in body.seats.iter().filter(|seat| seat.motion != SeatMotion::Weld) {
-            if !names.iter().any(|named: &Named| named.name == seat.joint) {
-                let at = point(place * seat.centre);
-                names.push(Named { name: seat.joint.clone(), at });
+            let at = point(place * seat.centre);
+            match names.iter_mut().find(|named: &&mut Named| named.name == seat.joint) {
+                Some(named) => named.at = at,
+                None => names.push(Named { name: seat.joint.clone(), at }),
             }
         }
     }
@@ -315,5 +325,72 @@ impl Paint {
             Self::Obstacle => [0x99, 0x7a, 0x4d],
             Self::Interfering => [0xe0, 0x10, 0x10],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::Format;
+    use opm_core::mechanism::examples;
+    use opm_core::mechanism::joint::JointKind;
+
+    /// A name stands at the block of its slider, which is as far from home as the value of the joint says. Only the first
+    /// joints of legs are looked at, as their guides do not move.
+    #[test]
+    fn names_of_sliders_move_with_them() {
+        let output = Output { format: Format::Text, quiet: true, silent: true };
+        for (name, pose) in [
+            ("cartesian-wrist-6dof", "x=150mm,y=100mm,z=500mm"),
+            ("plano-spherical-5dof", "x=100mm,y=50mm"),
+            ("schoenflies-column-4dof", "z=80mm,x=60mm"),
+        ] {
+            let loaded = load::attached(name, name, examples::find(name).unwrap().text).unwrap();
+            let manipulator = loaded.compile().unwrap();
+            let pose: Pose = pose.parse().unwrap();
+            let at = At { pose: Some(&pose), mode: None };
+            let (solution, _) = solve(&loaded, &manipulator, &at, &output).unwrap();
+            let [home, moved] =
+                [At::default(), at].map(|at| figure(&loaded, &at, &output).unwrap());
+            let place = |figure: &ViewFigure, joint: &str| {
+                figure.names.iter().find(|named| named.name == joint).unwrap().at
+            };
+            let mut first = 0;
+            let mut sliders = 0;
+            for leg in &loaded.file.mechanism.legs {
+                let joint = &leg.joints[0];
+                if joint.kind == JointKind::Prismatic {
+                    let shift = 1e3 * (solution.joints()[first] - joint.coordinates[0].home);
+                    let [from, to] = [&home, &moved].map(|figure| place(figure, &joint.name));
+                    let off = (0..3).map(|i| to[i] - from[i] - shift * joint.axis[i]);
+                    assert!(off.map(f64::abs).fold(0.0, f64::max) < 1e-6, "{name}: {}", joint.name);
+                    let on_block = |body: &opm_plot::Body| match body {
+                        opm_plot::Body::Block { centre, .. } => {
+                            (0..3).all(|i| (centre[i] - to[i]).abs() < 1e-6)
+                        }
+                        _ => false,
+                    };
+                    assert!(moved.bodies.iter().any(|(body, _)| on_block(body)), "{}", joint.name);
+                    sliders += usize::from(shift.abs() > 1.0);
+                }
+                first += leg.coordinates().count();
+            }
+            assert!(sliders > 0, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_mode_is_told() {
+        let output = Output { format: Format::Text, quiet: true, silent: true };
+        let text = examples::find("five-bar").unwrap().text;
+        let loaded = load::attached("five-bar", "five-bar", text).unwrap();
+        let line = |mode| {
+            let at = At { pose: None, mode };
+            figure(&loaded, &at, &output).unwrap().heading.lines[0].clone()
+        };
+        assert!(line(None).starts_with("at home: x = 0 mm"));
+        assert_eq!(line(Some("- +")), line(None));
+        let other = line(Some("+ +"));
+        assert!(other.starts_with("x = 0 mm") && other.ends_with("; mode + +"), "{other}");
     }
 }

@@ -13,7 +13,7 @@ use opm_core::Quantity;
 use opm_mcap::Flat;
 use opm_mcap::trajectory::JOINTS_TOPIC;
 use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Nanoseconds per second.
 const SECOND: f64 = 1e9;
@@ -117,6 +117,15 @@ fn rows_of(panel: PanelName) -> &'static [Group] {
         | PanelName::Accelerations
         | PanelName::Slices
         | PanelName::Rejected => &[],
+    }
+}
+
+/// What records the values of a panel, if not every recording of such a mechanism has them.
+fn recorded_by(panel: PanelName) -> &'static str {
+    match panel {
+        PanelName::Condition => "; `opm trajectory -o` records it for every motion",
+        PanelName::Indices => "; record with `opm trajectory --indices`",
+        _ => "",
     }
 }
 
@@ -276,6 +285,7 @@ impl<'a> Motion<'a> {
                 count(thinned.curve.samples())
             ));
         }
+        let held: BTreeSet<Group> = all.iter().map(|trace| trace.group).collect();
         // Rows in order, one for each unit; each has the positions and then their derivatives.
         let mut rows: BTreeMap<(Group, u8, String), Vec<Trace>> = BTreeMap::new();
         for trace in all {
@@ -290,18 +300,26 @@ impl<'a> Motion<'a> {
                 rows.entry(key).or_default().push(trace);
             }
         }
-        if rows.is_empty() {
-            let label = &source.label;
-            return Err(Failure::work(format!(
-                "{label}: it holds none of what --panels and --values ask for"
-            )));
-        }
+        let label = &source.label;
         for panel in &args.panels {
             let wanted = rows_of(*panel);
-            if !wanted.is_empty() && !rows.keys().any(|(group, ..)| wanted.contains(group)) {
-                let (label, name) = (&source.label, panel.name());
-                return Err(Failure::work(format!("{label}: no {name} in what --panels asks for")));
+            if wanted.is_empty() || rows.keys().any(|(group, ..)| wanted.contains(group)) {
+                continue;
             }
+            let name = panel.name();
+            let problem = match wanted.iter().any(|group| held.contains(group)) {
+                true => format!("{label}: no {name} in what --panels and --values ask for"),
+                false => format!("{name}: {label} has none{}", recorded_by(*panel)),
+            };
+            return Err(Failure::flag("--panels", problem));
+        }
+        if rows.is_empty() {
+            let problem = format!("{label}: it holds none of what --panels and --values ask for");
+            return Err(match (args.panels.is_empty(), args.values.is_empty()) {
+                (false, _) => Failure::flag("--panels", problem),
+                (true, false) => Failure::flag("--values", problem),
+                (true, true) => Failure::work(problem),
+            });
         }
         // Empty columns are left out.
         let rates: Vec<Rate> = [Rate::Position, Rate::Velocity, Rate::Acceleration]

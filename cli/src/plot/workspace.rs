@@ -66,7 +66,8 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     if cloud.is_none() && (meant || wanted(PanelName::Imaginary)) {
         let hint = missing(source);
         if wanted(PanelName::Imaginary) && slices.is_none() {
-            return Err(Failure::work(format!("{}: {hint}", source.label)));
+            let problem = format!("imaginary: {}: {hint}", source.label);
+            return Err(Failure::flag("--panels", problem));
         }
         // A mechanism in one subspace has none to record.
         let none = source.manipulator().is_some_and(|known| known.imaginary().is_empty());
@@ -230,7 +231,7 @@ fn range(source: &Source<'_>, quantity: Quantity, axis: &Axis) -> String {
     let symbol = &measure.unit.symbol;
     let text = match axis.count {
         1 => format!("{} = {min} {symbol}", axis.name),
-        count => format!("{} {min} to {max} {symbol} ({count})", axis.name),
+        values => format!("{} {min} to {max} {symbol} ({})", axis.name, count(values)),
     };
     // A line does not break between a name and its range.
     text.replace(' ', "\u{a0}")

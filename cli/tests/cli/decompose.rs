@@ -482,3 +482,19 @@ fn a_constraining_leg_is_named() {
         assert!(run.stdout.contains(told) || run.stderr.contains(told), "{args:?}: {}", run.stderr);
     }
 }
+
+/// J is no number of joints: with one imaginary joint the upper section may have two motions, and with four it may have three.
+#[test]
+fn one_is_not_many() {
+    for (name, joints, motions, told) in [
+        ("schoenflies-lift-4dof", 1, 2, "with the imaginary joints locked, 1 motion is left."),
+        ("translational-planar-4dof", 4, 3, "Of the imaginary joints, 1 is redundant."),
+    ] {
+        let found = opm(&["decompose", name, "--format", "json"]).json();
+        let legs = found["legs"].as_array().unwrap();
+        let named = legs.iter().filter(|leg| !leg["imaginary"].is_null()).count();
+        assert_eq!((named, &found["imaginary_joints"]), (joints, &motions.into()));
+        let run = opm(&["decompose", name]);
+        assert!(run.text().contains(told), "{}", run.stdout);
+    }
+}

@@ -235,6 +235,9 @@ fn wrong_input_is_told_and_leaves_no_file() {
                 .fails_with_one_line(2, &[flag, "expected a number from"]);
         }
     }
+    export(&[PLANO, "--density", "2700kg"]).fails(2, &["--density", "a number of kg/m^3, without"]);
+    export(&[PLANO, "--time-step", "1ms"])
+        .fails(2, &["--time-step", "a number of seconds, without"]);
     opm(&["export"]).fails(2, &["mjcf"]);
     assert!(folder.names().is_empty(), "{:?}", folder.names());
 

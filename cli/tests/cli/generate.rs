@@ -94,4 +94,6 @@ fn wrong_input_is_told() {
     let below = folder.arg("out/deeper");
     generate(&["five-bar", "-o", &below]).fails_with_one_line(1, &["out/deeper"]);
     assert_eq!(folder.read("out"), "a file");
+    generate(&["five-bar", "-o", "-"]).fails_with_one_line(2, &["--output: -: expected a folder"]);
+    assert!(!std::path::Path::new("-").exists());
 }

@@ -280,6 +280,18 @@ fn dependent_coordinates_are_given_and_checked() {
     // With all modes, those that have the value are left.
     let all = ik(&["five-bar", "--all-modes", "--pose", "x=20mm,y=300mm"]);
     assert_eq!(all["solutions"].as_array().unwrap().len(), 4);
+    // The forearm's angle differs from mode to mode, and with it where the platform is.
+    let mut angles = Vec::new();
+    for solution in all["solutions"].as_array().unwrap() {
+        let angle = number(&solution["dependent"]["theta"]);
+        let [w, z] = [0, 3].map(|i| number(&solution["transform"]["quaternion"][i]));
+        assert!((2.0 * z.atan2(w) - angle).sin().abs() < EXACT, "{solution}");
+        let position = [0, 1].map(|i| number(&solution["transform"]["position"][i]));
+        assert!((position[0] - 0.02).hypot(position[1] - 0.3) < EXACT, "{solution}");
+        angles.push(angle);
+    }
+    assert!(angles.iter().any(|angle| (angle - angles[0]).abs() > 0.1));
+    assert_eq!(all["transform"], all["solutions"][0]["transform"]);
     let some = ik(&["five-bar", "--all-modes", "--pose", &given]);
     assert_eq!(some["solutions"].as_array().unwrap().len(), 2);
     let wrong = ["ik", "five-bar", "--pose", "x=20mm,y=300mm,theta=3deg"];

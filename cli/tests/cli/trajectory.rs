@@ -637,3 +637,41 @@ fn wrong_moves_are_named_by_line_and_column() {
         trajectory(PLANO, &file, &[]).fails(1, &["wrong.toml:", words]);
     }
 }
+
+/// What a motion's table has beside the poses follows from these: read as a motion, it gives the same table.
+#[test]
+fn a_table_of_a_motion_is_a_motion() {
+    let folder = Folder::new();
+    let turn = "t,x,y\n0,0,0.3\n0.25,0.01,0.31\n0.5,0.02,0.3\n";
+    for (mechanism, poses) in [("five-bar", turn), (PLANO, "t,x,xi\n0,0,0\n0.5,0.01,0.1\n")] {
+        let poses = folder.write("poses.csv", poses);
+        let tables = ["one.csv", "two.csv"].map(|name| folder.arg(name));
+        for (from, to) in [(&poses, &tables[0]), (&tables[0], &tables[1])] {
+            let more = ["--rates", "--accelerations", "--indices", "--rate", "100"];
+            let args = ["trajectory", mechanism, "--motion", from, "-o", to];
+            opm(&[&args[..], &more].concat()).text();
+        }
+        let [one, two] = ["one.csv", "two.csv"].map(|name| folder.read(name));
+        let numbers = |text: &str, columns: usize| -> Vec<Vec<f64>> {
+            let cells =
+                |line: &str| line.split(',').take(columns).map(|c| c.parse().unwrap()).collect();
+            text.lines().skip(1).map(cells).collect()
+        };
+        assert_eq!(one.lines().next(), two.lines().next());
+        assert_eq!(one.lines().count(), 52);
+        // So `opm ik` reads it.
+        let run = opm(&["ik", mechanism, "--poses", &tables[0]]);
+        assert_eq!(run.text().lines().count(), 52);
+        // The times and the poses.
+        let columns = if mechanism == PLANO { 6 } else { 3 };
+        for (one, two) in
+            numbers(&one, columns).concat().iter().zip(numbers(&two, columns).concat())
+        {
+            assert!((one - two).abs() < 1e-12, "{one} {two}");
+        }
+    }
+    // Without a joint it is a table of poses, and theta may be meant as a coordinate.
+    let wrong = folder.write("wrong.csv", "t,x,theta\n0,0,0\n1,0,0\n");
+    let run = opm(&["trajectory", "five-bar", "--motion", &wrong]);
+    run.fails_with_one_line(1, &["wrong.csv:1:5: theta follows from x, y"]);
+}

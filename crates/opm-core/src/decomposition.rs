@@ -107,8 +107,9 @@ pub struct Decomposition {
     pub intersection: SubspaceClass,
     /// The split of each leg, in the order of the mechanism's legs.
     pub legs: Vec<LegSplit>,
-    /// The number of independent motions of the imaginary joints, `J`: the mobility of the upper
-    /// section with its imaginary joints, at most `mobility`; zero where the groups share no motion.
+    /// The mobility of the upper section with its imaginary joints, `J`, at most `mobility`; zero where
+    /// the groups share no motion. The number of these joints may be another (see `redundancy` and
+    /// `upper_mobility`); `legs` says which legs have one.
     pub imaginary_joints: usize,
     /// The number of motions left to the lower section with the imaginary joints held, `M = N − J`;
     /// with the upper section held, where the groups share no motion.

@@ -62,6 +62,10 @@ pub fn matlab(manipulator: &Manipulator) -> Result<Package, GenerateError> {
         let own = [("plus", "sum_of"), ("minus", "difference_of"), ("times", "product_of")];
         own.iter().find(|(known, _)| *known == name).map(|(_, other)| (*other).to_owned())
     });
+    // Results have values from the start, as MATLAB has no others.
+    for function in &mut code.functions {
+        function.comment = function.comment.replace("nothing is written", "the others are NaN");
+    }
     let name = package(&manipulator.mechanism().name, &RESERVED);
     let title = crate::names::comment(&manipulator.mechanism().name);
     let head = format!(

@@ -30,6 +30,11 @@ pub fn st(manipulator: &Manipulator) -> Result<Package, GenerateError> {
     let mut code = c::tree(manipulator)?;
     lower(&mut code, Has { choices: false });
     names::unique(&mut code);
+    // The language has no infinite number (`print::real`).
+    let structs = code.structs.iter_mut().map(|one| &mut one.comment);
+    for comment in structs.chain(code.functions.iter_mut().map(|function| &mut function.comment)) {
+        *comment = comment.replace("infinite", "the largest number");
+    }
     let public: Vec<String> =
         code.functions.iter().filter(|f| f.public).map(|f| f.name.clone()).collect();
     instances::resolve(&mut code).map_err(GenerateError::Unread)?;

@@ -84,7 +84,7 @@ class Decomposition:
         """Mobility of the mechanism, N."""
     @property
     def imaginary_joints(self) -> int:
-        """Independent motions of the imaginary joints, J."""
+        """Motions of the upper section with its imaginary joints, J; the number of these joints may be another."""
     @property
     def first_section_motions(self) -> int:
         """Motions of the lower section with the imaginary joints held, M = N - J."""

@@ -3,7 +3,8 @@
 //! The first line is a header: `t` and names of task coordinates, in any order. A coordinate that
 //! is not named stays at home. Every other line is a pose in seconds, metres and radians, or in the
 //! units that the header names (`x [mm]`). There are at least two lines, and times increase from line
-//! to line, at equal or different steps.
+//! to line, at equal or different steps. A table that has columns of joints is one that `opm` wrote: what it has beside
+//! the time and the task coordinates follows from these, and is not read.
 //!
 //! A cubic spline ([`Spline`](super::Spline)) runs between the lines: position, velocity and acceleration are
 //! continuous. [`Ends`] says how it starts and ends.
@@ -15,8 +16,9 @@
 use super::points::{through, wraps};
 use super::{Ends, PlatformMotion};
 use crate::manipulator::Manipulator;
-use crate::mechanism::file::{FileErrors, FileUnits, Heading, LARGEST, Problem};
+use crate::mechanism::file::{FileErrors, FileUnits, Heading, LARGEST, Problem, is_column};
 use crate::numeric::{Quantity, angle::near};
+use crate::task::CoordinateKind;
 
 /// The largest number of problems that are listed one by one. A file with more of them is probably
 /// not a table of poses.
@@ -126,19 +128,44 @@ fn read_table(
         }
     }
     let units = |number: usize| {
-        let column = columns.iter().find(|column| column.coordinate == Some(number));
+        let column = columns.iter().find(|column| column.holds == Holds::Coordinate(number));
         column.map_or(FileUnits::SI, |column| column.units)
     };
     let motion = through(name, times, values, ends, manipulator, units);
     motion.map_err(|error| problems.report(last, 1, error.to_string())).ok()
 }
 
-/// The meaning of a column: the index of a task coordinate, or `None` for the time; and the units of its values.
+/// What a column holds, and the units of its values.
 #[derive(Clone, Copy)]
 struct Column {
-    coordinate: Option<usize>,
+    holds: Holds,
     quantity: Quantity,
     units: FileUnits,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Holds {
+    Time,
+    /// The task coordinate with this index.
+    Coordinate(usize),
+    /// What follows from the pose, and is not read.
+    Other,
+}
+
+/// Whether a table has columns of joints: then `opm` wrote it, with what follows from the poses beside them.
+fn has_joints(header: &str, manipulator: &Manipulator) -> bool {
+    cells(header).any(|(_, cell)| is_joint(Heading::parse(cell).name, manipulator))
+}
+
+fn is_joint(name: &str, manipulator: &Manipulator) -> bool {
+    manipulator.coordinates().iter().any(|c| c.name == name)
+        || manipulator.imaginary().iter().any(|joint| joint.name == name)
+}
+
+/// Whether a name is that of a column that `opm` writes beside t and the coordinates of a pose.
+fn follows(name: &str, manipulator: &Manipulator) -> bool {
+    let other = is_column(name) && CoordinateKind::from_name(name).is_none();
+    other || is_joint(name, manipulator) || manipulator.refuse_following(name).is_err()
 }
 
 fn read_header(
@@ -149,36 +176,42 @@ fn read_header(
     expected: &dyn Fn() -> String,
 ) -> Option<Vec<Column>> {
     let coordinates = manipulator.task_coordinates();
+    let written = has_joints(header, manipulator);
     let mut columns: Vec<Column> = Vec::new();
     for (at, cell) in cells(header) {
         let heading = Heading::parse(cell);
         let found = coordinates.iter().position(|c| c.name == heading.name);
-        if found.is_none() && !matches!((heading.name, heading.unit), ("t", None | Some("s"))) {
-            let problem = match (heading.name, manipulator.refuse_following(heading.name)) {
-                ("t", _) => format!("{cell:?}, expected t or t [s]"),
-                (name, Ok(())) => format!("no coordinate {name:?}, {}", expected()),
-                (_, Err(follows)) => follows.to_string(),
-            };
-            problems.report(number, at, problem);
-            continue;
-        }
-        let quantity =
-            found.map_or(Quantity::Length, |coordinate| coordinates[coordinate].quantity);
-        let units = match found {
-            Some(_) => heading.units(quantity).map(Option::unwrap_or_default),
-            None => Ok(FileUnits::SI),
+        let (holds, quantity) = match (found, heading.name, heading.unit) {
+            (Some(number), ..) => (Holds::Coordinate(number), coordinates[number].quantity),
+            (None, "t", None | Some("s")) => (Holds::Time, Quantity::Length),
+            (None, name, _) if name != "t" && written && follows(name, manipulator) => {
+                (Holds::Other, Quantity::Length)
+            }
+            (None, name, _) => {
+                let problem = match (name, manipulator.refuse_following(name)) {
+                    ("t", _) => format!("{cell:?}, expected t or t [s]"),
+                    (name, Ok(())) => format!("no coordinate {name:?}, {}", expected()),
+                    (_, Err(follows)) => follows.to_string(),
+                };
+                problems.report(number, at, problem);
+                continue;
+            }
+        };
+        let units = match holds {
+            Holds::Coordinate(_) => heading.units(quantity).map(Option::unwrap_or_default),
+            Holds::Time | Holds::Other => Ok(FileUnits::SI),
         };
         let units = units.unwrap_or_else(|problem| {
             problems.report(number, at, problem);
             FileUnits::SI
         });
-        if columns.iter().any(|column| column.coordinate == found) {
+        if holds != Holds::Other && columns.iter().any(|column| column.holds == holds) {
             let problem = format!("two columns are called {}, {}", heading.name, expected());
             problems.report(number, at, problem);
         }
-        columns.push(Column { coordinate: found, quantity, units });
+        columns.push(Column { holds, quantity, units });
     }
-    if columns.iter().all(|column| column.coordinate.is_some()) && problems.list.is_empty() {
+    if columns.iter().all(|column| column.holds != Holds::Time) && problems.list.is_empty() {
         problems.report(number, 1, format!("no column t, {}", expected()));
     }
     problems.list.is_empty().then_some(columns)
@@ -201,15 +234,21 @@ fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problem
             continue;
         };
         found += 1;
+        if column.holds == Holds::Other {
+            continue;
+        }
         let value: f64 = cell.parse().unwrap_or(f64::NAN);
         if value.is_nan() || value.abs() > LARGEST {
             let expected = format!("expected a finite number of at most {LARGEST:e}");
             problems.report(number, at, format!("{cell:?}, {expected}"));
             continue;
         }
-        match column.coordinate {
-            Some(coordinate) => values[coordinate].push(column.units.si(value, column.quantity)),
-            None => {
+        match column.holds {
+            Holds::Coordinate(coordinate) => {
+                values[coordinate].push(column.units.si(value, column.quantity));
+            }
+            Holds::Other => {}
+            Holds::Time => {
                 if let Some(&before) = times.last()
                     && value <= before
                 {

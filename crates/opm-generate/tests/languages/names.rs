@@ -45,3 +45,25 @@ fn a_module_that_is_called_by_a_keyword_is_imported() {
     let done = Command::new(python).arg("-B").arg(test).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
+
+/// Comments are those of C, where results are left as they are and a missing limit is infinite.
+#[test]
+fn comments_are_true_in_other_languages() {
+    let manipulator = named("five-bar");
+    let all = |package: Package| -> String {
+        // Comments are wrapped.
+        let texts = package.files.into_iter().map(|(_, text)| text.replace('%', " "));
+        texts
+            .flat_map(|text| {
+                text.split_whitespace().map(|word| format!("{word} ")).collect::<Vec<_>>()
+            })
+            .collect()
+    };
+    let c = all(opm_generate::c_package(&manipulator).unwrap());
+    assert!(c.contains("nothing is written") && c.contains("infinite without limits"));
+    let matlab = all(opm_generate::matlab(&manipulator).unwrap());
+    assert!(!matlab.contains("nothing is written"));
+    assert!(matlab.contains("Unless it returns 0, the others are NaN."));
+    let st = all(opm_generate::st(&manipulator).unwrap());
+    assert!(!st.contains("infinite") && st.contains("(the largest number without limits)"));
+}

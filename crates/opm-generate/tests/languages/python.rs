@@ -19,6 +19,9 @@ struct Modules {
 /// Reads all questions from the input and answers them at once.
 const DRIVER: &str = include_str!("python_driver.py");
 
+/// Calls functions with what they refuse.
+const SHAPES: &str = include_str!("python_shapes.py");
+
 impl Program for Modules {
     fn ask(&self, number: usize, questions: &[Question]) -> Vec<Answer> {
         let mut command = Command::new(&self.python);
@@ -93,4 +96,18 @@ fn the_test_beside_python_finds_errors() {
     assert_ne!(text, wrong);
     std::fs::write(&path, wrong).expect("a file in it");
     assert!(!run().0);
+}
+
+/// What has too few or too many numbers, and modes that there are not, are refused with a word about it.
+#[test]
+fn python_refuses_wrong_shapes_and_modes() {
+    let all = ["five-bar", "plano-spherical-5dof"].map(|name| Manipulator::example(name).unwrap());
+    let Some(program) = Modules::new(&all) else { return };
+    for name in &program.names {
+        let mut command = Command::new(&program.python);
+        command.arg("-B").arg(program.folder.path().join("shapes.py")).arg(name);
+        std::fs::write(program.folder.path().join("shapes.py"), SHAPES).expect("a file in it");
+        let done = command.output().expect("it runs");
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    }
 }

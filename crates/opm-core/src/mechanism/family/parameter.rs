@@ -149,10 +149,10 @@ impl Parameter<'_> {
         }
     }
 
-    /// Sets the value, or describes what is wrong with it.
-    fn set(&mut self, value: ParameterValue) -> Result<(), String> {
+    /// Sets the value, or describes what is wrong with it, in some units.
+    fn set(&mut self, value: ParameterValue, units: FileUnits) -> Result<(), String> {
         use ParameterValue::{Number, Pair};
-        let size = |value, quantity| checks::size(checks::finite(value)?, quantity, FileUnits::SI);
+        let size = |value, quantity| checks::size(checks::finite(value)?, quantity, units);
         match (&mut self.target, value) {
             (ParameterRef::Number(quantity, target), Number(value)) => {
                 **target = size(value, *quantity)?;
@@ -166,12 +166,12 @@ impl Parameter<'_> {
             (ParameterRef::Limits(_, target), ParameterValue::None) => **target = None,
             (ParameterRef::Limits(quantity, target), Pair([low, high])) => {
                 let limits = [size(low, *quantity)?, size(high, *quantity)?];
-                **target = Some(checks::ordered(limits, *quantity, FileUnits::SI)?);
+                **target = Some(checks::ordered(limits, *quantity, units)?);
             }
             (ParameterRef::DriveLimit(.., target), ParameterValue::None) => **target = None,
             (ParameterRef::DriveLimit(limit, quantity, target), Number(value)) => {
                 let value = checks::finite(value)?;
-                **target = Some(checks::drive_limit(value, *limit, *quantity, FileUnits::SI)?);
+                **target = Some(checks::drive_limit(value, *limit, *quantity, units)?);
             }
             (ParameterRef::Offset(_, target), ParameterValue::None) => **target = None,
             (ParameterRef::Offset(quantity, target), Number(value)) => {
@@ -232,6 +232,15 @@ impl Family {
         &self,
         changes: impl IntoIterator<Item = (&'n str, ParameterValue)>,
     ) -> Result<Self, ParameterErrors> {
+        self.with_in(changes, FileUnits::SI)
+    }
+
+    /// The same with problems in other units. The values are SI.
+    pub(in crate::mechanism) fn with_in<'n>(
+        &self,
+        changes: impl IntoIterator<Item = (&'n str, ParameterValue)>,
+        units: FileUnits,
+    ) -> Result<Self, ParameterErrors> {
         let mut family = self.clone();
         let mut groups = family.groups();
         let (mut whole, mut problems) = (vec![], vec![]);
@@ -247,7 +256,7 @@ impl Family {
             }
             let every = groups.iter_mut().flat_map(|group| &mut group.parameters);
             let every = every.filter(|p| p.value().is_some() && p.is_called(name));
-            match every.map(|p| p.set(value)).collect::<Vec<_>>() {
+            match every.map(|p| p.set(value, units)).collect::<Vec<_>>() {
                 set if set.is_empty() => {
                     problems.push(format!("`{name}` is not a parameter; {}", meant(name, &groups)));
                 }
@@ -258,7 +267,7 @@ impl Family {
             }
         }
         for ((group, parameter), name, value) in whole {
-            let set = groups[group].parameters[parameter].set(value);
+            let set = groups[group].parameters[parameter].set(value, units);
             problems.extend(set.err().map(|problem| format!("`{name}` {problem}")));
         }
         drop(groups);
@@ -298,11 +307,14 @@ impl Family {
         let mut body = String::new();
         for group in family.groups() {
             let entry = |p: &Parameter<'_>| {
-                let factor = p.quantity().map_or(1.0, |quantity| units.factor(quantity));
+                let number = |value: f64| match p.quantity() {
+                    Some(quantity) => units.number_of(value, quantity),
+                    None => value,
+                };
                 let value = match p.value()? {
                     ParameterValue::None => return None,
-                    ParameterValue::Number(value) => format!("{:?}", value / factor),
-                    ParameterValue::Pair([a, b]) => format!("[{:?}, {:?}]", a / factor, b / factor),
+                    ParameterValue::Number(value) => format!("{:?}", number(value)),
+                    ParameterValue::Pair([a, b]) => format!("[{:?}, {:?}]", number(a), number(b)),
                 };
                 Some(format!("{} = {value}", p.key))
             };

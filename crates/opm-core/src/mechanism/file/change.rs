@@ -52,7 +52,7 @@ impl MechanismFile {
         let mut file = self.clone();
         match &self.family {
             Some(family) => {
-                let family = family.with(changes)?;
+                let family = family.with_in(changes, self.units)?;
                 let mechanism =
                     family.assemble().map_err(|error| family.explain_in(&error, self.units))?;
                 file.mechanism.legs = mechanism.legs;
@@ -65,7 +65,7 @@ impl MechanismFile {
             None => {
                 let mut problems = Vec::new();
                 for (name, value) in changes {
-                    let problem = change(&mut file.mechanism, name, value).err();
+                    let problem = change(&mut file.mechanism, name, value, self.units).err();
                     problems.extend(problem.map(|problem| format!("`{name}` {problem}")));
                 }
                 if problems.is_empty() {
@@ -133,8 +133,13 @@ fn split(name: &str) -> Option<(Option<&str>, Part)> {
     Some((joint, part))
 }
 
-/// Changes a joint of a list, or says what is wrong.
-fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Result<(), String> {
+/// Changes a joint of a list, or says what is wrong, in the units of the file. The value is SI.
+fn change(
+    mechanism: &mut Mechanism,
+    name: &str,
+    value: ParameterValue,
+    units: FileUnits,
+) -> Result<(), String> {
     let names: Vec<String> = mechanism.coordinates().map(|c| c.name.clone()).collect();
     let list = || names.join(", ");
     let Some((joint, part)) = split(name) else {
@@ -161,7 +166,7 @@ fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Resul
         let hint = hint.map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
         return Err(format!("names no joint {joint}; {hint}expected one of {}", list()));
     }
-    let size = |value, quantity| checks::size(checks::finite(value)?, quantity, FileUnits::SI);
+    let size = |value, quantity| checks::size(checks::finite(value)?, quantity, units);
     for coordinate in chosen {
         let quantity = coordinate.quantity;
         match (part, value) {
@@ -171,14 +176,14 @@ fn change(mechanism: &mut Mechanism, name: &str, value: ParameterValue) -> Resul
             (Part::Limits, ParameterValue::None) => coordinate.limits = None,
             (Part::Limits, ParameterValue::Pair([low, high])) => {
                 let limits = [size(low, quantity)?, size(high, quantity)?];
-                coordinate.limits = Some(checks::ordered(limits, quantity, FileUnits::SI)?);
+                coordinate.limits = Some(checks::ordered(limits, quantity, units)?);
             }
             (Part::Drive(limit), ParameterValue::None) => {
                 *limit.of_mut(coordinate) = None;
             }
             (Part::Drive(limit), ParameterValue::Number(value)) => {
                 let value = checks::finite(value)?;
-                let value = checks::drive_limit(value, limit, quantity, FileUnits::SI)?;
+                let value = checks::drive_limit(value, limit, quantity, units)?;
                 *limit.of_mut(coordinate) = Some(value);
             }
             (Part::Home, _) => return Err("expected a number".into()),
@@ -246,6 +251,12 @@ mod tests {
         assert!(problem("S1.limit", limits).contains("did you mean `S1.limits`"));
         assert!(problem("S1.limits", ParameterValue::Pair([5.0, 6.0])).contains("exclude home"));
         assert!(problem("S1.home", limits).contains("expected a number"));
+        let reversed = ParameterValue::Pair([0.5, 0.25]);
+        let expected =
+            "`S1.limits` are reversed: 500 mm is above 250 mm, expected [lowest, highest]";
+        assert_eq!(problem("S1.limits", reversed), expected);
+        let of_family = example("plano-spherical-5dof").with([("limits.S", reversed)]).unwrap_err();
+        assert!(of_family.to_string().contains("500 mm is above 250 mm"), "{of_family}");
     }
 
     #[test]

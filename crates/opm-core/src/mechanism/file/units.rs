@@ -137,6 +137,17 @@ impl FileUnits {
         }
     }
 
+    /// Converts an SI value to a number of the file: one that [`si`](Self::si) converts to this value, with the fewest
+    /// digits if there is one of at most 15; the nearest number where there is none, as between the doubles of degrees.
+    pub fn number_of(self, value: f64, quantity: Quantity) -> f64 {
+        /// Digits behind the first one, with which decimals tell all doubles apart.
+        const DIGITS: usize = 16;
+        let number = value / self.factor(quantity);
+        let rounded = (0..=DIGITS).filter_map(|digits| format!("{number:.digits$e}").parse().ok());
+        let mut candidates = rounded.chain([number.next_down(), number.next_up()]);
+        candidates.find(|&candidate| self.si(candidate, quantity) == value).unwrap_or(number)
+    }
+
     /// The symbol of the file's unit for a quantity.
     pub fn symbol(self, quantity: Quantity) -> &'static str {
         match quantity {
@@ -181,6 +192,38 @@ mod tests {
         assert_eq!(LengthUnit::Micrometre.metres(20.0), 20e-6);
         assert_eq!(AngleUnit::Microradian.radians(7.0), 7e-6);
         assert_eq!(AngleUnit::Milliradian.radians(0.3), 0.3e-3);
+    }
+
+    /// Short numbers and those of all digits, in every unit: what was read is written so that it is read again to the last
+    /// bit, and short ones are written as they were.
+    #[test]
+    fn numbers_are_written_as_they_were_read() {
+        let lengths = LengthUnit::ALL.map(|length| FileUnits { length, ..FileUnits::SI });
+        let angles = AngleUnit::ALL.map(|angle| FileUnits { angle, ..FileUnits::SI });
+        let quantities = [Quantity::Length, Quantity::Angle];
+        let all = lengths.into_iter().zip([quantities[0]; 5]);
+        for (units, quantity) in all.chain(angles.into_iter().zip([quantities[1]; 4])) {
+            for step in -40_000_i32..40_000 {
+                let short = f64::from(step) / 100.0;
+                let long = (f64::from(step) * 0.7).sin() * 360.0;
+                for number in [short, long] {
+                    let value = units.si(number, quantity);
+                    let written = units.number_of(value, quantity);
+                    assert_eq!(units.si(written, quantity), value, "{number} {units:?}");
+                    assert!(written == number || number != short, "{number} {written} {units:?}");
+                }
+            }
+        }
+        let degrees = FileUnits { angle: AngleUnit::Degree, ..FileUnits::SI };
+        assert_eq!(degrees.number_of(30_f64.to_radians(), Quantity::Angle), 30.0);
+        // What was no number of degrees is off by rounding alone.
+        for step in 1..40_000_i32 {
+            let value = f64::from(step) * 1e-4 * std::f64::consts::SQRT_2;
+            let again = degrees.si(degrees.number_of(value, Quantity::Angle), Quantity::Angle);
+            assert!((again / value - 1.0).abs() <= f64::EPSILON, "{value} {again}");
+        }
+        assert!(degrees.number_of(f64::NAN, Quantity::Angle).is_nan());
+        assert_eq!(degrees.number_of(f64::INFINITY, Quantity::Angle), f64::INFINITY);
     }
 
     #[test]

@@ -225,7 +225,7 @@ impl Writer {
 
     /// A length or an angle in the file's units.
     fn number(self, value: f64, quantity: Quantity) -> String {
-        self.digits.of(value / self.units.factor(quantity), DECIMALS)
+        self.digits.of(self.units.number_of(value, quantity), DECIMALS)
     }
 }
 

@@ -45,10 +45,10 @@ DEFAULT = GEOMETRY
 
 def inverse(pose, mode=HOME_MODE, geometry=DEFAULT):
     """Every joint at poses in a working mode: a `Solution`."""
-    pose, shape = _poses(pose, mode)
+    pose, mode, shape = _poses(pose, mode)
     joints, imaginary = [np.nan] * JOINTS, [np.nan] * IMAGINARY
     with np.errstate(all="ignore"):
-        status = _inverse(_doubles(geometry), pose, np.asarray(mode), joints, imaginary)
+        status = _inverse(_doubles(geometry), pose, mode, joints, imaginary)
     status = _status(status, shape)
     return Solution(status, _array(joints, shape, status), _array(imaginary, shape, status))
 
@@ -60,10 +60,10 @@ def all_modes(pose, geometry=DEFAULT):
 
 def actuated(pose, mode=HOME_MODE, geometry=DEFAULT):
     """The actuated joints alone: the statuses, and their values."""
-    pose, shape = _poses(pose, mode)
+    pose, mode, shape = _poses(pose, mode)
     values = [np.nan] * ACTUATED
     with np.errstate(all="ignore"):
-        status = _actuated(_doubles(geometry), pose, np.asarray(mode), values)
+        status = _actuated(_doubles(geometry), pose, mode, values)
     status = _status(status, shape)
     return status, _array(values, shape, status)
 
@@ -71,7 +71,8 @@ def actuated(pose, mode=HOME_MODE, geometry=DEFAULT):
 def nearest(pose, previous, geometry=DEFAULT):
     """Every joint at poses in that mode in which the joints move least from previous ones (the sum of the squares, lengths
     over the size of the mechanism), angles with the revolutions nearest to the previous ones: a `Solution`, and the modes."""
-    pose, previous = np.asarray(pose, float), np.asarray(previous, float)
+    pose = _rows("pose", pose, COORDINATES, "coordinates")
+    previous = _rows("previous", previous, JOINTS, "joints")
     shape = np.broadcast_shapes(pose.shape[:-1], previous.shape[:-1])
     joints, imaginary = [np.nan] * JOINTS, [np.nan] * IMAGINARY
     with np.errstate(all="ignore"):
@@ -84,26 +85,26 @@ def deficits(pose, mode=HOME_MODE, geometry=DEFAULT):
     """The statuses, and by how much poses are out of reach: for each leg, of its lower and of its upper section, in metres, or
     radians where the section is spherical; zero where it closes, infinite where it is not known. A section that follows
     another one out of reach counts as closed."""
-    pose, shape = _poses(pose, mode)
+    pose, mode, shape = _poses(pose, mode)
     missed = [0.0] * (2 * LEGS)
     with np.errstate(all="ignore"):
-        status = _deficits(_doubles(geometry), pose, np.asarray(mode), missed)
+        status = _deficits(_doubles(geometry), pose, mode, missed)
     return _status(status, shape), _array(missed, shape).reshape(shape + (LEGS, 2))
 
 
 def limits(joints, geometry=DEFAULT):
     """The number of the first joint, from 1, that is past its limits; 0 if none is."""
-    joints = np.asarray(joints, float)
+    joints = _rows("joints", joints, JOINTS, "joints")
     return _status(_limits(_doubles(geometry), _numbers_of(joints)), joints.shape[:-1])
 
 
 def transform(pose, mode=HOME_MODE, geometry=DEFAULT):
     """Where the platform is, in base coordinates: the statuses, the positions of its reference point, and rotation matrices.
     They depend on the mode only where coordinates follow from those of the pose; no leg is tested."""
-    pose, shape = _poses(pose, mode)
+    pose, mode, shape = _poses(pose, mode)
     position, rotation = [np.nan] * 3, [np.nan] * 9
     with np.errstate(all="ignore"):
-        status = _transform(_doubles(geometry), pose, np.asarray(mode), position, rotation)
+        status = _transform(_doubles(geometry), pose, mode, position, rotation)
     status = _status(status, shape)
     return status, _array(position, shape, status), _array(rotation, shape, status).reshape(shape + (3, 3))
 
@@ -112,10 +113,10 @@ def jacobian(pose, mode=HOME_MODE, geometry=DEFAULT):
     """The rates of all joints for unit rates of the coordinates: the statuses, and matrices with a row for each joint, rad/s
     and m/s. The status is LEGS + i where leg i, from 1, is singular; 2 LEGS + 1 where coordinates that follow from those of the
     pose have no rates."""
-    pose, shape = _poses(pose, mode)
+    pose, mode, shape = _poses(pose, mode)
     rates = [np.nan] * (JOINTS * COORDINATES)
     with np.errstate(all="ignore"):
-        status = _jacobian(_doubles(geometry), pose, np.asarray(mode), rates)
+        status = _jacobian(_doubles(geometry), pose, mode, rates)
     status = _status(status, shape)
     return status, _array(rates, shape, status).reshape(shape + (JOINTS, COORDINATES))
 
@@ -123,10 +124,10 @@ def jacobian(pose, mode=HOME_MODE, geometry=DEFAULT):
 def twist(pose, mode=HOME_MODE, geometry=DEFAULT):
     """The platform's twist for unit rates of the coordinates: the statuses, and matrices with three rows of the angular
     velocity and three of the velocity of the reference point, base coordinates."""
-    pose, shape = _poses(pose, mode)
+    pose, mode, shape = _poses(pose, mode)
     rates = [np.nan] * (6 * COORDINATES)
     with np.errstate(all="ignore"):
-        status = _twist(_doubles(geometry), pose, np.asarray(mode), rates)
+        status = _twist(_doubles(geometry), pose, mode, rates)
     status = _status(status, shape)
     return status, _array(rates, shape, status).reshape(shape + (6, COORDINATES))
 
@@ -134,21 +135,37 @@ def twist(pose, mode=HOME_MODE, geometry=DEFAULT):
 def rates(pose, mode, rates, geometry=DEFAULT):
     """The rates of all joints for given rates of the coordinates: the statuses, as of `jacobian`, and the rates. The status is
     -COORDINATES - i where rate i, from 1, is no number."""
-    pose, rates = np.asarray(pose, float), np.asarray(rates, float)
-    shape = np.broadcast_shapes(pose.shape[:-1], rates.shape[:-1], np.shape(mode))
+    pose = _rows("pose", pose, COORDINATES, "coordinates")
+    rates = _rows("rates", rates, COORDINATES, "coordinates")
+    mode = _modes(mode)
+    shape = np.broadcast_shapes(pose.shape[:-1], rates.shape[:-1], mode.shape)
     found = [np.nan] * JOINTS
     with np.errstate(all="ignore"):
-        status = _rates(_doubles(geometry), _numbers_of(pose), np.asarray(mode), _numbers_of(rates), found)
+        status = _rates(_doubles(geometry), _numbers_of(pose), mode, _numbers_of(rates), found)
     status = _status(status, shape)
     return status, _array(found, shape, status)
 
 FORWARD
 def _poses(pose, mode):
-    """The numbers of poses, and the axes of results."""
-    pose = np.asarray(pose, float)
-    if pose.ndim == 0 or pose.shape[-1] != COORDINATES:
-        raise ValueError(f"pose: the last axis has the {COORDINATES} coordinates; this is an array of shape {pose.shape}")
-    return _numbers_of(pose), np.broadcast_shapes(pose.shape[:-1], np.shape(mode))
+    """The numbers of poses, the modes, and the axes of results."""
+    pose, mode = _rows("pose", pose, COORDINATES, "coordinates"), _modes(mode)
+    return _numbers_of(pose), mode, np.broadcast_shapes(pose.shape[:-1], mode.shape)
+
+
+def _rows(name, array, count, what):
+    """An array whose last axis has as many numbers as expected."""
+    array = np.asarray(array, float)
+    if array.ndim == 0 or array.shape[-1] != count:
+        raise ValueError(f"{name}: the last axis has the {count} {what}; this is an array of shape {array.shape}")
+    return array
+
+
+def _modes(mode):
+    """An array of working modes."""
+    mode = np.asarray(mode)
+    if mode.dtype.kind not in "iu" or ((mode < 0) | (mode >= 1 << CHOICES)).any():
+        raise ValueError(f"mode: {mode}, expected whole numbers from 0 to {(1 << CHOICES) - 1}")
+    return mode
 
 
 def _numbers_of(array):
