@@ -97,7 +97,7 @@ fn a_link_that_vanishes_at_a_height_is_out_of_reach_there() {
         { name = \"b\", type = \"revolute\", axis = [0, 0, 1], point = [-0.3, 0, 0], actuated = true },\n\
         { name = \"c\", type = \"revolute\", axis = [0, 0, 1], point = [0.5, 0.6, 0], actuated = true },\n]\n\
         [[leg]]\nname = \"two\"\njoints = [\n\
-        { name = \"g\", type = \"prismatic\", axis = [0, 0, 1] },\n\
+        { name = \"t\", type = \"prismatic\", axis = [0, 0, 1] },\n\
         { name = \"d\", type = \"revolute\", axis = [0, 0, 1], point = [0, 1, 0] },\n\
         { name = \"e\", type = \"revolute\", axis = [0, 0, 1], point = [1, 1, 0] },\n\
         { name = \"f\", type = \"revolute\", axis = [0, 0, 1], point = [0.5, 0.6, 0] },\n]\n";

@@ -10,6 +10,7 @@ use opm_mcap::{ReadError, read};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::path::Path;
 
 const SINUSOIDS: &str = "plano-spherical-sinusoids";
 const HEAD: &str = "format = 1\nname = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\n";
@@ -674,4 +675,27 @@ fn a_table_of_a_motion_is_a_motion() {
     let wrong = folder.write("wrong.csv", "t,x,theta\n0,0,0\n1,0,0\n");
     let run = opm(&["trajectory", "five-bar", "--motion", &wrong]);
     run.fails_with_one_line(1, &["wrong.csv:1:5: theta follows from x, y"]);
+}
+
+/// A joint that is called like another column would make a table that nobody can read: it is not written.
+#[test]
+fn columns_of_one_name_are_refused() {
+    let folder = Folder::new();
+    let run = opm(&["convert", PLANO, "--joints"]);
+    let list = run.text();
+    assert!(list.contains("\"S1\""), "{list}");
+    for (name, column, more) in [("t", "t", None), ("d.x", "d.x", Some("--rates"))] {
+        let file = folder.write("named.toml", list.replace("\"S1\"", &format!("\"{name}\"")));
+        let motion = folder.write("motion.csv", "t,x\n0,0\n1,0.01\n");
+        for table in ["out.csv", "out.npy"] {
+            let table = folder.arg(table);
+            let mut args = vec!["trajectory", &file, "--motion", &motion, "-o", &table];
+            args.extend(more);
+            let problem = format!("two columns would be called {column:?}");
+            opm(&args).fails_with_one_line(1, &[&table, &problem]);
+            assert!(!Path::new(&table).exists(), "{table}");
+        }
+        // Other tables and answers have no such column.
+        opm(&["ik", &file, "--pose", "x=0.01"]).text();
+    }
 }

@@ -26,6 +26,7 @@
 //! ```
 
 use csv::{ErrorKind, Writer, WriterBuilder};
+use std::collections::HashSet;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::ops::Range;
 
@@ -117,6 +118,23 @@ impl<'a> Line<'a> {
     }
 }
 
+/// Refuses names of columns of which two are the same but for their units: who reads the table cannot tell which is
+/// meant.
+///
+/// # Errors
+/// The name that is given twice.
+pub fn distinct<'n>(names: impl IntoIterator<Item = &'n str>) -> io::Result<()> {
+    let mut seen = HashSet::new();
+    let without_unit = |name: &'n str| name.split(" [").next().unwrap_or(name);
+    match names.into_iter().map(without_unit).find(|name| !seen.insert(*name)) {
+        None => Ok(()),
+        Some(name) => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("two columns would be called {name:?}, expected another name of the joint"),
+        )),
+    }
+}
+
 /// Writes rows, cell by cell. Everything has been written after [`Rows::flush`].
 pub struct Rows<'w> {
     writer: Writer<&'w mut (dyn Write + Send)>,
@@ -133,8 +151,10 @@ impl<'w> Rows<'w> {
     /// Writes a row of names.
     ///
     /// # Errors
-    /// The file cannot be written. So it is with all that follows.
+    /// Two names are the same ([`distinct`]), or the file cannot be written, which may be said by all that follows, too.
     pub fn header<'n>(&mut self, names: impl IntoIterator<Item = &'n str>) -> io::Result<()> {
+        let names: Vec<&str> = names.into_iter().collect();
+        distinct(names.iter().copied())?;
         names.into_iter().try_for_each(|name| self.text(name))?;
         self.end()
     }

@@ -52,16 +52,14 @@
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
 //! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Some names are columns of tables and
-//! cannot be names of joints: task coordinates (`x`, `phi`, ...), words such as `t`, `mode` and
-//! `reachable`, indices of a pose (`payload`), names that begin with `d.`, `dd.` or `effort.`, and the
-//! imaginary joints of the legs (`tau.leg1`). An unknown key is a problem, and its message suggests
-//! the nearest known key.
+//! cannot be names of joints: task coordinates (`x`, `phi`, ...), `reachable`, `within_limits`,
+//! `mode`, `branch`, and the imaginary joints of the legs (`tau.leg1`). An unknown key is a
+//! problem, and its message suggests the nearest known key.
 
 #[cfg(feature = "files")]
 mod bodies;
 mod change;
 pub(crate) mod checks;
-mod columns;
 mod heading;
 #[doc(hidden)]
 pub mod hint;
@@ -83,7 +81,6 @@ mod writer;
 
 pub use change::text;
 pub(crate) use checks::LARGEST;
-pub(crate) use columns::is_column;
 pub use heading::Heading;
 pub(super) use hint::nearest;
 pub use problem::{FileErrors, Location, Locations, Problem};

@@ -13,12 +13,12 @@
 //! line. A table that wraps around at ±π then continues and does not rotate back. An angle whose
 //! full revolutions matter, because a helical joint follows it, is not unwrapped.
 
+use super::columns::is_column;
 use super::points::{through, wraps};
 use super::{Ends, PlatformMotion};
 use crate::manipulator::Manipulator;
-use crate::mechanism::file::{FileErrors, FileUnits, Heading, LARGEST, Problem, is_column};
+use crate::mechanism::file::{FileErrors, FileUnits, Heading, LARGEST, Problem};
 use crate::numeric::{Quantity, angle::near};
-use crate::task::CoordinateKind;
 
 /// The largest number of problems that are listed one by one. A file with more of them is probably
 /// not a table of poses.
@@ -164,8 +164,7 @@ fn is_joint(name: &str, manipulator: &Manipulator) -> bool {
 
 /// Whether a name is that of a column that `opm` writes beside t and the coordinates of a pose.
 fn follows(name: &str, manipulator: &Manipulator) -> bool {
-    let other = is_column(name) && CoordinateKind::from_name(name).is_none();
-    other || is_joint(name, manipulator) || manipulator.refuse_following(name).is_err()
+    is_column(name) || is_joint(name, manipulator) || manipulator.refuse_following(name).is_err()
 }
 
 fn read_header(

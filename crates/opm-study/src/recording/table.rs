@@ -7,6 +7,7 @@ use crate::motion::{MotionRequest, MotionSummary};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Sample, Trajectory};
+use opm_mcap::csv::distinct;
 use opm_mcap::{PartialFile, RecordError, Sink, TableRecorder};
 use std::io::{self, Write};
 use std::path::Path;
@@ -59,7 +60,11 @@ impl<'a> Columns<'a> {
             .filter_map(|(order, name, unit, asked)| asked.then_some((order, name, unit)))
     }
 
-    fn header(&self) -> Vec<String> {
+    /// The names of the columns.
+    ///
+    /// # Errors
+    /// Two are the same: a joint is called like another column.
+    fn header(&self) -> io::Result<Vec<String>> {
         let units = self.options.units;
         let mut names = vec![if units.is_some() { "t [s]" } else { "t" }.to_owned()];
         for (_, prefix, per) in self.derivatives() {
@@ -74,7 +79,8 @@ impl<'a> Columns<'a> {
                 (Some(_), unit) => format!("{name} [{unit}]"),
             });
         }
-        names
+        distinct(names.iter().map(String::as_str))?;
+        Ok(names)
     }
 
     /// The numbers of a sample; not a number where there is none.
@@ -132,7 +138,8 @@ pub fn write_motion_csv(
     let mut columns = Columns::new(&request, options);
     let failed = |error: io::Error| StudyError::record(place, RecordError::Io(error));
     let mut output = io::BufWriter::new(output);
-    writeln!(output, "{}", columns.header().join(",")).map_err(failed)?;
+    let header = columns.header().map_err(failed)?;
+    writeln!(output, "{}", header.join(",")).map_err(failed)?;
     let (mut row, mut line) = (Vec::new(), Vec::new());
     let take = |_, sample: &Sample, _: &[_]| {
         columns.write(sample, &mut row);
@@ -179,7 +186,7 @@ pub fn write_motion_table(
         }
         Format::Npy => {
             let mut columns = Columns::new(&request, options);
-            let header = columns.header();
+            let header = columns.header().map_err(|error| failed(RecordError::Io(error)))?;
             let names: Vec<&str> = header.iter().map(String::as_str).collect();
             let samples = trajectory.samples();
             let mut table: TableRecorder<PartialFile> =

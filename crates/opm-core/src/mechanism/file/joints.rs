@@ -1,6 +1,5 @@
 //! Reading the form of mechanism file that lists the joints at the assembled home pose.
 
-use super::columns::{PREFIXES, RESERVED};
 use super::leg_name;
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
@@ -27,6 +26,26 @@ pub(super) const TYPES: [(&str, Type); 6] = [
     ("cylindrical", Type::Cylindrical),
     ("universal", Type::Universal),
     ("spherical", Type::Spherical),
+];
+
+/// Names that tables and recordings use for other columns than joints: the task coordinates of all
+/// pairs of subspaces, and status columns. Imaginary joints are `tau.` and the leg's name.
+pub(super) const RESERVED: [&str; 15] = [
+    "x",
+    "y",
+    "z",
+    "w",
+    "theta",
+    "phi",
+    "zeta",
+    "xi",
+    "psi",
+    "mu",
+    "nu",
+    "reachable",
+    "within_limits",
+    "mode",
+    "branch",
 ];
 
 /// Sine of the angle below which the two axes of a universal joint count as parallel, so that its
@@ -106,7 +125,6 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     for name in RESERVED {
         joint_names.reserve(name, "a task coordinate or a column of tables");
     }
-    joint_names.reserve_prefixes(&PREFIXES);
     for (index, table) in tables.iter().enumerate() {
         let imaginary = Leg::new(leg_name(table, index), Vec::new()).imaginary_name();
         joint_names.reserve(&imaginary, "that leg's imaginary joint");

@@ -383,13 +383,11 @@ pub(crate) struct UniqueNames {
     seen: HashSet<String>,
     /// Names that are reserved, and what each of them names.
     reserved: HashMap<String, &'static str>,
-    /// What columns of tables begin with, and names must not.
-    prefixes: &'static [&'static str],
 }
 
 impl UniqueNames {
     pub(crate) fn new(what: &'static str) -> Self {
-        Self { what, seen: HashSet::new(), reserved: HashMap::new(), prefixes: &[] }
+        Self { what, seen: HashSet::new(), reserved: HashMap::new() }
     }
 
     /// Reserves a name for something else.
@@ -397,22 +395,11 @@ impl UniqueNames {
         self.reserved.insert(name.to_owned(), other);
     }
 
-    /// Reserves all names that begin with one of some prefixes for columns of tables.
-    pub(super) fn reserve_prefixes(&mut self, prefixes: &'static [&'static str]) {
-        self.prefixes = prefixes;
-    }
-
     /// Reports a name that was used before, or that is reserved.
     pub(crate) fn add(&mut self, name: &str, reader: &Reader, at: usize) {
         let what = self.what;
         if let Some(other) = self.reserved.get(name) {
             let problem = format!("{name:?} is the name of {other}, expected another for {what}");
-            reader.report(at, problem);
-        } else if let Some(prefix) = self.prefixes.iter().find(|prefix| name.starts_with(**prefix))
-        {
-            let problem = format!(
-                "{name:?} begins with {prefix:?} as columns of tables do, expected another for {what}"
-            );
             reader.report(at, problem);
         } else if !self.seen.insert(name.to_owned()) {
             reader.report(at, format!("two {what} are called {name:?}, expected different names"));

@@ -4,8 +4,9 @@ use super::Properties;
 use super::values::{
     array, cases, closed, described, direction, exactly, form, name, number, object, point,
 };
-use crate::mechanism::file::columns::{PREFIXES, RESERVED};
-use crate::mechanism::file::joints::{FRAME_KEYS, KEYS, LEG_KEYS, TASK_KEYS, TYPES, Type};
+use crate::mechanism::file::joints::{
+    FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
+};
 use crate::mechanism::joint::{DriveLimit, Joint, JointKind, MotionLimit};
 use crate::mechanism::{HOME_COORDINATES, OrientationCoordinates};
 use crate::numeric::Quantity;
@@ -99,9 +100,7 @@ fn joint() -> Value {
                        motion, cylindrical a rotation and a translation along one axis, universal rotations \
                        about two axes, spherical every rotation.";
     let mut named = name("The joint's name, unique in the mechanism.");
-    let prefixes = PREFIXES.map(|prefix| prefix.replace('.', r"\.")).join("|");
-    named["not"] =
-        json!({ "anyOf": [{ "enum": RESERVED }, { "pattern": format!("^({prefixes})") }] });
+    named["not"] = json!({ "enum": RESERVED });
     let properties = [
         ("name", named),
         ("type", json!({ "description": description, "enum": types })),

@@ -225,8 +225,6 @@ fn joints() {
         ("point = [10, 20, 30]\n", "", "[platform]", "`point` is missing"),
         ("name = \"r1\"", "name = \"x\"", "name = \"x\"", "\"x\" is the name of a task coordinate"),
         ("name = \"r1\"", "name = \"mode\"", "name = \"mode\"", "or a column of tables, expected"),
-        ("name = \"r1\"", "name = \"t\"", "name = \"t\"", "or a column of tables, expected"),
-        ("name = \"r1\"", "name = \"dd.S1\"", "name = \"dd.S1\"", "\"dd.S1\" begins with \"dd.\""),
         (
             "name = \"r1\"",
             "name = \"tau.left\"",
@@ -240,17 +238,6 @@ fn joints() {
         assert!(problem.message.contains(message), "{message:?} in {problem}");
         let line = text[..text.find(mark).unwrap()].matches('\n').count() + 1;
         assert_eq!(problem.line, line, "{problem}");
-    }
-}
-
-/// The coordinates of a joint are columns, too.
-#[test]
-fn coordinates_named_like_columns() {
-    let errors = problems(&JOINTS.replacen("name = \"c1\"", "name = \"d\"", 1));
-    let expected = ["\"d.angle\" begins with \"d.\"", "\"d.slide\" begins with \"d.\""];
-    assert_eq!(errors.problems.len(), expected.len(), "{errors}");
-    for (problem, message) in errors.problems.iter().zip(expected) {
-        assert!(problem.message.contains(message), "{problem}");
     }
 }
 

@@ -1,0 +1,39 @@
+//! Columns of tables that opm writes beside the time, the pose and the joints.
+
+/// What is said of a row, and the indices of a pose.
+const NAMES: &[&str] = &[
+    "row",
+    "assembly",
+    "reachable",
+    "within_limits",
+    "valid",
+    "mode",
+    "branch",
+    "balance",
+    "condition",
+    "inverse_condition",
+    "aspect",
+    "share",
+    "iti",
+    "oti",
+    "lti",
+    "oci",
+    "effort_per_force",
+    "effort_per_moment",
+    "effort",
+    "effort_share",
+    "payload",
+    "payload_moment",
+    "payload_ball",
+    "stiffness",
+    "rotational_stiffness",
+    "clearance",
+];
+
+/// What is before the name of a joint or a coordinate in the column of its rate, acceleration or effort.
+const PREFIXES: [&str; 3] = ["d.", "dd.", "effort."];
+
+/// Whether a name is that of such a column.
+pub(super) fn is_column(name: &str) -> bool {
+    NAMES.contains(&name) || PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+}
