@@ -184,7 +184,9 @@ fn joints_of_a_pose_lead_back_to_it() {
 #[test]
 fn buffers_are_used_again() {
     let mut rng = Rng::with_seed(12);
-    for name in ["plano-spherical-5dof", "planar-3rrr", "agile-eye", "five-bar", "orbita"] {
+    let planes = ["planar-3rrr", "five-bar", "schoenflies-4dof", "schoenflies-lift-4dof"];
+    let others = ["plano-spherical-5dof", "double-spherical-5dof", "agile-eye", "orbita"];
+    for name in planes.into_iter().chain(others) {
         let m = example(name);
         let mut buffer = m.forward_buffer();
         let (mut found, mut none) = (0, 0);

@@ -114,6 +114,7 @@ pub struct Assemblies {
 }
 
 /// Working memory of [`Manipulator::forward_into`]; made by [`Manipulator::forward_buffer`]. See the example there.
+#[derive(Clone, Debug)]
 pub struct ForwardBuffer {
     /// The displacements of the actuated joints from home, radians and metres.
     displacements: Vec<f64>,

@@ -102,6 +102,7 @@ impl Manipulator {
 }
 
 /// The assemblies that were accepted so far, and what is known of the others.
+#[derive(Clone, Debug)]
 pub(super) struct Outcome {
     pub assemblies: Assemblies,
     /// Former assemblies, whose memory is used again.

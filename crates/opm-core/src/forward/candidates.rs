@@ -11,6 +11,7 @@ use nalgebra::Isometry3;
 use std::f64::consts::{PI, TAU};
 
 /// The candidates that the search has found, one row for each working mode of a pose.
+#[derive(Clone, Debug)]
 pub(super) struct Candidates {
     /// The independent task coordinates, row after row, metres and radians.
     poses: Vec<f64>,
@@ -152,7 +153,8 @@ impl Candidates {
         (place, solved)
     }
 
-    /// Whether another row is the same solution as one, near a singularity, and better: it has a smaller error.
+    /// Whether another row is the same solution as one, near a singularity, and is preferred: its error is smaller, or it
+    /// was found before.
     fn has_better(&self, manipulator: &Manipulator, row: usize) -> bool {
         let of_pose = |other: &usize| self.numbers[*other] == self.numbers[row];
         let better = |&other: &usize| (self.errors[other], other) < (self.errors[row], row);
@@ -304,9 +306,11 @@ impl Search<'_> {
         candidates.measure(m, held.displacements);
         candidates.close(m, held.displacements);
         outcome.assemblies.list.reserve(candidates.modes.len());
+        // Dependent coordinates are found again from the others, which loses digits near a singularity.
+        let most = if m.dependent.is_some() { APART } else { MATCH };
         for row in 0..candidates.modes.len() {
             let error = candidates.errors[row];
-            if error > MATCH {
+            if error > most {
                 outcome.reject(error);
             } else if !candidates.has_better(m, row) {
                 let (place, solved) = candidates.row(m, row);

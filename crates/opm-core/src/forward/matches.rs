@@ -1,4 +1,4 @@
-//! The choices with which a leg closes at a candidate, its actuated joints at the given values.
+//! The choices with which a leg may close at a candidate, its actuated joints at the given values.
 //!
 //! A leg's lower section depends on the candidate by `v · exp(I τ)` alone. The search has solved for both, and finds
 //! many candidates `b` for them: the lower section is solved once for all of these.
@@ -19,6 +19,7 @@ use nalgebra::Complex;
 const ROUNDING: f64 = 1e-13;
 
 /// The choices with which a leg closes.
+#[derive(Clone, Debug)]
 pub(super) struct Matches {
     /// Each as a mode with plus for all other choices.
     pub list: Vec<Mode>,
@@ -44,6 +45,7 @@ impl Matches {
 }
 
 /// The solutions of a leg's lower section at some `v` and τ that have the given values of its actuated joints.
+#[derive(Clone, Debug)]
 pub(super) struct LowerSection {
     v: Displacement,
     /// Where the section has the imaginary joint, it gives τ.
@@ -71,11 +73,12 @@ impl LowerSection {
 }
 
 /// What is known of a leg at all candidates with one `v` and one τ of each leg.
+#[derive(Clone, Debug)]
 pub(super) enum KnownLeg {
     /// It closes with these choices at each.
     Closed([Option<Mode>; 2]),
-    /// Its upper section closes with this rotation of its first joint, τ, on one branch. It then has these choices, and
-    /// another one, if that is the branch minus.
+    /// Its upper section closes with this rotation of its first joint, τ, on one branch. `plus` are the choices of the lower
+    /// section; `minus` is added to each where the upper section is on the branch minus.
     Rotated { tau: Complex<f64>, plus: [Option<Mode>; 2], minus: Mode },
     /// Nothing.
     Open,
@@ -121,8 +124,9 @@ impl Search<'_> {
         }
     }
 
-    /// Finds the choices with which a leg closes at a candidate. Whether a passive upper section without a choice reaches
-    /// that is not tested.
+    /// Finds the choices with which a leg closes at a candidate. What a leg is known to close with is not tested any
+    /// further: not for the reach of its upper section, nor for actuated joints of that section, nor for its lift. That is
+    /// left to [`Search::check_candidates`].
     #[inline(always)]
     pub(super) fn match_leg(
         &mut self,

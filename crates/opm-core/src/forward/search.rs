@@ -26,6 +26,7 @@ pub(super) struct Search<'a> {
 }
 
 /// The memory of a search, which the next one uses again.
+#[derive(Clone, Debug)]
 pub(super) struct Memory {
     /// The displacements of the actuated joints as unit complex numbers `e(angle)`.
     pub directions: Vec<Complex<f64>>,

@@ -21,7 +21,7 @@ use super::{Manipulator, Mode};
 pub(crate) use block::Block;
 pub(in crate::manipulator) use block::SolveSection;
 use block::{Status, columns_of};
-use lanes::{BranchesOfLeg, LANES, vectors};
+use lanes::{BranchesOfLeg, LANES};
 use pulp::{Arch, Simd, WithSimd};
 pub use rows::{RowArcs, RowEnds, SheetRows};
 
@@ -238,7 +238,7 @@ impl Manipulator {
                 self.complete_block(mode, arch, block);
             }
             // Angles are computed for two halves at a time.
-            block.lanes = vectors(rows.next_multiple_of(16));
+            block.lanes = rows.next_multiple_of(16);
             block.displace(self, arch);
             let of_rows = modes.from(first);
             arch.dispatch(Solve { manipulator: self, modes: of_rows, arch, block, out });

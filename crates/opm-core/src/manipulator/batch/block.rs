@@ -29,7 +29,7 @@ pub struct Block {
     pub pose: Vec<Column>,
     pub v: Displacements,
     pub b: Displacements,
-    /// The number of lanes that are computed; the others are not valid.
+    /// The number of lanes for which chains are solved; the results of the others are not valid.
     pub lanes: usize,
     /// The number of lanes for which the upper section is computed: one if all poses have its coordinates in common
     /// ([`Block::displace`] finds out), otherwise [`Block::lanes`].
