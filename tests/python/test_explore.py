@@ -1037,6 +1037,9 @@ ASK = """async (requests) => {
 }"""
 
 
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
 def same(one, other, place=""):
     """Whether two answers are equal; numbers but for rounding, which other compilers of functions such as the sine do elsewhere."""
     assert type(one) is type(other) or {type(one), type(other)} <= {int, float}, place
@@ -1053,6 +1056,10 @@ def same(one, other, place=""):
     elif place.endswith(".nearest"):
         # Of two pairs that are equally near, rounding decides which is named.
         assert distance(one) == distance(other), place
+    elif isinstance(one, str):
+        # So are the numbers of a file.
+        assert NUMBER.split(one) == NUMBER.split(other), place
+        same(*[[float(number) for number in NUMBER.findall(text)] for text in (one, other)], place)
     else:
         assert one == other, place
 
