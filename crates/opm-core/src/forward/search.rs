@@ -66,7 +66,7 @@ impl Memory {
         }
     }
 
-    /// Forgets all but the room.
+    /// Forgets the last search. What it has allocated stays.
     fn clear(&mut self) {
         self.taus.fill(None);
         self.lowers.fill_with(|| [LowerSection::new(), LowerSection::new()]);

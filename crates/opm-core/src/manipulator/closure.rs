@@ -21,6 +21,7 @@ pub struct Closure {
     pub size: f64,
     /// The rounding of a residual. Products of exponentials lose more digits, the farther away the axes are from the origin.
     pub rounding: f64,
+    /// The instructions for one set of joint values, and those for many.
     arch: FourWide,
     arch_of_many: Arch,
 }
