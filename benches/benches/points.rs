@@ -1,10 +1,11 @@
 //! Points of a sweep, recorded by the program, against what compressing and copying the same bytes takes: a large grid,
-//! then the grid that is fitted to each shipped mechanism.
+//! then for each shipped mechanism the grid that is fitted to it and a denser one.
 
-use opm_benches::{Contender, compare, program};
+use opm_benches::{Contender, Timing, compare, program};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_mcap::workspace::{CHUNK_BYTES, OVERVIEW_TOPIC, SLICES_TOPIC};
 use opm_mcap::{COMPRESSION_LEVEL, ReadError, read};
+use opm_workspace::Axis;
 use serde_json::Value;
 use std::fs;
 use std::hint::black_box;
@@ -25,6 +26,10 @@ fn main() {
     println!();
     shipped(&mcap);
 }
+
+/// The least number of points of a denser grid: of fewer, the start of the program and the overview, which has all of them
+/// once more, take a large part of the time.
+const MANY: u64 = 10_000_000;
 
 /// A run of the program.
 struct Run<'a> {
@@ -47,15 +52,35 @@ impl Run<'_> {
         assert!(status.expect("the program starts").success());
     }
 
-    /// The grid that the program fits.
-    fn fitted(&self) -> Option<Vec<String>> {
+    /// What the program answers: the grid, fitted if there is none, and how many of its poses are in reach.
+    fn answer(&self) -> Option<(Vec<Axis>, u64)> {
         let output = self.command("1").args(["--format", "json"]).output().expect("it starts");
         let answer: Value = serde_json::from_slice(&output.stdout).ok()?;
         let axis = |(name, axis): (&String, &Value)| {
-            format!("{name}={}:{}:{}", axis["min"], axis["max"], axis["count"])
+            let [min, max] = ["min", "max"].map(|end| axis[end].as_f64());
+            Some(Axis::new(name.clone(), min?, max?, axis["count"].as_u64()?))
         };
-        Some(answer["grid"].as_object()?.iter().map(axis).collect())
+        let axes = answer["grid"].as_object()?.iter().map(axis).collect::<Option<_>>()?;
+        Some((axes, answer["reachable"].as_u64()?))
     }
+}
+
+/// The flags for a grid.
+fn flags(axes: &[Axis]) -> Vec<String> {
+    let flag = |Axis { name, min, max, count }: &Axis| format!("{name}={min}:{max}:{count}");
+    axes.iter().map(flag).collect()
+}
+
+/// The grid with more values of one coordinate after the other, until there are [`MANY`] points.
+fn denser(mechanism: &str, mut axes: Vec<Axis>) -> Vec<Axis> {
+    for number in (0..axes.len()).cycle() {
+        let answer = Run { mechanism, grid: &flags(&axes) }.answer();
+        if answer.is_some_and(|(_, points)| points >= MANY) {
+            break;
+        }
+        axes[number].count *= 2;
+    }
+    axes
 }
 
 /// What is in a recording: an overview, then all points.
@@ -123,30 +148,38 @@ fn large(mcap: &str, ply: &str) {
     );
 }
 
-/// Every shipped mechanism that has a workspace, on the grid that is fitted to it.
+/// Every shipped mechanism that has a workspace, on the grid that is fitted to it and on a denser one.
 fn shipped(mcap: &str) {
     println!(
-        "| points of the fitted grid, one thread | points | million points a second | only counted, of \
-         its time | compressed by zstd alone, of its time |"
+        "| points, one thread | fitted grid | million points a second | denser grid | million points a \
+         second | only counted, of its time | compressed by zstd alone, of its time |"
     );
-    println!("|---|---:|---:|---:|---:|");
+    println!("|---|---:|---:|---:|---:|---:|---:|");
     for mechanism in EXAMPLES.iter().map(|example| example.name) {
-        let Some(grid) = (Run { mechanism, grid: &[] }).fitted() else { continue };
-        let run = Run { mechanism, grid: &grid };
-        run.perform("2", Some(mcap));
-        let content = Content::of(mcap);
-        let points = content.points;
-        let timings = compare(vec![
-            Contender::new("recorded", points, || run.perform("1", Some(mcap))),
-            Contender::new("counted", points, || run.perform("1", None)),
-            Contender::new("compressed", points, content.compressed()),
-        ]);
-        let [recorded, counted, compressed] = &timings[..] else { unreachable!("three timings") };
+        let Some((fitted, _)) = (Run { mechanism, grid: &[] }).answer() else { continue };
+        let (few, [recorded, ..]) = recorded(mcap, &Run { mechanism, grid: &flags(&fitted) });
+        let denser = denser(mechanism, fitted);
+        let (many, of_denser) = self::recorded(mcap, &Run { mechanism, grid: &flags(&denser) });
+        let [of_many, counted, compressed] = of_denser;
         println!(
-            "| {mechanism} | {points} | {:.1} | {:.2} | {:.2} |",
+            "| {mechanism} | {few} | {:.1} | {many} | {:.1} | {:.2} | {:.2} |",
             1e-6 / recorded.seconds,
+            1e-6 / of_many.seconds,
             counted.ratio,
             compressed.ratio
         );
     }
+}
+
+/// The number of points, and the times to record them, to count them alone, and to compress their bytes alone.
+fn recorded(mcap: &str, run: &Run<'_>) -> (u64, [Timing; 3]) {
+    run.perform("2", Some(mcap));
+    let content = Content::of(mcap);
+    let points = content.points;
+    let timings = compare(vec![
+        Contender::new("recorded", points, || run.perform("1", Some(mcap))),
+        Contender::new("counted", points, || run.perform("1", None)),
+        Contender::new("compressed", points, content.compressed()),
+    ]);
+    (points, timings.try_into().expect("three timings"))
 }

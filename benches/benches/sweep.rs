@@ -14,6 +14,7 @@ use opm_core::manipulator::{ActuatedJoints, LegBranch, Manipulator};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
 use rayon::ThreadPool;
+use std::time::{Duration, Instant};
 
 /// The names in the tables, and what the script does.
 const PEERS: &[(&str, &str)] = &[
@@ -53,12 +54,14 @@ fn main() {
     table_of_mechanisms(&pools);
 }
 
-/// Every shipped mechanism with a workspace, on the grid that is fitted to it; and orientations at one place of the first one, each a slice of its own.
+/// Every shipped mechanism with a workspace, on the grid that is fitted to it and on a denser one; and orientations at one
+/// place of the first one, each a slice of its own.
 fn table_of_mechanisms(pools: &[ThreadPool; 2]) {
     println!(
-        "| fitted grid | poses | poses a row | million a second, one thread | two threads for one |"
+        "| fitted grid | poses | poses a row | million a second, one thread | denser grid, million poses | \
+         million a second, one thread | two threads for one |"
     );
-    println!("|---|---:|---:|---:|---:|");
+    println!("|---|---:|---:|---:|---:|---:|---:|");
     for name in EXAMPLES.iter().map(|example| example.name) {
         let Ok(manipulator) = Manipulator::example(name) else { continue };
         let modes = Modes::One(manipulator.home_mode());
@@ -72,18 +75,44 @@ fn table_of_mechanisms(pools: &[ThreadPool; 2]) {
 }
 
 fn row_of_mechanism(name: &str, manipulator: &Manipulator, grid: &Grid, pools: &[ThreadPool; 2]) {
-    let expected = by_rows(manipulator, grid, &pools[0]);
-    let each = pools
-        .each_ref()
-        .map(|pool| contender("rows", grid, expected, move || by_rows(manipulator, grid, pool)));
-    let timings = compare(each.into());
+    let timings = |grid: &Grid, pools: &[ThreadPool]| {
+        let expected = by_rows(manipulator, grid, &pools[0]);
+        let each = pools.iter().map(|pool| {
+            contender("rows", grid, expected, move || by_rows(manipulator, grid, pool))
+        });
+        compare(each.collect())
+    };
+    let fitted = timings(grid, &pools[..1]);
+    let denser = denser(manipulator, grid, &pools[0]);
+    let of_denser = timings(&denser, pools);
     println!(
-        "| {name} | {} | {} | {:.1} | {:.2} |",
+        "| {name} | {} | {} | {:.1} | {:.0} | {:.1} | {:.2} |",
         grid.poses(),
         grid.row(),
-        1e-6 / timings[0].seconds,
-        timings[1].ratio.recip(),
+        1e-6 / fitted[0].seconds,
+        1e-6 * denser.poses() as f64,
+        1e-6 / of_denser[0].seconds,
+        of_denser[1].ratio.recip(),
     );
+}
+
+/// The grid with more values of one coordinate after the other, until a sweep takes so long that starting threads does not
+/// matter.
+fn denser(manipulator: &Manipulator, grid: &Grid, pool: &ThreadPool) -> Grid {
+    const LONG: Duration = Duration::from_millis(50);
+    let mut axes = grid.axes().to_vec();
+    for number in (0..axes.len()).cycle() {
+        let grid = Grid::new(manipulator, axes.clone()).expect("a grid");
+        let start = Instant::now();
+        by_rows(manipulator, &grid, pool);
+        if start.elapsed() >= LONG {
+            return grid;
+        }
+        if axes[number].count > 1 {
+            axes[number].count *= 2;
+        }
+    }
+    unreachable!("a manipulator has coordinates")
 }
 
 fn by_rows(manipulator: &Manipulator, grid: &Grid, pool: &ThreadPool) -> u64 {

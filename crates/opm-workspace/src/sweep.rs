@@ -35,12 +35,13 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use worker::{Ranges, Visitor, Worker};
 
-/// Poses of a row that are decided together, of which a block has room for several.
-const SEGMENT: u64 = 1024;
-
 /// Poses of a block, the unit of work. It takes some 0.1 ms, so that threads share evenly and a request
 /// to stop is heard at once.
 const BLOCK: u64 = 1 << 15;
+
+/// Most poses of a row that are decided at once. Rows that are not longer are decided many at once, which takes a small
+/// part of the time.
+const SEGMENT: u64 = BLOCK;
 
 /// The working modes in which a pose counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 use super::clear::{ClearPoses, Tile};
 use super::runs::{self, Run};
 use super::worker::{Ranges, Visitor};
-use super::{BLOCK, Count, Hits, Modes, SEGMENT, Sweep};
+use super::{BLOCK, Count, Hits, Modes, Sweep};
 use crate::condition::Conditioned;
 use crate::grid::Sections;
 use opm_core::manipulator::{Batch, Manipulator};
@@ -13,6 +13,9 @@ use std::ops::Range;
 /// The most poses of a slice that are decided together with those of other slices. With more of them, it is faster to make a
 /// slice ready, and to find the ends of what its rows reach.
 const FEW: u64 = 8;
+
+/// Most poses that are decided together, which are kept with their coordinates.
+const MOST: u64 = 1024;
 
 /// A thread's working memory for poses that are decided together.
 pub struct Together<'a> {
@@ -163,15 +166,15 @@ impl<'a> Together<'a> {
         }
     }
 
-    /// The number of the first of some poses that are decided together: those of some rows or of a segment of one; as many
+    /// The number of the first of some poses that are decided together: those of some rows or of a part of one; as many
     /// as make a tile, if there is a clearance.
     fn at_once(&self, sweep: &Sweep<'_>, numbers: Range<u64>) -> u64 {
         let count = numbers.end - numbers.start;
         if self.clear.is_none() {
             let of_row = sweep.grid.row();
-            let most = SEGMENT - SEGMENT % of_row;
+            let most = MOST - MOST % of_row;
             let rest = of_row - numbers.start % of_row;
-            return count.min(if most > 0 { most } else { rest.min(SEGMENT) });
+            return count.min(if most > 0 { most } else { rest.min(MOST) });
         }
         let [along, across] = self.counts(sweep);
         let (pose, tile) = (numbers.start, along * across);
