@@ -175,12 +175,12 @@ fn random_mechanisms() {
     );
 }
 
-/// Where coordinates depend on others, what is decided together are the poses out of reach.
+/// Where coordinates depend on others, all poses are decided together in one mode; in any, those that are out of reach.
 #[test]
 fn constrained_mechanisms() {
     let mut rng = Rng::with_seed(33);
     let mut compared = Compared::default();
-    for (round, lacks) in (0..10).zip(LACKS.into_iter().cycle()) {
+    for (round, lacks) in (0..20).zip(LACKS.into_iter().cycle()) {
         for pair in PAIRS {
             let options = Options { limited: 0.2, balls: round % 3 != 0 };
             let drawn = constrained(&mut rng, pair, lacks, round % 4 == 3, options);
@@ -195,9 +195,14 @@ fn constrained_mechanisms() {
             }
         }
     }
-    let Compared { poses, refused, together, .. } = compared;
-    println!("{poses} poses, {together} together");
-    assert!(refused > 3_000, "{refused}");
+    let Compared { poses, admitted, refused, together, singular } = compared;
+    println!(
+        "{poses} poses, {together} together: {admitted} admitted, {refused} refused, {singular} singular"
+    );
+    assert!(
+        admitted > 1_000 && refused > 3_000 && singular > 100,
+        "{admitted} {refused} {singular}"
+    );
 }
 
 #[test]

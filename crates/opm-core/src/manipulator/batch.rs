@@ -292,7 +292,7 @@ impl Manipulator {
     }
 
     /// Finds the dependent coordinates of the poses of a block in a mode.
-    fn complete_block(&self, mode: Mode, arch: Arch, block: &mut Block) {
+    pub(crate) fn complete_block(&self, mode: Mode, arch: Arch, block: &mut Block) {
         if let Some(dependent) = &self.dependent {
             Complete { manipulator: self, dependent, mode, arch }.run(block);
         }

@@ -14,9 +14,10 @@ use crate::chain::Chain;
 use crate::manipulator::batch::Batch;
 use crate::manipulator::batch::lanes::{Column, LANES, Mask};
 use crate::manipulator::{Choices, LARGEST, Manipulator, Mode};
-use leg::{BranchRows, LegRows};
+use leg::{BranchRows, LegRows, RowJoint, locked};
 use platform::PlatformColumns;
 use pulp::{Simd, WithSimd};
+use std::ops::Range;
 
 /// The number of lanes whose singular values are computed together. Their matrices fit into the fastest memory.
 const CHUNK: usize = 16;
@@ -53,6 +54,8 @@ struct Work {
     leg: LegRows,
     /// The leg of each actuated joint, and the number of its row there.
     places: Vec<(usize, usize)>,
+    /// The same for the joints that constraining legs lack.
+    locked: Vec<(usize, usize)>,
     /// The branches of every leg that reach any pose of the block within the leg's limits.
     branches: Vec<Vec<BranchRows>>,
     /// The number of those of each leg that are of the present block.
@@ -79,20 +82,24 @@ impl Manipulator {
                 .iter()
                 .any(|section| matches!(section.chain, Chain::Ball(_)) && section.driven)
         });
-        let place = |&coordinate: &usize| {
-            (0..self.legs.len()).find_map(|leg| {
+        let place = |joint: RowJoint, mut legs: Range<usize>| {
+            legs.find_map(|leg| {
                 let rows = BranchRows::new(self, leg).rows;
-                Some((leg, rows.iter().position(|row| row.coordinate == coordinate)?))
+                Some((leg, rows.iter().position(|row| row.joint == joint)?))
             })
         };
+        let actuated = self.actuated().iter().map(|&coordinate| RowJoint::Actuated(coordinate));
         ConditionBatch {
             batch: self.batch(),
             work: Box::new(Work {
-                applies: self.decides_many() && self.dependent.is_none() && !drives_ball,
+                applies: self.decides_many() && !drives_ball,
                 leg: LegRows::new(self, &basis),
                 basis,
                 platform: PlatformColumns::new(freedoms),
-                places: self.actuated().iter().filter_map(place).collect(),
+                places: actuated.filter_map(|joint| place(joint, 0..self.legs.len())).collect(),
+                locked: locked(self)
+                    .filter_map(|(leg, joint)| place(joint, leg..leg + 1))
+                    .collect(),
                 branches: vec![Vec::new(); self.legs.len()],
                 counts: vec![0; self.legs.len()],
                 choice: vec![0; self.legs.len()],
@@ -123,7 +130,8 @@ impl Manipulator {
     ) -> u64 {
         let count = conditions.len();
         let ConditionBatch { batch, work } = batch;
-        if !work.applies {
+        // Each mode has dependent coordinates of its own.
+        if !work.applies || self.dependent.is_some() && query.mode.is_none() {
             return self.leave_reached(poses, query.mode, batch, conditions);
         }
         if count == 0 {
@@ -131,6 +139,9 @@ impl Manipulator {
         }
         let arch = batch.arch;
         batch.block.take(self, poses, arch);
+        if let Some(mode) = query.mode {
+            self.complete_block(mode, arch, &mut batch.block);
+        }
         batch.block.displace(self, arch);
         arch.dispatch(Conditions { manipulator: self, query, count, batch, work });
         conditions.copy_from_slice(&work.conditions[..count]);
@@ -211,7 +222,10 @@ impl Conditions<'_> {
                 *open |= u64::from(!fits);
             }
         }
-        let lifted = block.status.within_limits;
+        let mut possible = block.status.within_limits;
+        for (possible, beyond) in possible.iter_mut().zip(&block.status.beyond) {
+            *possible &= beyond ^ 1;
+        }
         work.platform.find(manipulator, &work.basis, block);
         work.leg.begin(manipulator, &work.basis, block);
         let mut all = true;
@@ -221,7 +235,7 @@ impl Conditions<'_> {
                 block.reach(manipulator, number, branches, arch);
                 let mut reaches = block.status.reaches(&mut work.open);
                 for lane in 0..LANES {
-                    reaches[lane] &= lifted[lane];
+                    reaches[lane] &= possible[lane];
                 }
                 if reaches.iter().all(|&reaches| reaches == 0) {
                     continue;
@@ -256,7 +270,11 @@ impl Conditions<'_> {
             loop {
                 let (mask, any) = self.asked(start);
                 if any {
-                    let found = self.conditions::<N>(metric, start);
+                    // Without joints that legs lack, every loop has a constant length.
+                    let found = match self.work.locked.is_empty() {
+                        true => self.conditions::<N>(metric, start, &[]),
+                        false => self.restricted::<N>(metric, start),
+                    };
                     self.admit(start, &mask, &found);
                 }
                 if !self.work.choose_next() {
@@ -283,20 +301,36 @@ impl Conditions<'_> {
         (mask, mask.iter().any(|&mask| mask != 0))
     }
 
-    /// The condition numbers of a chunk in the present mode.
+    /// The condition numbers of a chunk in the present mode, where constraining legs lack joints.
+    // Inlined, it would be compiled for every set of instructions.
+    #[inline(never)]
+    fn restricted<const N: usize>(&self, metric: &Metric<N, CHUNK>, start: usize) -> [f64; CHUNK] {
+        self.conditions::<N>(metric, start, &self.work.locked)
+    }
+
+    /// The condition numbers of a chunk in the present mode. Of the joints that constraining legs lack, the legs and the
+    /// numbers of their rows are given.
     #[inline(always)]
-    fn conditions<const N: usize>(&self, metric: &Metric<N, CHUNK>, start: usize) -> [f64; CHUNK] {
+    fn conditions<const N: usize>(
+        &self,
+        metric: &Metric<N, CHUNK>,
+        start: usize,
+        locked: &[(usize, usize)],
+    ) -> [f64; CHUNK] {
         let Work { branches, choice, places, .. } = &*self.work;
-        let mut weighted = Weighted::new(metric);
-        for (&coordinate, &(leg, row)) in self.manipulator.actuated().iter().zip(places) {
+        let rates_of = |&(leg, row): &(usize, usize)| {
             let found = &branches[leg][choice[leg]].rows[row].rates;
             let mut rates = [[0.0; CHUNK]; N];
             for (rates, found) in rates.iter_mut().zip(found) {
                 rates.copy_from_slice(&found[start..start + CHUNK]);
             }
-            weighted.push(rates, self.manipulator.coordinates()[coordinate].quantity);
+            rates
+        };
+        let mut weighted = Weighted::new(metric);
+        for (&coordinate, place) in self.manipulator.actuated().iter().zip(places) {
+            weighted.push(rates_of(place), self.manipulator.coordinates()[coordinate].quantity);
         }
-        let found = weighted.conditioning(std::iter::empty());
+        let found = weighted.conditioning(locked.iter().map(rates_of));
         let mut serial = [0; CHUNK];
         for (of_leg, &choice) in branches.iter().zip(choice) {
             for (i, serial) in serial.iter_mut().enumerate() {

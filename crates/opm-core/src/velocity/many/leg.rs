@@ -4,6 +4,7 @@
 
 use super::platform::{VectorColumns, fill, store, vector};
 use crate::chain::Chain;
+use crate::chain::partial::PartialChain;
 use crate::group::{
     LocalTwist, Planar, PlanarDisplacement, Spherical, Subgroup, SubspaceKind, rotated,
 };
@@ -17,11 +18,19 @@ use crate::velocity::SINGULAR;
 use crate::velocity::jacobian::Basis;
 use nalgebra::Complex;
 
-/// The rates of one actuated joint, for each component of the section twist.
+/// A joint of which the rates are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowJoint {
+    /// An actuated joint, by the number of its coordinate.
+    Actuated(usize),
+    /// A joint that a constraining leg lacks, by its section and its number there.
+    Locked(Section, usize),
+}
+
+/// The rates of one joint, for each component of the section twist.
 #[derive(Clone, Debug)]
 pub struct JointRow {
-    /// The number of its joint coordinate.
-    pub coordinate: usize,
+    pub joint: RowJoint,
     pub rates: Vec<Column>,
 }
 
@@ -32,7 +41,7 @@ pub struct BranchRows {
     pub reaches: Mask,
     /// Whether a section's screws are dependent.
     pub serial: Mask,
-    /// The leg's actuated joints.
+    /// The leg's actuated joints, then those that it lacks.
     pub rows: Vec<JointRow>,
     /// The number of the leg's imaginary joint, and its values.
     pub imaginary: Option<(usize, Column)>,
@@ -42,13 +51,15 @@ impl BranchRows {
     /// Room for a leg's rows.
     pub fn new(manipulator: &Manipulator, leg: usize) -> Self {
         let compiled = &manipulator.legs[leg];
-        let freedoms = manipulator.task_coordinates().len();
+        let freedoms = manipulator.task().coordinates.len();
         let joints = compiled.lower.coordinates.iter().chain(&compiled.upper.coordinates).flatten();
         let joints = joints.chain(compiled.lift.iter().map(|lift| &lift.coordinate));
-        let rows = joints.filter(|joint| joint.actuated.is_some()).map(|joint| JointRow {
-            coordinate: joint.number,
-            rates: vec![[0.0; LANES]; freedoms],
-        });
+        let actuated = joints.filter(|joint| joint.actuated.is_some());
+        let actuated = actuated.map(|joint| RowJoint::Actuated(joint.number));
+        let locked = locked(manipulator).filter(|(of, _)| *of == leg).map(|(_, joint)| joint);
+        let rows = actuated
+            .chain(locked)
+            .map(|joint| JointRow { joint, rates: vec![[0.0; LANES]; freedoms] });
         Self {
             reaches: [0; LANES],
             serial: [0; LANES],
@@ -57,12 +68,19 @@ impl BranchRows {
         }
     }
 
-    /// The row of a joint coordinate, if it is actuated.
+    /// The row of a joint, if its rates are asked for.
     #[inline(always)]
-    fn row(&mut self, coordinate: usize) -> Option<&mut Vec<Column>> {
+    fn row(&mut self, joint: RowJoint) -> Option<&mut Vec<Column>> {
         let mut rows = self.rows.iter_mut();
-        rows.find(|row| row.coordinate == coordinate).map(|row| &mut row.rates)
+        rows.find(|row| row.joint == joint).map(|row| &mut row.rates)
     }
+}
+
+/// The joints that constraining legs lack, each with its leg: see [`Jacobians::locked`](crate::velocity::Jacobians::locked).
+pub fn locked(manipulator: &Manipulator) -> impl Iterator<Item = (usize, RowJoint)> + '_ {
+    let dependent = manipulator.dependent.iter();
+    let locked = dependent.flat_map(|dependent| dependent.locked(&manipulator.legs));
+    locked.map(|(leg, section, joint)| (leg, RowJoint::Locked(section, joint)))
 }
 
 /// The displaced screws of a section, and one over their determinant.
@@ -121,6 +139,22 @@ impl Screws {
                 fill(third, &s3);
             }
         }
+    }
+
+    /// Replaces the screws of the locked joints of a section that constrains the platform, and returns the unit of the
+    /// determinant: see [`PartialChain::complete`].
+    // Inlined, it would be compiled for every set of instructions.
+    #[inline(never)]
+    fn complete(&mut self, partial: &PartialChain, length: f64, lanes: usize) -> f64 {
+        let mut unit = 1.0;
+        for lane in 0..lanes.min(LANES) {
+            let mut screws = self.moved.each_ref().map(|screw| vector(screw, lane));
+            unit = partial.complete(&mut screws, length);
+            for joint in partial.locked_joints() {
+                store(&mut self.moved[joint], lane, screws[joint]);
+            }
+        }
+        unit
     }
 
     /// Computes the determinant, whose unit is `scale`, and marks the poses at which it counts as zero.
@@ -286,14 +320,20 @@ impl LegRows {
             // A spherical joint is never singular, and is not actuated here.
             if !matches!(section.chain, Chain::Ball(_)) {
                 screws.displace(kind, section, found, lanes);
-                screws.invert(section.scale, &mut out.serial, lanes);
+                let scale = match &section.partial {
+                    None => section.scale,
+                    Some(partial) => {
+                        screws.complete(partial, manipulator.characteristic_length(), lanes)
+                    }
+                };
+                screws.invert(scale, &mut out.serial, lanes);
             }
         }
         self.carry(manipulator, leg, block, upper_lanes);
         self.section_rows(leg, Section::Lower, out, LANES);
         self.section_rows(leg, Section::Upper, out, upper_lanes);
         if let Some(lift) = &leg.lift
-            && let Some(rates) = out.row(lift.coordinate.number)
+            && let Some(rates) = out.row(RowJoint::Actuated(lift.coordinate.number))
             && let Some(height) = rates.last_mut()
         {
             // It does not lean, so that nothing else changes the height.
@@ -351,7 +391,7 @@ impl LegRows {
         }
     }
 
-    /// Computes the rows of a section's actuated joints.
+    /// Computes the rows of a section's joints.
     #[inline(always)]
     fn section_rows(
         &mut self,
@@ -378,8 +418,11 @@ impl LegRows {
             (Section::Lower, Section::Lower) => (&self.moved_lower[..n_lower], None),
         };
         for (coordinate, joint) in leg.section(section).coordinates.iter().zip(0..) {
-            let Some(coordinate) = coordinate else { continue };
-            let Some(rates) = out.row(coordinate.number) else { continue };
+            let wanted = match coordinate {
+                Some(coordinate) => RowJoint::Actuated(coordinate.number),
+                None => RowJoint::Locked(section, joint),
+            };
+            let Some(rates) = out.row(wanted) else { continue };
             screws.reciprocal(joint, reciprocal, lanes);
             for (twist, rates) in own.iter().zip(&mut rates[start..]) {
                 for lane in 0..lanes.min(LANES) {
