@@ -5,7 +5,7 @@ use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_tests::by_inverse::{by_inverse, by_predicate};
 use opm_tests::random::{Options, PAIRS, mechanism};
-use opm_workspace::{Axis, Cancelled, Grid, Modes, PoseLimit, Progress, Sweep};
+use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, PoseLimit, Progress, Sweep};
 
 /// A grid about home with more values along the coordinates of the lower section, or with few of them, so that slices
 /// have few poses.
@@ -107,6 +107,37 @@ fn long_rows_are_no_exception() {
         }
     }
     assert!(partly > 20, "{partly} grids were reached in part");
+}
+
+/// A grid of a thousand million poses, whose blocks are larger, counts what its slices count, each swept by itself.
+#[test]
+fn large_grids_are_the_sum_of_their_slices() {
+    for (name, counts) in [
+        ("planar-3rrr", &[2_100, 2_100, 250][..]),
+        ("agile-eye", &[1_500, 1_500, 500]),
+        ("plano-spherical-5dof", &[300, 300, 24, 21, 25]),
+    ] {
+        let manipulator = Manipulator::example(name).unwrap();
+        let modes = Modes::One(manipulator.home_mode());
+        let axis = |(c, &count): (&opm_core::TaskCoordinate, &u64)| {
+            Axis::new(c.name, c.home - 0.4, c.home + 0.3, count)
+        };
+        let coordinates = manipulator.task_coordinates().iter().zip(counts);
+        let axes: Vec<Axis> = coordinates.map(axis).collect();
+        let count = |axes: Vec<Axis>| {
+            let grid = Grid::new(&manipulator, axes).unwrap();
+            Sweep::new(&manipulator, &grid, modes).count(&Progress::default()).unwrap()
+        };
+        let whole = count(axes.clone());
+        let (last, others) = axes.split_last().unwrap();
+        let slices = (0..last.count).map(|number| {
+            let at = Axis::fixed(last.name.clone(), last.value(number));
+            count([others, &[at]].concat())
+        });
+        let sum = slices.fold(Count::nothing(&manipulator), |sum, slice| sum.merge(&slice));
+        assert_eq!(whole, sum, "{name}");
+        assert!(sum.poses > 1_000_000_000 && sum.reachable > 1_000_000, "{name}: {sum:?}");
+    }
 }
 
 /// A sweep with a limit on the condition number finds exactly the poses that one call per pose

@@ -35,9 +35,15 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use worker::{Ranges, Visitor, Worker};
 
-/// Poses of a block, the unit of work. It takes some 0.1 ms, so that threads share evenly and a request
+/// Poses of a block, the unit of work. Most take some 0.1 ms, so that threads share evenly and a request
 /// to stop is heard at once.
 const BLOCK: u64 = 1 << 15;
+
+/// Large grids have about so many blocks, of up to [`LARGEST`] poses: what is done for each takes time, too.
+const BLOCKS: u64 = 1 << 12;
+
+/// Most poses of a block.
+const LARGEST: u64 = 1 << 18;
 
 /// Most poses of a row that are decided at once. Rows that are not longer are decided many at once, which takes a small
 /// part of the time.
@@ -191,7 +197,8 @@ impl<'a> Sweep<'a> {
         let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
         let segments = row.div_ceil(SEGMENT);
         // Small sheets are not divided: it takes some time to enter one.
-        let (stride, sheet) = ((BLOCK / row.min(SEGMENT)).max(1), side * segments);
+        let block = (grid.poses() / BLOCKS).clamp(BLOCK, LARGEST);
+        let (stride, sheet) = (block / row.min(SEGMENT), side * segments);
         let stride = if sheet <= stride { stride - stride % sheet } else { stride };
         let (limit, clearance, shard) = (None, None, Shard::WHOLE);
         Self { manipulator, grid, modes, limit, clearance, shard, segments, stride, side, sheets }
