@@ -1,7 +1,7 @@
 //! Points of a sweep, recorded by the program, against what compressing and copying the same bytes takes: a large grid,
 //! then for each shipped mechanism the grid that is fitted to it and a denser one.
 
-use opm_benches::{Contender, Timing, compare, program};
+use opm_benches::{Contender, Timing, compare, denser, program};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_mcap::workspace::{CHUNK_BYTES, OVERVIEW_TOPIC, SLICES_TOPIC};
 use opm_mcap::{COMPRESSION_LEVEL, ReadError, read};
@@ -69,18 +69,6 @@ impl Run<'_> {
 fn flags(axes: &[Axis]) -> Vec<String> {
     let flag = |Axis { name, min, max, count }: &Axis| format!("{name}={min}:{max}:{count}");
     axes.iter().map(flag).collect()
-}
-
-/// The grid with more values of one coordinate after the other, until there are [`MANY`] points.
-fn denser(mechanism: &str, mut axes: Vec<Axis>) -> Vec<Axis> {
-    for number in (0..axes.len()).cycle() {
-        let answer = Run { mechanism, grid: &flags(&axes) }.answer();
-        if answer.is_some_and(|(_, points)| points >= MANY) {
-            break;
-        }
-        axes[number].count *= 2;
-    }
-    axes
 }
 
 /// What is in a recording: an overview, then all points.
@@ -157,13 +145,17 @@ fn shipped(mcap: &str) {
     println!("|---|---:|---:|---:|---:|---:|---:|");
     for mechanism in EXAMPLES.iter().map(|example| example.name) {
         let Some((fitted, _)) = (Run { mechanism, grid: &[] }).answer() else { continue };
-        let (few, [recorded, ..]) = recorded(mcap, &Run { mechanism, grid: &flags(&fitted) });
-        let denser = denser(mechanism, fitted);
-        let (many, of_denser) = self::recorded(mcap, &Run { mechanism, grid: &flags(&denser) });
-        let [of_many, counted, compressed] = of_denser;
+        let (few, [of_few, ..]) = recorded(mcap, &Run { mechanism, grid: &flags(&fitted) });
+        let denser = denser(&fitted, |axes| {
+            let answer = Run { mechanism, grid: &flags(axes) }.answer();
+            answer.expect("as of the fitted grid").1 >= MANY
+        });
+        let grid = flags(&denser);
+        let (many, [of_many, counted, compressed]) =
+            recorded(mcap, &Run { mechanism, grid: &grid });
         println!(
             "| {mechanism} | {few} | {:.1} | {many} | {:.1} | {:.2} | {:.2} |",
-            1e-6 / recorded.seconds,
+            1e-6 / of_few.seconds,
             1e-6 / of_many.seconds,
             counted.ratio,
             compressed.ratio

@@ -6,7 +6,7 @@
 
 use opm_benches::peers::Peers;
 use opm_benches::{
-    Contender, Timing, compare, example, square_roots, sweep_grid, with_limits_on_links,
+    Contender, Timing, compare, denser, example, square_roots, sweep_grid, with_limits_on_links,
     with_limits_on_passive_angles,
 };
 use opm_core::chain::region::{Convex, Region};
@@ -24,6 +24,9 @@ const PEERS: &[(&str, &str)] = &[
     ("NumPy, factorised", "numpy-factorised"),
     ("NumPy, pose by pose", "numpy-per-pose"),
 ];
+
+/// The least time of a sweep of a denser grid, with which starting threads does not matter.
+const LONG: Duration = Duration::from_millis(50);
 
 fn main() {
     let pools = [1, 2].map(|threads| {
@@ -83,7 +86,13 @@ fn row_of_mechanism(name: &str, manipulator: &Manipulator, grid: &Grid, pools: &
         compare(each.collect())
     };
     let fitted = timings(grid, &pools[..1]);
-    let denser = denser(manipulator, grid, &pools[0]);
+    let denser = denser(grid.axes(), |axes| {
+        let grid = Grid::new(manipulator, axes.to_vec()).expect("a grid");
+        let start = Instant::now();
+        by_rows(manipulator, &grid, &pools[0]);
+        start.elapsed() >= LONG
+    });
+    let denser = Grid::new(manipulator, denser).expect("a grid");
     let of_denser = timings(&denser, pools);
     println!(
         "| {name} | {} | {} | {:.1} | {:.0} | {:.1} | {:.2} |",
@@ -94,25 +103,6 @@ fn row_of_mechanism(name: &str, manipulator: &Manipulator, grid: &Grid, pools: &
         1e-6 / of_denser[0].seconds,
         of_denser[1].ratio.recip(),
     );
-}
-
-/// The grid with more values of one coordinate after the other, until a sweep takes so long that starting threads does not
-/// matter.
-fn denser(manipulator: &Manipulator, grid: &Grid, pool: &ThreadPool) -> Grid {
-    const LONG: Duration = Duration::from_millis(50);
-    let mut axes = grid.axes().to_vec();
-    for number in (0..axes.len()).cycle() {
-        let grid = Grid::new(manipulator, axes.clone()).expect("a grid");
-        let start = Instant::now();
-        by_rows(manipulator, &grid, pool);
-        if start.elapsed() >= LONG {
-            return grid;
-        }
-        if axes[number].count > 1 {
-            axes[number].count *= 2;
-        }
-    }
-    unreachable!("a manipulator has coordinates")
 }
 
 fn by_rows(manipulator: &Manipulator, grid: &Grid, pool: &ThreadPool) -> u64 {

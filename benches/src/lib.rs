@@ -124,6 +124,23 @@ pub fn sweep_grid(manipulator: &Manipulator, [points, rows, orientations]: [u64;
     Grid::new(manipulator, axes).expect("a grid")
 }
 
+/// The axes of a grid with twice as many values of one coordinate after the other, until there are `enough`.
+///
+/// # Panics
+/// If no axis has several values.
+pub fn denser(axes: &[Axis], mut enough: impl FnMut(&[Axis]) -> bool) -> Vec<Axis> {
+    let varying: Vec<usize> = (0..axes.len()).filter(|&number| axes[number].count > 1).collect();
+    assert!(!varying.is_empty(), "some coordinate has several values");
+    let mut axes = axes.to_vec();
+    for number in varying.into_iter().cycle() {
+        if enough(&axes) {
+            break;
+        }
+        axes[number].count *= 2;
+    }
+    axes
+}
+
 /// Random poses of the 5-DoF manipulator that every leg reaches, as in a control loop.
 ///
 /// # Panics

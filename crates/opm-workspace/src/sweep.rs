@@ -35,18 +35,18 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use worker::{Ranges, Visitor, Worker};
 
-/// Poses of a block, the unit of work. Most take some 0.1 ms, so that threads share evenly and a request
-/// to stop is heard at once.
+/// Poses of a block, the unit of work, in all but large grids. There are enough blocks for threads to share evenly.
 const BLOCK: u64 = 1 << 15;
 
-/// Large grids have about so many blocks, of up to [`LARGEST`] poses: what is done for each takes time, too.
+/// Blocks of a large grid, unless they would be too large. In rows of thousands of poses a block of [`BLOCK`] poses takes less
+/// than a microsecond, and to count what is done takes as long.
 const BLOCKS: u64 = 1 << 12;
 
-/// Most poses of a block.
+/// Most poses of a block: a request to stop is heard after a block, which is a quarter of a second at a million poses a second.
 const LARGEST: u64 = 1 << 18;
 
-/// Most poses of a row that are decided at once. Rows that are not longer are decided many at once, which takes a small
-/// part of the time.
+/// Most poses of a segment. Longer rows are divided into segments, which are decided one at a time; of shorter rows, many are
+/// decided together, in a small part of the time.
 const SEGMENT: u64 = BLOCK;
 
 /// The working modes in which a pose counts.
@@ -196,8 +196,8 @@ impl<'a> Sweep<'a> {
         let side = lower.first().map_or(1, |axis| axis.count);
         let sheets = lower.iter().skip(1).map(|axis| axis.count).product();
         let segments = row.div_ceil(SEGMENT);
-        // Small sheets are not divided: it takes some time to enter one.
         let block = (grid.poses() / BLOCKS).clamp(BLOCK, LARGEST);
+        // Small sheets are not divided: it takes some time to enter one.
         let (stride, sheet) = (block / row.min(SEGMENT), side * segments);
         let stride = if sheet <= stride { stride - stride % sheet } else { stride };
         let (limit, clearance, shard) = (None, None, Shard::WHOLE);

@@ -46,7 +46,7 @@ pub fn joints(bytes: &mut Bytes<'_>) -> String {
     text
 }
 
-/// A joint of a subgroup: planar, spherical, cylindrical, translations of a plane, of space; now and then of none.
+/// A joint of a subgroup: planar, spherical, cylindrical, translations of a plane or of space; now and then of no subgroup.
 fn joint(
     bytes: &mut Bytes<'_>,
     section: u8,

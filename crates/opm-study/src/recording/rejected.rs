@@ -24,7 +24,7 @@ const COLORS: [[u8; 3]; 7] = [
 ];
 
 /// The colour of a numbered class of points: a cause that rejects them, or the aspect that they are in. Number 0 is
-/// for points of several classes or of none. Numbers 8 to 14 have the colours of 1 to 7, but darker; from 15 on, these 14
+/// for points that are in several classes, or in no class. Numbers 8 to 14 have the colours of 1 to 7, but darker; from 15 on, these 14
 /// colours are used again.
 pub fn class_color(number: usize) -> [u8; 3] {
     match number.checked_sub(1) {
