@@ -14,7 +14,7 @@ use opm_tests::by_inverse::by_inverse;
 use opm_tests::differences::derivatives;
 use opm_tests::random::{Kind, LACKS, Options, PAIRS, constrained};
 use opm_tests::structured::gap;
-use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sweep};
+use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, Progress, Sweep};
 use std::f64::consts::{PI, TAU};
 
 /// The bound on closure, as a share of the size of the mechanism and of its joint values: rounding.
@@ -418,22 +418,51 @@ fn large_sweeps_agree_with_the_inverse() {
         let grid = Grid::new(&m, axes.collect()).unwrap();
         let (mut all, mut solution) = (m.all_modes(), m.solution());
         for modes in [Modes::Any, Modes::One(m.home_mode())] {
-            let within = |number: &u64| {
-                let pose = grid.pose(*number);
-                match modes {
+            let mut expected = Count::nothing(&m);
+            let mut numbers = Vec::new();
+            for number in 0..grid.poses() {
+                let pose = grid.pose(number);
+                let mut used = vec![];
+                let within = match modes {
                     Modes::One(mode) => {
                         let found = m.inverse(&pose, mode, &mut solution).unwrap();
-                        found.is_some_and(Solution::within_limits)
+                        let found = found.filter(|found| found.within_limits());
+                        used.extend(found.iter().flat_map(|found| found.imaginary()));
+                        found.is_some()
                     }
                     Modes::Any => {
                         let found = m.inverse_all(&pose, &mut all).unwrap();
-                        found.is_some_and(|all| m.within_limits_in_any(all, |_, _| {}))
+                        let mut values = vec![vec![]; m.imaginary().len()];
+                        let mut note = |number: usize, value: f64| values[number].push(value);
+                        let within =
+                            found.is_some_and(|all| m.within_limits_in_any(all, &mut note));
+                        let count = values.iter().map(Vec::len).max().unwrap_or(0);
+                        // As many rows of values as the joint with the most has.
+                        for row in 0..count {
+                            used.extend(values.iter().map(|of| of[row.min(of.len() - 1)]));
+                        }
+                        within
+                    }
+                };
+                expected.poses += 1;
+                if within {
+                    expected.reachable += 1;
+                    numbers.push(number);
+                    for values in used.chunks(m.imaginary().len().max(1)) {
+                        let one = values.iter().map(|&value| Some([value; 2])).collect();
+                        let one = Count { poses: 0, reachable: 0, imaginary: one };
+                        expected = expected.merge(&one);
                     }
                 }
-            };
-            let expected = (0..grid.poses()).filter(within).count() as u64;
-            let found = Sweep::new(&m, &grid, modes).count(&Progress::default()).unwrap();
-            assert_eq!(found.reachable, expected, "round {round}: {pair:?} {lacks:?} {modes:?}");
+            }
+            let sweep = Sweep::new(&m, &grid, modes);
+            let (found, runs) = sweep.count_and_keep(usize::MAX, &Progress::default()).unwrap();
+            let name = format!("round {round}: {pair:?} {lacks:?} {modes:?}");
+            assert_eq!(found, expected, "{name}");
+            assert_eq!(sweep.count(&Progress::default()).unwrap(), expected, "{name}");
+            let runs = runs.unwrap();
+            assert!(runs.iter().flat_map(|run| run.from..run.to).eq(numbers), "{name}");
+            let expected = expected.reachable;
             poses += grid.poses();
             reached += expected;
             partly += u32::from(expected > 0 && expected < grid.poses());

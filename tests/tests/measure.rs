@@ -3,10 +3,11 @@
 
 use fastrand::Rng;
 use opm_core::manipulator::{LegBranch, Manipulator, Mode, Solution};
+use opm_core::mechanism::OrientationCoordinates;
 use opm_core::task::Task;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
-use opm_tests::random::{LEVEL, Options, PAIRS, mechanism};
+use opm_tests::random::{LACKS, LEVEL, Options, PAIRS, constrained, mechanism};
 use opm_workspace::measure::{
     CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
 };
@@ -25,6 +26,9 @@ fn measured(m: &Manipulator, domain: &Domain, modes: Modes, goal: Goal) -> Measu
 fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) -> bool {
     let mut ways: Vec<LegBranch> = Vec::new();
     let lower = m.task().lower_count;
+    if !m.dependent_coordinates().is_empty() {
+        return reached(m, mode, pose);
+    }
     if !m.lifts_straight() {
         let rise = match domain.sections() {
             Sections::Whole => return reached(m, mode, pose),
@@ -185,6 +189,51 @@ fn places_at_one_orientation_take_one_box() {
             let off = 2.0 / f64::from(STEPS);
             assert!((counted - found.fraction()).abs() < off, "{counted} {found:?}");
         }
+    }
+}
+
+/// Both arms of the five-bar reach a ring about their shoulder, in every working mode: the area that the rings have in common,
+/// by the areas that two discs have in common.
+#[test]
+fn the_rings_of_the_five_bar() {
+    let m = example("five-bar");
+    // The printed lengths: between the shoulders, from shoulder to elbow, from elbow to hand.
+    let (apart, inner, outer) = (0.320, 0.138, 0.307_f64);
+    let lens = |a: f64, b: f64| {
+        if apart <= (a - b).abs() {
+            return PI * a.min(b).powi(2);
+        }
+        let part = |a: f64, b: f64| {
+            let cosine = (apart * apart + a * a - b * b) / (2.0 * apart * a);
+            a * a * (cosine.acos() - cosine * (1.0 - cosine * cosine).sqrt())
+        };
+        part(a, b) + part(b, a)
+    };
+    let (least, most) = (outer - inner, outer + inner);
+    let area = lens(most, most) - 2.0 * lens(most, least) + lens(least, least);
+    let over = ["x", "y"].map(|name| CoordinateRange::new(name, -0.5, 0.47));
+    let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
+    let modes = m.modes().map(Modes::One).chain([Modes::Any]);
+    for modes in modes {
+        let goal = Goal { tolerance: 1e-3, ..Goal::default() };
+        let Measured { lower, upper, stop, boxes, .. } = measured(&m, &domain, modes, goal);
+        println!("{modes:?}: {boxes} boxes");
+        assert!(lower < area && area < upper, "{modes:?}: {lower} < {area} < {upper}");
+        assert_eq!(stop, Stop::Tolerance, "{modes:?}");
+    }
+}
+
+/// The platform of Sarrus' linkage is highest, and lowest, where the shorter pair of plates is in line.
+#[test]
+fn the_line_of_sarrus() {
+    let m = example("sarrus");
+    let length = 2.0 * (0.2 * 0.2 - 0.02 * 0.02_f64).sqrt();
+    let domain =
+        Domain::new(&m, Sections::Whole, &[CoordinateRange::new("y", -0.3, 0.25)]).unwrap();
+    for modes in [Modes::One(m.home_mode()), Modes::Any] {
+        let found = measured(&m, &domain, modes, Goal { tolerance: 1e-9, ..Goal::default() });
+        assert!(found.lower < length && length < found.upper, "{found:?}");
+        assert_eq!(found.stop, Stop::Tolerance);
     }
 }
 
@@ -376,6 +425,104 @@ fn boxes_are_never_contradicted() {
         }
     }
     println!("{all} boxes inside, {none} outside, {partly} in part; {draws} poses");
+}
+
+/// The same where coordinates are dependent, for every pair of subspaces and every number of freedoms that a leg lacks.
+#[test]
+fn boxes_of_constrained_mechanisms_are_never_contradicted() {
+    let mut rng = Rng::with_seed(35);
+    let (mut all, mut none, mut partly, mut draws) = (0, 0, 0, 0);
+    let rounds: u32 = std::env::var("ROUNDS").map_or(16, |n| n.parse().unwrap());
+    for _ in 0..rounds {
+        for pair in PAIRS {
+            for lacks in LACKS {
+                let options = Options { limited: [0.0, 0.3][rng.usize(..2)], balls: false };
+                let drawn = constrained(&mut rng, pair, lacks, false, options);
+                let Some((mut mechanism, decomposition)) = drawn else { continue };
+                if rng.bool() {
+                    mechanism.task.coordinates = OrientationCoordinates::TiltTorsion;
+                }
+                let Ok(m) = Manipulator::with_decomposition(mechanism, decomposition) else {
+                    // There are no such angles, or the height is inclined.
+                    continue;
+                };
+                if m.shares_height() || !m.has_enclosures() || m.task_coordinates().is_empty() {
+                    continue;
+                }
+                for _ in 0..8 {
+                    let mode = [None, Some(any_mode(&mut rng, &m))][rng.usize(..2)];
+                    let size = 10.0_f64.powf(1.0 - 4.0 * rng.f64());
+                    let mut domain = domain_of(&mut rng, &m, Sections::Whole, size);
+                    if rng.bool() {
+                        let size = 10.0_f64.powf(-8.0 * rng.f64());
+                        domain =
+                            at_the_boundary(&mut rng, &m, &domain, mode, size).unwrap_or(domain);
+                    }
+                    let (judged, count) = judge(&mut rng, &m, &domain, mode);
+                    draws += count;
+                    match judged {
+                        Judged::All => all += 1,
+                        Judged::None => none += 1,
+                        Judged::Partly => partly += 1,
+                    }
+                }
+            }
+        }
+    }
+    println!("{all} boxes inside, {none} outside, {partly} in part; {draws} poses");
+    assert!(all.min(none).min(partly) > 100 * rounds / 4, "{all} {none} {partly}");
+}
+
+/// Whole measures where coordinates are dependent: bounds come close, and estimates lie in them.
+#[test]
+fn constrained_mechanisms_have_measures() {
+    const DRAWS: u32 = 400;
+    let mut rng = Rng::with_seed(36);
+    let (mut close, mut wide, mut off) = (0, 0, 0);
+    for pair in PAIRS {
+        for lacks in LACKS {
+            let options = Options { limited: 0.2, balls: false };
+            let Some((mechanism, decomposition)) =
+                constrained(&mut rng, pair, lacks, false, options)
+            else {
+                continue;
+            };
+            let m = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            if m.shares_height() || m.task_coordinates().is_empty() {
+                continue;
+            }
+            // Two coordinates about home.
+            let over: Vec<CoordinateRange> = m
+                .task_coordinates()
+                .iter()
+                .take(2)
+                .map(|c| CoordinateRange::new(c.name, c.home - 0.5, c.home + 0.4))
+                .collect();
+            let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
+            let goal = Goal { tolerance: 0.02, budget: 20_000 };
+            let mode = Some(m.home_mode());
+            let found = measured(&m, &domain, Modes::One(m.home_mode()), goal);
+            let bounds = [found.lower, found.upper].map(|bound| bound / found.whole);
+            let hit = hits(&mut rng, &m, &domain, mode, DRAWS);
+            let chance = chance(hit, DRAWS, bounds);
+            assert!(chance > 1e-9, "{pair:?} {lacks:?}: {hit} of {DRAWS}, {bounds:?}");
+            off += u32::from(chance < 1e-2);
+            if found.stop == Stop::Budget {
+                println!("{pair:?} {lacks:?}: {hit} of {DRAWS}, {bounds:?}");
+                wide += 1;
+            } else {
+                close += 1;
+            }
+        }
+    }
+    println!("{close} close, {wide} wide, {off} unlikely");
+    assert!(close > 20 * wide && off < 10);
+}
+
+/// Any working mode.
+fn any_mode(rng: &mut Rng, m: &Manipulator) -> Mode {
+    let modes: Vec<Mode> = m.modes().collect();
+    modes[rng.usize(..modes.len())]
 }
 
 /// Whole measures of random mechanisms: a Monte-Carlo estimate is outside the bounds by three

@@ -22,7 +22,11 @@ mod affine;
 mod area;
 mod boundary;
 mod chain;
+mod condition;
+mod dependent;
+mod one_joint;
 mod opening;
+mod partial;
 mod places;
 mod planar;
 mod raised;
@@ -31,8 +35,10 @@ mod slice;
 mod target;
 
 use crate::chain::limits::Limits;
+use crate::chain::partial::PartialChain;
 use crate::chain::{Branch, Chain};
-use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Mode};
+use crate::group::JointDisplacement;
+use crate::manipulator::{Choices, CompiledLeg, CompiledSection, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::task::{CoordinateKind, Task, TaskCoordinate};
 use affine::Plane;
@@ -120,7 +126,8 @@ impl Manipulator {
     /// Bounds of the share of a box of poses that meets a query, in one working mode, or (`None`) in any.
     ///
     /// # Panics
-    /// If the number of sides is not that of the query, or more than [`MOST`] sides have a width.
+    /// If the number of sides is not that of the query, or more than [`MOST`] sides have a width. If the mechanism has no
+    /// bounds ([`Manipulator::has_enclosures`]), or a section alone is asked for and its coordinates depend on the other one's.
     #[doc(hidden)]
     pub fn enclose(&self, query: BoxQuery, mode: Option<Mode>, sides: &[Side]) -> Verdict {
         let plane = self.plane(query, mode, sides);
@@ -135,13 +142,57 @@ impl Manipulator {
         }
     }
 
-    fn enclose_in<const N: usize>(&self, request: Request<'_>) -> Verdict {
-        let Request { query, mode, sides, plane } = request;
+    /// Bounds of the values of the imaginary joints over a box of poses, in one working mode, or (`None`) in any: at every pose
+    /// that is in reach in such a mode they are within these. They are in the order of [`Manipulator::imaginary`], radians and
+    /// metres, and reversed where no mode reaches anything. The box has a side for every task coordinate, of which at most two
+    /// have a width.
+    ///
+    /// # Panics
+    /// As [`Manipulator::enclose`], or if more than two sides have a width.
+    #[doc(hidden)]
+    pub fn imaginary_over(&self, mode: Option<Mode>, sides: &[Side]) -> Vec<[f64; 2]> {
+        let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.imaginary().len()];
+        let (coordinates, _) = self.coordinates_over::<2>(BoxQuery::Whole, None, sides);
+        let rise = self.rise_over(BoxQuery::Whole, &coordinates).unwrap_or(Affine::constant(0.0));
+        for choices in self.completions(mode) {
+            let conditions = LegConditions { manipulator: self, choices, rise };
+            let mut coordinates = coordinates.clone();
+            match conditions.complete(&mut coordinates) {
+                Ok(exist) if exist.is_none() => continue,
+                Ok(_) => {}
+                Err(_) => return vec![[f64::NEG_INFINITY, f64::INFINITY]; ranges.len()],
+            }
+            for (number, leg) in self.legs.iter().enumerate() {
+                let Some(imaginary) = leg.imaginary else { continue };
+                let of_joint = &self.imaginary()[imaginary];
+                let [from, to] = &mut ranges[imaginary];
+                for tau in conditions.taus(number, &coordinates) {
+                    let tau = match tau {
+                        Enclosed::Value(tau) if !leg.unwinds() => tau,
+                        angle => dependent::near(angle.number(), 0.0),
+                    };
+                    for end in [tau.low(), tau.high()] {
+                        let value = of_joint.value(JointDisplacement::Value(end), of_joint.home);
+                        (*from, *to) = (from.min(value), to.max(value));
+                    }
+                }
+            }
+        }
+        ranges
+    }
+
+    /// The coordinates of a box, and the numbers of the sides that have a width. Where the box is integrated over a plane of
+    /// places, these are at home.
+    fn coordinates_over<const N: usize>(
+        &self,
+        query: BoxQuery,
+        plane: Option<[usize; 2]>,
+        sides: &[Side],
+    ) -> (Vec<Coordinate<N>>, [Option<usize>; N]) {
         let mut numbers = [None; N];
         let mut next = 0;
-        let first = if query == BoxQuery::Upper { self.task().lower_count } else { 0 };
         let coordinate = |(number, side): (usize, &Side)| {
-            let task = self.task().coordinates.get(first + number);
+            let task = self.coordinate_of(query, number);
             let value =
                 if let Some(task) = task.filter(|_| plane.is_some_and(|p| p.contains(&number))) {
                     // The area is that of the places about home.
@@ -160,17 +211,33 @@ impl Manipulator {
                 }
             }
         };
-        let coordinates: Vec<_> = sides.iter().enumerate().map(coordinate).collect();
+        let given = sides.iter().enumerate().map(coordinate).collect();
+        (self.all_coordinates(query, given), numbers)
+    }
+
+    fn enclose_in<const N: usize>(&self, request: Request<'_>) -> Verdict {
+        let Request { query, mode, sides, plane } = request;
+        let (coordinates, numbers) = self.coordinates_over::<N>(query, plane, sides);
         let rise = self.rise_over(query, &coordinates);
-        let still = Affine::constant(0.0);
-        let conditions = LegConditions { manipulator: self, mode, rise: rise.unwrap_or(still) };
+        let conditions = |choices| {
+            let rise = rise.unwrap_or(Affine::constant(0.0));
+            LegConditions { manipulator: self, choices, rise }
+        };
         let Bounded { lower, upper, contributions } = match plane {
             Some(plane) => {
                 let rectangle = self.rectangle(plane, sides);
-                conditions.over_rectangle(query, &coordinates, rise, rectangle)
+                let choices = mode.map_or_else(Choices::default, Choices::of);
+                conditions(choices).over_rectangle(query, &coordinates, rise, rectangle)
             }
             None => {
-                let share = conditions.over_box(query, &coordinates);
+                let share = any(self.completions(mode), |choices| {
+                    let (conditions, mut coordinates) = (conditions(choices), coordinates.clone());
+                    match conditions.complete(&mut coordinates) {
+                        Ok(exist) if exist.is_none() => exist,
+                        Ok(exist) => exist.and(conditions.over_box(query, &coordinates)),
+                        Err(at_most) => at_most,
+                    }
+                });
                 let share = rise.map_or(share, |rise| share.and(self.lifts_within(rise)));
                 let contributions = share.contributions();
                 Bounded { lower: share.lower, upper: share.upper, contributions }
@@ -204,6 +271,37 @@ struct Request<'a> {
 }
 
 impl Manipulator {
+    /// Whether boxes of poses have bounds. They have none where several legs impose the same constraint: whether it is
+    /// obeyed is a matter of a tolerance.
+    pub fn has_enclosures(&self) -> bool {
+        self.dependent.as_ref().is_none_or(|dependent| dependent.checked().next().is_none())
+    }
+
+    /// The task coordinate that a side of a box is; `None` for the displacement of an imaginary joint.
+    fn coordinate_of(&self, query: BoxQuery, side: usize) -> Option<&TaskCoordinate> {
+        let number = match (query, &self.dependent) {
+            (BoxQuery::Upper, _) => self.task().lower_count + side,
+            (BoxQuery::Whole, Some(dependent)) => dependent.independent[side],
+            (BoxQuery::Whole | BoxQuery::Lower, _) => side,
+        };
+        self.task().coordinates.get(number)
+    }
+
+    /// All coordinates of a box from those of its sides; dependent ones, which are not known yet, are at home.
+    fn all_coordinates<const N: usize>(
+        &self,
+        query: BoxQuery,
+        given: Vec<Coordinate<N>>,
+    ) -> Vec<Coordinate<N>> {
+        let Some(dependent) = &self.dependent else { return given };
+        assert_eq!(query, BoxQuery::Whole, "one section depends on the other");
+        assert!(self.has_enclosures(), "legs that repeat a constraint");
+        let home = |c: &TaskCoordinate| Coordinate::Linear(Affine::constant(c.home));
+        let mut all: Vec<_> = self.task().coordinates.iter().map(home).collect();
+        dependent.independent.iter().zip(given).for_each(|(&number, given)| all[number] = given);
+        all
+    }
+
     /// The heights above home in a box, metres; `None` if the sections of the query have no height.
     fn rise_over<const N: usize>(
         &self,
@@ -270,6 +368,8 @@ enum SectionChain<'a, const N: usize> {
     Fixed(&'a Chain, &'a Target<N>),
     /// At the heights of the box.
     Raised(RaisedChain<N>),
+    /// With fewer joints than the subspace has dimensions, whose constraints the targets satisfy.
+    Partial(&'a PartialChain, &'a Target<N>),
 }
 
 impl<const N: usize> SectionChain<'_, N> {
@@ -278,6 +378,7 @@ impl<const N: usize> SectionChain<'_, N> {
         match self {
             Self::Fixed(chain, target) => chain::closes(chain, target),
             Self::Raised(raised) => raised.closes(),
+            Self::Partial(..) => Share::ALL,
         }
     }
 
@@ -286,6 +387,7 @@ impl<const N: usize> SectionChain<'_, N> {
         match self {
             Self::Fixed(chain, target) => chain::displacements(chain, target, branch),
             Self::Raised(raised) => raised.displacements(branch),
+            Self::Partial(chain, target) => partial::displacements(chain, target),
         }
     }
 }
@@ -303,9 +405,10 @@ impl<const N: usize> Upper<N> {
         Self { target: target::task::upper(task, pose), turned }
     }
 
-    /// What a chain has to reach, but for that rotation.
-    fn of_chain(&self) -> &Target<N> {
-        self.turned.as_ref().map_or(&self.target, |(_, other)| other)
+    /// What the chain of a leg has to reach, but for that rotation where its imaginary joint adds it.
+    fn of_chain(&self, leg: &CompiledLeg) -> &Target<N> {
+        let turned = self.turned.as_ref().filter(|_| leg.bridge() == Some(Section::Upper));
+        turned.map_or(&self.target, |(_, other)| other)
     }
 
     /// The displacement along the intersection motion, from the displacements of the chain's joints.
@@ -321,7 +424,7 @@ impl<const N: usize> Upper<N> {
 /// A leg's conditions over a box.
 struct LegConditions<'a, const N: usize> {
     manipulator: &'a Manipulator,
-    mode: Option<Mode>,
+    choices: Choices,
     /// The height above home, metres; zero where there is none.
     rise: Affine<N>,
 }
@@ -331,17 +434,12 @@ impl<const N: usize> LegConditions<'_, N> {
         &self.manipulator.legs[number]
     }
 
-    /// The branches of a leg's section in the working mode, or both where any mode counts.
+    /// The branches of a leg's section with the choices that are given.
     fn branches(&self, leg: usize, section: Section) -> impl Iterator<Item = Branch> + use<N> {
-        let both = self.mode.is_none() && self.leg(leg).section(section).chain.has_choice();
-        let first = self.mode.map_or(Branch::Plus, |mode| {
-            let branches = self.manipulator.branches(mode, leg);
-            match section {
-                Section::Lower => branches.lower,
-                Section::Upper => branches.upper,
-            }
-        });
-        [Some(first), both.then_some(Branch::Minus)].into_iter().flatten()
+        let Choices { given, chosen } = self.choices;
+        let of = |mode: Mode| self.manipulator.branches(mode, leg).of(section);
+        let (first, other) = (of(chosen), of(chosen.with(given.opposite())));
+        [Some(first), (other != first).then_some(other)].into_iter().flatten()
     }
 
     /// The share for which a section closes within its limits, and its joints' displacements meet the condition
@@ -373,9 +471,11 @@ impl<const N: usize> LegConditions<'_, N> {
         section: Section,
         target: &'t Target<N>,
     ) -> SectionChain<'t, N> {
-        match self.raised(leg, section, target) {
-            Some(raised) => SectionChain::Raised(raised),
-            None => SectionChain::Fixed(&self.leg(leg).section(section).chain, target),
+        let compiled = self.leg(leg).section(section);
+        match (&compiled.partial, self.raised(leg, section, target)) {
+            (Some(partial), _) => SectionChain::Partial(partial, target),
+            (None, Some(raised)) => SectionChain::Raised(raised),
+            (None, None) => SectionChain::Fixed(&compiled.chain, target),
         }
     }
 
@@ -448,6 +548,28 @@ impl<const N: usize> LegConditions<'_, N> {
         }
     }
 
+    /// The displacements of a leg along the intersection motion, one for each branch of the section that tells it.
+    fn taus(&self, leg: usize, coordinates: &[Coordinate<N>]) -> Vec<Enclosed<N>> {
+        let (task, compiled) = (self.manipulator.task(), self.leg(leg));
+        let (lower, upper) = coordinates.split_at(task.lower_count);
+        match compiled.split_section {
+            Section::Upper => {
+                let b = Upper::new(task, upper);
+                let chain = self.chain(leg, Section::Upper, b.of_chain(compiled));
+                let branches = self.branches(leg, Section::Upper);
+                branches.map(|branch| b.step(compiled, &chain.displacements(branch))).collect()
+            }
+            Section::Lower => {
+                let v = target::task::lower(task, lower);
+                let chain = self.chain(leg, Section::Lower, &v);
+                let branches = self.branches(leg, Section::Lower);
+                let joint = compiled.imaginary_joint();
+                let step = |branch| Some(chain.displacements(branch)[joint?].inverse());
+                branches.filter_map(step).collect()
+            }
+        }
+    }
+
     fn upper(&self, leg: usize, b: &Target<N>) -> Share<N> {
         match self.leg(leg).split_section {
             Section::Upper => self.section(leg, Section::Upper, b, |_| Share::ALL),
@@ -465,15 +587,19 @@ impl<const N: usize> LegConditions<'_, N> {
     fn whole(&self, leg: usize, v: &Target<N>, b: &Upper<N>) -> Share<N> {
         let compiled = self.leg(leg);
         match compiled.split_section {
-            Section::Upper => self.section(leg, Section::Upper, b.of_chain(), |displacements| {
-                let tau = b.step(compiled, displacements);
-                self.unwound(compiled, tau, |tau| self.reaches(leg, v, tau))
-            }),
+            Section::Upper => {
+                self.section(leg, Section::Upper, b.of_chain(compiled), |displacements| {
+                    let tau = b.step(compiled, displacements);
+                    self.unwound(compiled, tau, |tau| self.reaches(leg, v, tau))
+                })
+            }
             Section::Lower => self.section(leg, Section::Lower, v, |displacements| {
                 if !compiled.upper_constrains {
                     return Share::ALL;
                 }
-                let step = displacements[compiled.lower.chain.freedoms() - 1];
+                let joint = compiled.imaginary_joint();
+                let still = Enclosed::Value(Affine::constant(0.0));
+                let step = joint.map_or(still, |joint| displacements[joint]);
                 self.unwound(compiled, step, |step| {
                     let motion = self.manipulator.task().upper_intersection;
                     let target = target::before(motion, &b.target, step);

@@ -15,7 +15,7 @@ mod all_modes;
 mod angles;
 pub(crate) mod batch;
 mod closure;
-mod dependent;
+pub(crate) mod dependent;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub mod form;

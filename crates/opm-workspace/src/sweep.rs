@@ -7,14 +7,17 @@
 //! them, poses are decided one after the other ([`together`]).
 
 mod asked;
+mod boxes;
 mod clear;
 mod clip;
 mod known_range;
 mod limited;
+mod reach;
 mod row;
 pub(crate) mod runs;
 mod shard;
 mod sheet;
+mod tile;
 mod together;
 mod worker;
 
@@ -419,9 +422,13 @@ impl<'a> Sweep<'a> {
         let along = self.grid.row();
         let end = ((block + 1) * self.stride).min(self.rows() * self.segments);
         let mut next = block * self.stride;
+        let poses = || self.poses_before(block)..self.poses_before(block + 1);
+        if self.takes_boxes() {
+            worker.boxes(poses(), count, &mut hit);
+            return;
+        }
         if self.takes_poses_together() {
-            let poses = self.poses_before(block)..self.poses_before(block + 1);
-            worker.together(poses, count, &mut hit);
+            worker.together(poses(), count, &mut hit);
             return;
         }
         while next < end {

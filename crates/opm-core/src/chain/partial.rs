@@ -34,6 +34,11 @@ impl PartialChain {
         Self { kind, screws, locked }
     }
 
+    /// The screws of the completed chain's joints at home.
+    pub fn screws(&self) -> &[LocalTwist; 3] {
+        &self.screws
+    }
+
     /// Which joints of the completed chain are locked.
     pub fn locked(&self) -> [bool; 3] {
         self.locked

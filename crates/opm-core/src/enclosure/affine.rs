@@ -98,7 +98,7 @@ impl<const N: usize> Affine<N> {
 
     /// A quantity of which only is known that it is within `bound` of `centre`. The error is attributed to the
     /// coordinates in proportion to these spreads, which were too large.
-    fn unknown(centre: f64, bound: f64, spread: &[f64; N]) -> Self {
+    pub fn unknown(centre: f64, bound: f64, spread: &[f64; N]) -> Self {
         let total: f64 = spread.iter().sum();
         if total > 0.0 && total.is_finite() {
             let error = spread.map(|s| bound * s / total);
@@ -391,7 +391,7 @@ impl<const N: usize> Plane<N> {
         Affine::products([[self.re, other.im], [-self.im, other.re]])
     }
 
-    fn spread(&self) -> [f64; N] {
+    pub fn spread(&self) -> [f64; N] {
         let (re, im) = (self.re.spread(), self.im.spread());
         std::array::from_fn(|i| re[i] + im[i])
     }

@@ -10,7 +10,7 @@ use super::{LegConditions, Side, Upper};
 use crate::enclosure::BoxQuery;
 use crate::group::Subspace;
 use crate::group::screw::Screw;
-use crate::manipulator::{Manipulator, Mode};
+use crate::manipulator::{Choices, Manipulator, Mode};
 use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Section;
 use nalgebra::{Point3, Vector3};
@@ -195,7 +195,7 @@ impl<'a, const N: usize> Places<'a, N> {
         let rise = rise.unwrap_or(Affine::constant(0.0));
         let (lower, upper) = coordinates.split_at(task.lower_count);
         let (v, b) = (target::task::lower(task, lower), Upper::new(task, upper));
-        let conditions = LegConditions { manipulator, mode: Some(mode), rise };
+        let conditions = LegConditions { manipulator, choices: Choices::of(mode), rise };
         let mut first = 0;
         let legs = manipulator.mechanism().legs.iter().enumerate().map(|(number, own)| {
             let places = asked(number).then(|| LegPlaces::new(&conditions, number, first, &v, &b));
@@ -289,7 +289,7 @@ impl<const N: usize> LegPlaces<N> {
         let mut known = true;
         let (lower, [below, above]) = match leg.split_section {
             Section::Upper => {
-                let above = solve(Section::Upper, b.of_chain());
+                let above = solve(Section::Upper, b.of_chain(leg));
                 let mut tau = b.step(leg, &above);
                 if leg.unwinds() && !matches!(tau, Enclosed::Value(_)) {
                     // Where revolutions are counted, the displacement is within π of home.

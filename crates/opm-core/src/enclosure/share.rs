@@ -148,7 +148,7 @@ impl<const N: usize> Share<N> {
     }
 
     /// An undecided condition on `quantity`, with these bounds of the share that meets it.
-    fn undecided(quantity: &Affine<N>, lower: f64, upper: f64) -> Self {
+    pub fn undecided(quantity: &Affine<N>, lower: f64, upper: f64) -> Self {
         let spread = quantity.spread();
         let (all, error) = (spread.iter().sum::<f64>(), quantity.total_error());
         let part = |of: f64, all: f64| if all > 0.0 { of / all } else { 0.0 };

@@ -15,7 +15,7 @@ use crate::chain::planar::{PlanarJoint, Prp};
 use crate::chain::region::{Band, Convex, Region};
 use crate::chain::shape::{Shape, ShapeMotion};
 use crate::chain::{DEGENERATE, REACH_TOLERANCE};
-use crate::manipulator::{Manipulator, Mode};
+use crate::manipulator::{Choices, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::task::{CoordinateKind, TaskCoordinate};
 use nalgebra::Complex;
@@ -38,7 +38,7 @@ impl Manipulator {
         mode: Option<Mode>,
         sides: &[Side],
     ) -> Option<[usize; 2]> {
-        if query == BoxQuery::Upper {
+        if query == BoxQuery::Upper || self.dependent.is_some() {
             return None;
         }
         let coordinates = &self.task().coordinates[..self.task().lower_count];
@@ -67,8 +67,9 @@ impl Manipulator {
         let by_upper = compiled.split_section == Section::Lower
             && compiled.upper_constrains
             && query == BoxQuery::Whole;
-        let conditions =
-            LegConditions { manipulator: self, mode, rise: Affine::<1>::constant(0.0) };
+        let (choices, rise) =
+            (mode.map_or_else(Choices::default, Choices::of), Affine::constant(0.0));
+        let conditions = LegConditions::<1> { manipulator: self, choices, rise };
         let mut branches = conditions.branches(leg, Section::Lower);
         let regions =
             branches.all(|branch| compiled.shape(branch).is_some_and(|shape| !shape.limits_link()));
@@ -115,7 +116,7 @@ impl<'a, 'b, const N: usize> Slice<'a, 'b, N> {
         let mut ways = Vec::with_capacity(4);
         match (compiled.split_section, b) {
             (Section::Upper, Some(b)) => {
-                let upper = self.conditions.chain(leg, Section::Upper, b.of_chain());
+                let upper = self.conditions.chain(leg, Section::Upper, b.of_chain(compiled));
                 if !self.require(upper.closes()) {
                     return false;
                 }

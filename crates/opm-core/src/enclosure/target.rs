@@ -5,7 +5,7 @@ use crate::group::{
     CylindricalMotion, IntersectionMotion, PlanarMotion, SpatialMotion, SphericalMotion,
     SubspaceKind, TranslationalMotion, mismatch,
 };
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// A displacement of the plane over a box: `z ↦ rotation · z + translation`.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +15,16 @@ pub struct PlanarTarget<const N: usize> {
 }
 
 impl<const N: usize> PlanarTarget<N> {
+    /// The rotation about a point.
+    pub fn about(point: Complex<f64>, rotation: Plane<N>) -> Self {
+        Self { rotation, translation: Plane::constant(point) - rotation * point }
+    }
+
+    /// The image of the point `z`, metres.
+    pub fn apply(&self, z: Complex<f64>) -> Plane<N> {
+        self.rotation * z + self.translation
+    }
+
     /// The displacement `other` followed by this one, as a product `self · other`.
     pub fn after(&self, other: &Self) -> Self {
         Self {
@@ -142,6 +152,41 @@ impl<const N: usize> Target<N> {
             | Self::Spherical(_)
             | Self::Cylindrical(..)
             | Self::Translational(_) => mismatch(SubspaceKind::TranslationalSpace, self.kind()),
+        }
+    }
+}
+
+impl<const N: usize> Target<N> {
+    /// The target's logarithm, where displacements commute: see [`Displacement::sum`](crate::group::Displacement).
+    pub fn sum(&self) -> [Affine<N>; 3] {
+        let none = Affine::constant(0.0);
+        match *self {
+            Self::Identity => [none; 3],
+            Self::Cylindrical(angle, advance) => [angle, advance, none],
+            Self::Translational(t) => [t.re, t.im, none],
+            Self::Spatial(t) => t,
+            Self::Planar(_) | Self::Spherical(_) => {
+                mismatch(SubspaceKind::TranslationalSpace, self.kind())
+            }
+        }
+    }
+
+    /// The identity of a subspace.
+    pub fn identity(kind: SubspaceKind) -> Self {
+        let (none, one) = (Affine::constant(0.0), Affine::constant(1.0));
+        let still = Plane::constant(Complex::ZERO);
+        match kind {
+            SubspaceKind::Identity => Self::Identity,
+            SubspaceKind::Planar => {
+                let rotation = Plane::constant(Complex::ONE);
+                Self::Planar(PlanarTarget { rotation, translation: still })
+            }
+            SubspaceKind::Spherical => {
+                Self::Spherical(Rotation([[one, none, none], [none, one, none], [none, none, one]]))
+            }
+            SubspaceKind::Cylindrical => Self::Cylindrical(none, none),
+            SubspaceKind::TranslationalPlane => Self::Translational(still),
+            SubspaceKind::TranslationalSpace => Self::Spatial([none; 3]),
         }
     }
 }
@@ -296,6 +341,22 @@ impl<const N: usize> Coordinate<N> {
             Self::Polar(_) => {
                 unreachable!("a coordinate that tilts an axis is an angle, not a length")
             }
+        }
+    }
+
+    /// Whether it is at most this far from its value in the middle of the box, radians or metres.
+    pub fn is_within(&self, most: f64) -> bool {
+        match self {
+            Self::Linear(value) => value.radius() <= most,
+            Self::Polar(_) => true,
+        }
+    }
+
+    /// Its largest change by each coordinate of the box.
+    pub fn spread(&self) -> [f64; N] {
+        match self {
+            Self::Linear(value) => value.spread(),
+            Self::Polar(e) => e.spread(),
         }
     }
 

@@ -17,11 +17,11 @@
 //! Further legs may impose constraints that the platform obeys already. They are only checked.
 
 mod complete;
-mod constraint;
+pub(crate) mod constraint;
 pub(super) mod form;
 mod many;
-pub(super) mod one_joint;
-mod zeros;
+pub(crate) mod one_joint;
+pub(crate) mod zeros;
 
 use super::Mode;
 use super::leg::{CompiledLeg, Section};
@@ -104,15 +104,15 @@ pub(crate) struct Dependent {
 
 /// One step of the solution.
 #[derive(Clone, Debug)]
-struct Step {
-    solution: Closed,
+pub(crate) struct Step {
+    pub solution: Closed,
     /// The bit of its choice in a [`Mode`], if it has two solutions.
     bit: Option<u32>,
 }
 
 /// How dependent coordinates of one section follow from the others.
 #[derive(Clone, Debug)]
-enum Closed {
+pub(crate) enum Closed {
     /// They keep their values at home: the leg's section can only move along the intersection motion.
     Constant { leg: usize, section: Section, coordinates: Vec<usize> },
     /// One coordinate follows from a condition.
@@ -169,6 +169,11 @@ impl Dependent {
             return Err(ConstraintError::Several { legs, mobility, determined });
         }
         Ok(Some(Self { independent, coordinates, steps, checks, bits: Vec::new(), size }))
+    }
+
+    /// The steps, in their order.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
     }
 
     /// For each two-valued choice of the steps, the leg that it belongs to.
@@ -335,7 +340,7 @@ fn preference(kind: CoordinateKind) -> u8 {
 
 impl Step {
     /// The sign of its choice in a mode.
-    fn sign(&self, mode: Mode) -> f64 {
+    pub fn sign(&self, mode: Mode) -> f64 {
         if self.bit.is_some_and(|bit| mode.0 >> bit & 1 == 1) { -1.0 } else { 1.0 }
     }
 }
@@ -358,7 +363,7 @@ impl Closed {
     }
 
     /// The coordinates that it determines.
-    fn coordinates(&self) -> Vec<usize> {
+    pub fn coordinates(&self) -> Vec<usize> {
         match self {
             Self::Constant { coordinates, .. } => coordinates.clone(),
             Self::Condition { coordinate, .. } => vec![*coordinate],

@@ -58,6 +58,11 @@ impl Mode {
     pub fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
+
+    /// The mode with the other sign for every choice.
+    pub(crate) fn opposite(self) -> Self {
+        Self(!self.0)
+    }
 }
 
 /// The modes in which some choices are given.

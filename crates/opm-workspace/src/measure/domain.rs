@@ -98,16 +98,22 @@ pub enum DomainError {
     /// The upper section is asked for, but all legs move in one subspace.
     #[error("the mechanism has no upper section: all its legs move in one subspace")]
     NoUpperSection,
-    /// Some task coordinates follow from the others.
+    /// A section alone is asked for, but its coordinates depend on those of the other one.
     #[error(
-        "there are no bounds for a mechanism whose legs tie its coordinates together (dependent here: {}); a grid \
-         of its workspace can be counted",
+        "the sections of this mechanism have no measures of their own: its legs tie its coordinates together \
+         (dependent: {})",
         dependent.join(", ")
     )]
     Dependent {
         /// The names of the dependent coordinates.
         dependent: Vec<&'static str>,
     },
+    /// Several legs impose the same constraint.
+    #[error(
+        "there are no bounds for a mechanism in which several legs impose the same constraint: whether they agree is a \
+         matter of a tolerance; a grid of its workspace can be counted"
+    )]
+    Repeated,
     /// The heights of legs depend on the imaginary joints.
     #[error(
         "there are no bounds for a mechanism whose sections share a translation that is inclined to the direction of \
@@ -172,9 +178,12 @@ impl Domain {
         given: &[CoordinateRange],
     ) -> Result<Self, DomainError> {
         let dependent = manipulator.dependent_coordinates();
-        if !dependent.is_empty() {
+        if sections != Sections::Whole && !dependent.is_empty() {
             let dependent = dependent.iter().map(|c| c.name).collect();
             return Err(DomainError::Dependent { dependent });
+        }
+        if !manipulator.has_enclosures() {
+            return Err(DomainError::Repeated);
         }
         if manipulator.shares_height() {
             return Err(DomainError::Inclined);
@@ -344,14 +353,27 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
             | CoordinateKind::Mu,
         ) => Kind::Plain,
     };
+    // An orientation of which a part follows from the rest has no measure of all orientations.
+    let tied = |name: &str| is_tied(manipulator, name);
     let coordinates = sections.coordinates(manipulator).into_iter().enumerate();
     coordinates
         .map(|(number, c)| DomainAxis {
-            kind: kind(number, c.kind, c.home),
+            kind: if tied(&c.name) { Kind::Plain } else { kind(number, c.kind, c.home) },
             name: c.name,
             quantity: c.quantity,
             min: c.home,
             max: c.home,
         })
         .collect()
+}
+
+/// Whether coordinates of the section to which a coordinate belongs follow from others.
+fn is_tied(manipulator: &Manipulator, name: &str) -> bool {
+    let task = manipulator.task();
+    let lower = |name: &str| {
+        let number = task.coordinates.iter().position(|c| c.name == name);
+        number.is_some_and(|number| number < task.lower_count)
+    };
+    let dependent = manipulator.dependent_coordinates();
+    dependent.iter().any(|c| lower(c.name) == lower(name))
 }

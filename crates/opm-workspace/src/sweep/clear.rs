@@ -7,10 +7,9 @@
 
 use super::Sweep;
 use super::asked::AskedRows;
+use super::tile::{Part, Tile, TileBox};
 use crate::clearance::ClearanceLimit;
-use opm_core::enclosure::Side;
 use opm_core::manipulator::{Manipulator, Mode, Solution};
-use opm_core::{Quantity, TaskCoordinate};
 use opm_interference::{BoxTest, Clearance, Open};
 use std::ops::Range;
 
@@ -19,9 +18,6 @@ const FEW: usize = 12;
 
 /// In a box of as many poses or fewer, each of them is tested before the box is halved.
 const MANY: usize = 64;
-
-/// The least share by which boxes are wider than their poses are apart, for rounding.
-const ROUNDING: f64 = 1e-15;
 
 /// A thread's working memory for the poses that keep a clearance.
 pub struct ClearPoses<'a> {
@@ -33,31 +29,16 @@ pub struct ClearPoses<'a> {
     /// The poses of the present tile, row by row: whether each is left and not decided, and whether it is clear.
     open: Vec<bool>,
     clear: Vec<bool>,
-    sides: Vec<Side>,
+    /// The box of the present part.
+    bound: TileBox,
     pose: Vec<f64>,
     /// Lists that are not in use.
     spare: Vec<Open>,
-    /// For each coordinate, how much a unit of it counts, metres.
-    weights: Vec<f64>,
-}
-
-/// The poses of a tile: they differ in two coordinates.
-#[derive(Clone, Copy)]
-pub struct Tile<'t> {
-    /// The numbers of these coordinates.
-    pub axes: [usize; 2],
-    /// The values of the first one along every row.
-    pub first: &'t [f64],
-    /// The value of the second one in each row; none, if there is one row and all poses share it.
-    pub second: &'t [f64],
 }
 
 impl<'a> ClearPoses<'a> {
     pub fn new(manipulator: &'a Manipulator, limit: ClearanceLimit<'a>, mode: Mode) -> Self {
         let test = BoxTest::new(manipulator, limit.interference, limit.least);
-        let coordinates = manipulator.task_coordinates();
-        let angle = manipulator.characteristic_length();
-        let weight = |c: &TaskCoordinate| if c.quantity == Quantity::Length { 1.0 } else { angle };
         Self {
             manipulator,
             mode,
@@ -66,10 +47,9 @@ impl<'a> ClearPoses<'a> {
             solution: manipulator.solution(),
             open: Vec::new(),
             clear: Vec::new(),
-            sides: Vec::new(),
-            pose: vec![0.0; coordinates.len()],
+            bound: TileBox::new(manipulator),
+            pose: vec![0.0; manipulator.task_coordinates().len()],
             spare: Vec::new(),
-            weights: coordinates.iter().map(weight).collect(),
         }
     }
 
@@ -117,74 +97,43 @@ impl<'a> ClearPoses<'a> {
 
     /// Decides the open poses of some rows of a tile, for all pairs. The present pose has its other coordinates.
     fn decide_all(&mut self, tile: &Tile<'_>, rows: Range<usize>) {
-        self.sides.clear();
-        let side = |&middle: &f64| Side { middle, half: 0.0, half_turn: None };
-        self.sides.extend(self.pose.iter().map(side));
+        self.bound.begin(&self.pose);
         let all = std::mem::take(&mut self.all);
-        self.decide(tile, rows, 0..tile.first.len(), &all);
+        self.decide(tile, &Part { rows, poses: 0..tile.first.len() }, &all);
         self.all = all;
     }
 
     /// Decides the open poses of a part of a tile, for the pairs that are open.
-    fn decide(&mut self, tile: &Tile<'_>, rows: Range<usize>, poses: Range<usize>, open: &Open) {
+    fn decide(&mut self, tile: &Tile<'_>, part: &Part, open: &Open) {
         let width = tile.first.len();
-        let of_rows = rows.clone().map(|row| &self.open[row * width..][poses.clone()]);
+        let of_rows = part.rows.clone().map(|row| &self.open[row * width..][part.poses.clone()]);
         let count = of_rows.flatten().filter(|&&open| open).count();
         if count == 0 {
             return;
         }
         if count <= FEW || !self.test.takes_boxes() {
-            self.decide_each(tile, (&rows, &poses), |this| this.solve(open));
+            self.decide_each(tile, part, |this| this.solve(open));
             return;
         }
-        let halves = self.bound(tile, &rows, &poses);
+        let lengths = self.bound.bound(tile, part);
         let mut next = self.spare.pop().unwrap_or_default();
-        match self.test.over_box(self.mode, &self.sides, open, &mut next) {
+        match self.test.over_box(self.mode, &self.bound.sides, open, &mut next) {
             Clearance::Open => {
                 if count <= MANY {
-                    self.decide_each(tile, (&rows, &poses), |this| this.test.in_box(&this.pose));
+                    self.decide_each(tile, part, |this| this.test.in_box(&this.pose));
                 }
-                let middle = |range: &Range<usize>| range.start + range.len() / 2;
-                let along = rows.len() < 2 || (poses.len() > 1 && halves[0] >= halves[1]);
-                if along {
-                    let at = middle(&poses);
-                    self.decide(tile, rows.clone(), poses.start..at, &next);
-                    self.decide(tile, rows, at..poses.end, &next);
-                } else {
-                    let at = middle(&rows);
-                    self.decide(tile, rows.start..at, poses.clone(), &next);
-                    self.decide(tile, at..rows.end, poses, &next);
-                }
+                part.halves(lengths).iter().for_each(|half| self.decide(tile, half, &next));
             }
-            decided => self.decide_each(tile, (&rows, &poses), |_| decided),
+            decided => self.decide_each(tile, part, |_| decided),
         }
         self.spare.push(next);
-    }
-
-    /// Makes the box of a part of a tile; returns half of its lengths in both coordinates, metres.
-    fn bound(&mut self, tile: &Tile<'_>, rows: &Range<usize>, poses: &Range<usize>) -> [f64; 2] {
-        let mut set = |number: usize, values: &[f64]| {
-            let ends = [values[0], values[values.len() - 1]];
-            let middle = 0.5 * (ends[0] + ends[1]);
-            let half = 0.5 * (ends[1] - ends[0]).abs();
-            let rounding = ROUNDING * (ends[0].abs() + ends[1].abs());
-            let half = if half > 0.0 { half + rounding } else { 0.0 };
-            self.sides[number] = Side { middle, half, half_turn: None };
-            half * self.weights[number]
-        };
-        let along = set(tile.axes[0], &tile.first[poses.clone()]);
-        let across = match tile.second.get(rows.clone()) {
-            Some(second) if !second.is_empty() => set(tile.axes[1], second),
-            _ => 0.0,
-        };
-        [along, across]
     }
 
     /// Decides the open poses of a part of a tile, one by one.
     fn decide_each(
         &mut self,
         tile: &Tile<'_>,
-        (rows, poses): (&Range<usize>, &Range<usize>),
+        Part { rows, poses }: &Part,
         mut test: impl FnMut(&mut Self) -> Clearance,
     ) {
         let width = tile.first.len();

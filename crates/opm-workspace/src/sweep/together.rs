@@ -1,13 +1,13 @@
 //! Poses that are decided one after the other, blocks of them together, whatever their rows and slices: where slices have few
 //! poses, and where regions do not tell what legs reach in a slice.
 
-use super::clear::{ClearPoses, Tile};
+use super::clear::ClearPoses;
+use super::reach::Reach;
 use super::runs::{self, Run};
+use super::tile::Tile;
 use super::worker::{Ranges, Visitor};
-use super::{BLOCK, Count, Hits, Modes, Sweep};
-use crate::condition::Conditioned;
+use super::{BLOCK, Count, Hits, Sweep};
 use crate::grid::Sections;
-use opm_core::manipulator::{Batch, Manipulator};
 use std::ops::Range;
 
 /// The most poses of a slice that are decided together with those of other slices. With more of them, it is faster to make a
@@ -39,47 +39,6 @@ pub struct Together<'a> {
     first: Vec<f64>,
 }
 
-/// Decides which poses are in reach, and within the limit if there is one.
-struct Reach<'a> {
-    manipulator: &'a Manipulator,
-    modes: Modes,
-    batch: Batch,
-    limited: Option<Conditioned<'a>>,
-}
-
-impl Reach<'_> {
-    /// Decides some poses, and gives the ranges of imaginary joints in those that are reached, if these are `wanted`.
-    fn decide(
-        &mut self,
-        poses: &[f64],
-        reached: &mut [bool],
-        wanted: bool,
-        mut used: impl FnMut(usize, [f64; 2]),
-    ) {
-        let width = self.manipulator.task_coordinates().len();
-        let poses = poses.chunks(Manipulator::DECIDED * width);
-        for (poses, reached) in poses.zip(reached.chunks_mut(Manipulator::DECIDED)) {
-            let mut take = |imaginary: usize, range: [f64; 2]| {
-                if wanted {
-                    used(imaginary, range);
-                }
-            };
-            let Some(conditioned) = &mut self.limited else {
-                let (mode, batch) = (self.modes.one(), &mut self.batch);
-                self.manipulator.decide_many(poses, mode, batch, reached, &mut take);
-                continue;
-            };
-            let mut conditions = [0.0; Manipulator::DECIDED];
-            let conditions = &mut conditions[..reached.len()];
-            let used: Option<&mut dyn FnMut(usize, [f64; 2])> =
-                if wanted { Some(&mut take) } else { None };
-            conditioned.decide(poses, self.modes, conditions, used);
-            let admitted = conditions.iter().map(|condition| !condition.is_nan());
-            reached.iter_mut().zip(admitted).for_each(|(to, admitted)| *to = admitted);
-        }
-    }
-}
-
 impl<'a> Sweep<'a> {
     /// Working memory for the clearance, if there is one.
     pub(super) fn clear_poses(&self) -> Option<Box<ClearPoses<'a>>> {
@@ -100,17 +59,11 @@ impl<'a> Sweep<'a> {
 impl<'a> Together<'a> {
     pub fn new(sweep: &Sweep<'a>, ranges: Ranges) -> Self {
         let axes = sweep.grid.axes().len();
-        let limited = |limit| Conditioned::new(sweep.manipulator, limit);
         let mut varying = sweep.grid.axes().iter().enumerate().filter(|(_, axis)| axis.count > 1);
         let mut next = || varying.next().map_or(0, |(number, _)| number);
         Self {
             ranges,
-            reach: Reach {
-                manipulator: sweep.manipulator,
-                modes: sweep.modes,
-                batch: sweep.manipulator.batch(),
-                limited: sweep.limit.clone().map(limited),
-            },
+            reach: Reach::new(sweep),
             clear: sweep.clear_poses(),
             varying: [next(), next()],
             values: [Vec::new(), Vec::new()],

@@ -1,6 +1,7 @@
 //! A thread's working memory: one sheet of the grid, and the rows of it that are being decided.
 
 use super::asked::{AskedRows, Clipped};
+use super::boxes::Boxes;
 use super::clear::ClearPoses;
 use super::clip::{Clip, ClippedRows, Intersect, Intersection, ROWS, RowState, Rows};
 use super::known_range::KnownRanges;
@@ -38,6 +39,8 @@ pub struct Worker<'a> {
     limit: Option<Box<LimitedRows<'a>>>,
     clear: Option<Box<ClearPoses<'a>>>,
     together: Option<Box<Together<'a>>>,
+    /// For poses that are decided by boxes.
+    boxes: Option<Box<Boxes<'a>>>,
     /// The angles of imaginary joints over the poses that this thread found.
     known: KnownRanges,
 }
@@ -187,6 +190,7 @@ impl<'a> Worker<'a> {
             limit: sweep.limit.clone().map(|limit| Box::new(LimitedRows::new(manipulator, limit))),
             clear: sweep.clear_poses(),
             together: None,
+            boxes: None,
             known: KnownRanges::new(manipulator.legs()),
         }
     }
@@ -197,6 +201,13 @@ impl<'a> Worker<'a> {
         let new = || Box::new(Together::new(sweep, ranges));
         let together = self.together.get_or_insert_with(new);
         together.decide(sweep, poses, found, hit);
+    }
+
+    /// Decides poses with these numbers, of whole segments of rows, by boxes.
+    pub fn boxes(&mut self, poses: Range<u64>, found: &mut Count, hit: &mut Visitor<'_>) {
+        let (sweep, ranges) = (self.sweep, self.ranges);
+        let boxes = self.boxes.get_or_insert_with(|| Box::new(Boxes::new(sweep, ranges)));
+        boxes.decide(sweep, poses, found, hit);
     }
 
     /// Takes the one pose of a slice of the upper section alone, which closes.

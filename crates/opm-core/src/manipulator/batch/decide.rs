@@ -53,7 +53,7 @@ impl Manipulator {
     }
 
     /// The choices with which poses have one set of dependent coordinates: those of a mode, or (`None`) each combination.
-    fn completions(&self, mode: Option<Mode>) -> impl Iterator<Item = Choices> {
+    pub(crate) fn completions(&self, mode: Option<Mode>) -> impl Iterator<Item = Choices> {
         let each = self.dependent.as_ref().filter(|_| mode.is_none());
         let one = match (mode, each) {
             (Some(mode), _) => Some(Choices::of(mode)),

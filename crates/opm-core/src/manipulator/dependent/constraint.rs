@@ -9,7 +9,7 @@ use crate::task::{Task, TaskCoordinate};
 
 /// A condition on a section of a leg.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Constraint {
+pub(crate) struct Constraint {
     pub leg: usize,
     pub section: Section,
     pub condition: Condition,
@@ -17,7 +17,7 @@ pub(super) struct Constraint {
 
 /// The sections in the order in which their dependent coordinates are found: first the one that is taken modulo
 /// the intersection motion.
-pub(super) fn order(task: &Task) -> [Section; 2] {
+pub(crate) fn order(task: &Task) -> [Section; 2] {
     match task.shared() {
         Some(MotionType::Rotation) | None => [Section::Lower, Section::Upper],
         Some(MotionType::Translation) => [Section::Upper, Section::Lower],
@@ -25,7 +25,7 @@ pub(super) fn order(task: &Task) -> [Section; 2] {
 }
 
 /// The constraints of a leg's section.
-pub(super) fn constraints(
+pub(crate) fn constraints(
     legs: &[CompiledLeg],
     leg: usize,
     section: Section,
@@ -41,13 +41,13 @@ pub(super) fn constraints(
 
 /// Whether the displacement τ of a leg's imaginary joint, which the other section tells, matters to this one. It
 /// does not where the section is the first to be solved: then it contains the intersection motion itself.
-pub(super) fn follows(task: &Task, leg: &CompiledLeg, section: Section) -> bool {
+pub(crate) fn follows(task: &Task, leg: &CompiledLeg, section: Section) -> bool {
     leg.bridge().is_some_and(|bridge| bridge != section) && order(task)[0] != section
 }
 
 /// What a section's chain has to reach at a pose: the section's displacement, after that of the imaginary joint
 /// if it belongs to the other section, where its displacement along the intersection motion is `tau`.
-pub(super) fn target_of(
+pub(crate) fn target_of(
     task: &Task,
     leg: &CompiledLeg,
     section: Section,

@@ -19,23 +19,23 @@ use nalgebra::{Complex, Matrix3};
 use std::f64::consts::PI;
 
 /// An axis whose angle with the third direction has a sine below this is along that direction.
-const ALONG: f64 = 1e-9;
+pub(crate) const ALONG: f64 = 1e-9;
 
 /// Stands for a cosine of zero, whose products with the components of an axis have directions.
 const LEAST: f64 = 1e-150;
 
 /// How a section's coordinates follow from its one joint.
 #[derive(Clone, Debug)]
-pub(super) struct OneJoint {
+pub(crate) struct OneJoint {
     pub leg: usize,
     pub section: Section,
     /// The numbers of the dependent coordinates.
     pub coordinates: Vec<usize>,
     /// The numbers of the section's coordinates, but that of a height.
-    pub(super) all: Vec<usize>,
+    pub all: Vec<usize>,
     /// What each of these is, if it is dependent.
-    follows: [Option<Quantity>; 3],
-    pub(super) motion: SectionMotion,
+    pub follows: [Option<Quantity>; 3],
+    pub motion: SectionMotion,
 }
 
 /// The motion of a section with one joint.
@@ -272,7 +272,7 @@ impl OneJoint {
 
 /// A straight line of coordinates of a section.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// The coordinates at its start.
     start: [f64; 3],
     /// Their changes along it.

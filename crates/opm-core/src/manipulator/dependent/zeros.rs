@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// How a condition depends on one coordinate `t = home + step · u`, with a step of one radian for a harmonic function.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Function {
+pub(crate) struct Function {
     pub home: f64,
     pub step: f64,
     /// Whether it is a harmonic function of `u`; otherwise it is a polynomial of degree two at most.
