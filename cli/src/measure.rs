@@ -14,7 +14,7 @@ use opm_core::mechanism::file::FileUnits;
 use opm_core::numeric::number::readable;
 use opm_study::unit_product;
 use opm_workspace::measure::{
-    CoordinateRange, Domain, DomainAxis, Goal, Measured, Stop, default_ranges, measure,
+    CoordinateRange, Domain, DomainAxis, DomainError, Goal, Measured, Stop, default_ranges, measure,
 };
 use opm_workspace::{Cancelled, Modes, Progress};
 use rayon::ThreadPool;
@@ -122,7 +122,13 @@ fn domain(
     let given = given.map_err(|error| Failure::flag("--over", error))?;
     // The flags are checked before any work is done.
     let checked = |over: &[CoordinateRange]| {
-        Domain::new(manipulator, sections, over).map_err(|error| Failure::flag("--over", error))
+        Domain::new(manipulator, sections, over).map_err(|error| match error {
+            DomainError::NoUpperSection | DomainError::Dependent { .. } => {
+                Failure::flag("--section", error)
+            }
+            DomainError::Inclined | DomainError::Repeated => Failure::at(&loaded.label, error),
+            error => Failure::flag("--over", error),
+        })
     };
     checked(&given)?;
     let find = || pool.install(|| default_ranges(manipulator, sections, modes, &given, progress));

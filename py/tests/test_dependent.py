@@ -53,6 +53,16 @@ def test_they_are_no_axes():
         opm.sweep(m, x=0.1).write("never.mcap", color="theta")
 
 
+def test_the_area_of_the_hand_is_bounded():
+    m = opm.examples.load("five-bar")
+    found = opm.measure(m, over={"x": (-0.1, 0.1), "y": (0.0, 0.3)})
+    # The arms reach rings about the shoulders, at x = -160 mm and 160 mm.
+    x, y = np.meshgrid((np.arange(1000) + 0.5) * 2e-4 - 0.1, (np.arange(1000) + 0.5) * 3e-4)
+    far = [np.hypot(x - side * HALF, y) for side in (-1, 1)]
+    inside = np.all([(FORE - UPPER < d) & (d < FORE + UPPER) for d in far], axis=0)
+    assert found.lower < 0.06 * inside.mean() < found.upper < 1.02 * found.lower
+
+
 def test_a_motion_has_them_with_their_rates():
     m = opm.examples.load("five-bar")
     times = np.linspace(0, 2, 9)

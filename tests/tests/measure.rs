@@ -4,14 +4,15 @@
 use fastrand::Rng;
 use opm_core::manipulator::{LegBranch, Manipulator, Mode, Solution};
 use opm_core::mechanism::OrientationCoordinates;
+use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::task::Task;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
 use opm_tests::random::{LACKS, LEVEL, Options, PAIRS, constrained, mechanism};
 use opm_workspace::measure::{
-    CoordinateRange, Domain, Evaluator, Goal, Measured, Search, Stop, measure,
+    CoordinateRange, Domain, DomainError, Evaluator, Goal, Measured, Search, Stop, measure,
 };
-use opm_workspace::{Cancelled, Modes, Progress, Sections};
+use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sections, Sweep};
 use std::f64::consts::PI;
 
 fn example(name: &str) -> Manipulator {
@@ -235,6 +236,35 @@ fn the_line_of_sarrus() {
         assert!(found.lower < length && length < found.upper, "{found:?}");
         assert_eq!(found.stop, Stop::Tolerance);
     }
+}
+
+/// A leg that repeats a constraint, and sections that depend on each other.
+#[test]
+fn what_has_no_bounds_is_refused() {
+    let file = |name: &str| {
+        let example = EXAMPLES.iter().find(|example| example.name == name).unwrap();
+        example.text.to_owned()
+    };
+    let again = "[[leg]]\nname = \"again\"\njoints = [\n\
+        { name = \"S3\", type = \"revolute\", axis = [0, 0, 1], point = [160, 0, 0] },\n\
+        { name = \"E3\", type = \"revolute\", axis = [0, 0, 1], point = [229, 119.511505722253, 0] },\n]\n";
+    let repeated = Manipulator::read(&(file("five-bar") + "\n" + again)).unwrap();
+    assert!(!repeated.has_enclosures());
+    let refused = |m: &Manipulator, sections| Domain::new(m, sections, &[]).unwrap_err();
+    assert_eq!(refused(&repeated, Sections::Whole), DomainError::Repeated);
+    let (five_bar, sarrus) = (example("five-bar"), example("sarrus"));
+    assert_eq!(refused(&five_bar, Sections::Upper), DomainError::NoUpperSection);
+    for (m, sections) in [(&five_bar, Sections::Lower), (&sarrus, Sections::Upper)] {
+        assert!(matches!(refused(m, sections), DomainError::Dependent { .. }));
+    }
+    // The sweep of such a mechanism asks for every pose.
+    let grid = |m: &Manipulator| {
+        let axes = ["x", "y"].map(|name| Axis::new(name, -0.4, 0.45, 90)).to_vec();
+        let grid = Grid::new(m, axes).unwrap();
+        let sweep = Sweep::new(m, &grid, Modes::One(m.home_mode()));
+        sweep.count(&Progress::default()).unwrap().reachable
+    };
+    assert_eq!(grid(&repeated), grid(&five_bar));
 }
 
 /// The part of a convex polygon on which `left` is not negative.

@@ -22,6 +22,9 @@ const MOST_BOXES: f64 = 1e12;
 /// zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to
 /// positive xi counts orientations twice if zeta has a full revolution.
 ///
+/// Where legs tie coordinates together, --over takes those that the others follow from, and the measure is over
+/// these. An orientation of which an angle follows is not weighed.
+///
 /// The number of boxes depends on how many coordinates have a range, and on the widths of the ranges. Three
 /// coordinates take some thousand boxes. Where x and y of a plane have ranges, the area that the legs reach
 /// there is exact, and boxes cover the other coordinates only; legs with limits on angles in the plane are an

@@ -8,6 +8,9 @@
 //! side has a closed form (`share.rs`). Shares of several conditions are combined by inequalities that hold
 //! however the conditions depend on each other.
 //!
+//! Where legs with too few freedoms tie coordinates together, a box has the independent ones, and the others follow as functions
+//! of these (`dependent.rs`).
+//!
 //! Where a section moves in a plane, a box that has a range of both coordinates of a place is integrated over them
 //! exactly (`slice.rs`, `area.rs`), so that only its other coordinates are ever split.
 //!
@@ -273,6 +276,12 @@ struct Request<'a> {
 impl Manipulator {
     /// Whether boxes of poses have bounds. They have none where several legs impose the same constraint: whether it is
     /// obeyed is a matter of a tolerance.
+    ///
+    /// ```
+    /// # use opm_core::Manipulator;
+    /// assert!(Manipulator::example("five-bar")?.has_enclosures());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn has_enclosures(&self) -> bool {
         self.dependent.as_ref().is_none_or(|dependent| dependent.checked().next().is_none())
     }

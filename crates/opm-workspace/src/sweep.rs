@@ -4,7 +4,8 @@
 //! a slice, and leaves each leg one or several branches, each a set of poses. Where all of them are
 //! regions of the plane, whole rows are clipped to them ([`clip`]). Other branches are asked for in pieces
 //! of rows, between the places where their feasibility changes ([`asked`]). Where slices have few poses, or tell little of
-//! them, poses are decided one after the other ([`together`]).
+//! them, poses are decided one after the other ([`together`]); where coordinates of the pose depend on each other, bounds over
+//! boxes decide most of them first ([`boxes`]).
 
 mod asked;
 mod boxes;

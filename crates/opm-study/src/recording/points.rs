@@ -133,7 +133,7 @@ impl<'a> Cloud<'a> {
         self.shown.columns()
     }
 
-    /// Whether all values of a point are task coordinates.
+    /// Whether all values of a point are task coordinates, or zero.
     pub fn is_plain(&self) -> bool {
         is_plain(&self.columns())
     }
@@ -185,7 +185,7 @@ impl<'a> Cloud<'a> {
 }
 
 fn is_plain(columns: &[Column]) -> bool {
-    columns.iter().all(|column| matches!(column, Column::Coordinate(_)))
+    columns.iter().all(|column| matches!(column, Column::Coordinate(_) | Column::Zero))
 }
 
 /// The layout of points with these values, for a recorder.
@@ -264,7 +264,7 @@ pub struct Points<'a> {
     cloud: &'a Cloud<'a>,
     columns: &'a [Column],
     packing: Option<&'a Packing>,
-    /// All columns are task coordinates.
+    /// All columns are task coordinates, or zero.
     plain: bool,
     joints: Joints<'a>,
     conditions: Option<Box<Conditions<'a>>>,
@@ -384,11 +384,12 @@ impl<'a> Points<'a> {
         self.pose = pose;
     }
 
-    /// Points whose values are all coordinates.
+    /// Points whose values are all coordinates, or zero.
     fn plain_line(&mut self, packer: &Packer, slice: u64, first: &[f64], pose: &[f64]) {
         let value = |column: &Column| match *column {
             Column::Coordinate(number) => pose[number],
-            _ => unreachable!("plain points are made of task coordinates"),
+            Column::Zero => 0.0,
+            _ => unreachable!("plain points are made of task coordinates and zeros"),
         };
         let mut row = std::mem::take(&mut self.row);
         row.clear();

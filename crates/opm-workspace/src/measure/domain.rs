@@ -177,6 +177,10 @@ impl Domain {
         sections: Sections,
         given: &[CoordinateRange],
     ) -> Result<Self, DomainError> {
+        let mut axes = axes(manipulator, sections);
+        if axes.is_empty() && sections == Sections::Upper {
+            return Err(DomainError::NoUpperSection);
+        }
         let dependent = manipulator.dependent_coordinates();
         if sections != Sections::Whole && !dependent.is_empty() {
             let dependent = dependent.iter().map(|c| c.name).collect();
@@ -187,10 +191,6 @@ impl Domain {
         }
         if manipulator.shares_height() {
             return Err(DomainError::Inclined);
-        }
-        let mut axes = axes(manipulator, sections);
-        if axes.is_empty() {
-            return Err(DomainError::NoUpperSection);
         }
         let ends = CoordinateRange::of_each(manipulator, sections, given)?;
         for (axis, [min, max]) in axes.iter_mut().zip(ends) {
