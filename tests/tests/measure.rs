@@ -12,7 +12,7 @@ use opm_tests::random::{LACKS, LEVEL, Options, PAIRS, constrained, mechanism};
 use opm_workspace::measure::{
     CoordinateRange, Domain, DomainError, Evaluator, Goal, Measured, Search, Stop, measure,
 };
-use opm_workspace::{Axis, Cancelled, Grid, Modes, Progress, Sections, Sweep};
+use opm_workspace::{Axis, Cancelled, Grid, GridError, Modes, Progress, Sections, Sweep};
 use std::f64::consts::PI;
 
 fn example(name: &str) -> Manipulator {
@@ -256,6 +256,7 @@ fn what_has_no_bounds_is_refused() {
     assert_eq!(refused(&five_bar, Sections::Upper), DomainError::NoUpperSection);
     for (m, sections) in [(&five_bar, Sections::Lower), (&sarrus, Sections::Upper)] {
         assert!(matches!(refused(m, sections), DomainError::Dependent { .. }));
+        assert_eq!(Grid::of(sections, m, vec![]).unwrap_err(), GridError::NotAlone);
     }
     // The sweep of such a mechanism asks for every pose.
     let grid = |m: &Manipulator| {

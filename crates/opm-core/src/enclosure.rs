@@ -155,6 +155,7 @@ impl Manipulator {
     #[doc(hidden)]
     pub fn imaginary_over(&self, mode: Option<Mode>, sides: &[Side]) -> Vec<[f64; 2]> {
         let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.imaginary().len()];
+        let unknown = || vec![[f64::NEG_INFINITY, f64::INFINITY]; self.imaginary().len()];
         let (coordinates, _) = self.coordinates_over::<2>(BoxQuery::Whole, None, sides);
         let rise = self.rise_over(BoxQuery::Whole, &coordinates).unwrap_or(Affine::constant(0.0));
         for choices in self.completions(mode) {
@@ -163,7 +164,7 @@ impl Manipulator {
             match conditions.complete(&mut coordinates) {
                 Ok(exist) if exist.is_none() => continue,
                 Ok(_) => {}
-                Err(_) => return vec![[f64::NEG_INFINITY, f64::INFINITY]; ranges.len()],
+                Err(_) => return unknown(),
             }
             for (number, leg) in self.legs.iter().enumerate() {
                 let Some(imaginary) = leg.imaginary else { continue };
@@ -174,6 +175,9 @@ impl Manipulator {
                         Enclosed::Value(tau) if !leg.unwinds() => tau,
                         angle => dependent::near(angle.number(), 0.0),
                     };
+                    if !tau.radius().is_finite() {
+                        return unknown();
+                    }
                     for end in [tau.low(), tau.high()] {
                         let value = of_joint.value(JointDisplacement::Value(end), of_joint.home);
                         (*from, *to) = (from.min(value), to.max(value));

@@ -2,6 +2,7 @@
 //! the grid.
 
 use opm_core::Quantity;
+use opm_core::group::SubspaceKind;
 use opm_core::manipulator::{FollowingCoordinate, ImaginaryJoint, LARGEST, Manipulator};
 use opm_core::numeric::number::readable;
 use opm_core::task::CoordinateKind;
@@ -265,7 +266,8 @@ impl Grid {
     ) -> Result<Self, GridError> {
         let coordinates = sections.coordinates(manipulator);
         let mut axes: Vec<Option<Axis>> = vec![None; coordinates.len()];
-        if coordinates.is_empty() {
+        let one_subspace = manipulator.task().upper.kind == SubspaceKind::Identity;
+        if coordinates.is_empty() && one_subspace {
             return Err(GridError::NoUpperSection);
         }
         let alone = manipulator.dependent_coordinates().is_empty() && !manipulator.shares_height();

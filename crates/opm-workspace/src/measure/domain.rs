@@ -5,6 +5,7 @@ use super::coordinate_range::{CoordinateRange, RangeError};
 use crate::grid::Sections;
 use opm_core::Quantity;
 use opm_core::enclosure::{BoxQuery, HalfTurn, MOST, Side};
+use opm_core::group::SubspaceKind;
 use opm_core::manipulator::{ImaginaryJoint, Manipulator};
 use opm_core::numeric::number::readable;
 use opm_core::task::CoordinateKind;
@@ -178,7 +179,8 @@ impl Domain {
         given: &[CoordinateRange],
     ) -> Result<Self, DomainError> {
         let mut axes = axes(manipulator, sections);
-        if axes.is_empty() && sections == Sections::Upper {
+        let one_subspace = manipulator.task().upper.kind == SubspaceKind::Identity;
+        if axes.is_empty() && one_subspace {
             return Err(DomainError::NoUpperSection);
         }
         let dependent = manipulator.dependent_coordinates();

@@ -1,7 +1,8 @@
 //! Poses of mechanisms with dependent coordinates, tile by tile.
 //!
 //! A tile is some rows of a grid, or a part of one. It is halved until bounds over a box of it tell that all of its poses are in
-//! reach and within the limits, or none. Only in small boxes that these leave open, poses are decided each for itself.
+//! reach and within the limits, or none. Only in small boxes that these leave open, poses are decided each for itself. In coarse
+//! grids bounds may tell little: then there are few boxes, until it is tried again.
 
 use super::reach::Reach;
 use super::runs::{self, Run};
@@ -15,6 +16,18 @@ use std::ops::Range;
 
 /// A box of as many poses or fewer is not bounded: it takes longer than to decide them.
 const FEW: usize = 64;
+
+/// What a box takes, in poses that could be decided in this time.
+const BOX: i64 = 64;
+
+/// Boxes may take so much time more than they have saved, in poses.
+const DEBT: i64 = 2048;
+
+/// The most time that is counted as saved, in poses.
+const SAVED: i64 = 1 << 16;
+
+/// Of so many poses that are decided without boxes, one pays off a debt.
+const PER_DEBT: i64 = 32;
 
 /// Most poses that are decided together, each for itself: they are kept with their coordinates.
 const MOST: usize = 1024;
@@ -41,6 +54,8 @@ pub struct Boxes<'a> {
     ranges: bool,
     reach: Reach<'a>,
     bound: TileBox,
+    /// The time that boxes have saved, in poses.
+    saved: i64,
     /// What is known of the poses of the present tile, row by row.
     known: Vec<Known>,
     /// The values of the first coordinate along its rows, and of the second one that varies in each row.
@@ -77,6 +92,7 @@ impl<'a> Boxes<'a> {
             ranges: ranges == Ranges::Wanted && !manipulator.imaginary().is_empty(),
             reach: Reach::new(sweep),
             bound: TileBox::new(manipulator),
+            saved: 0,
             known: Vec::new(),
             values: [Vec::new(), Vec::new()],
             pose: Vec::new(),
@@ -168,6 +184,11 @@ impl<'a> Boxes<'a> {
         if part.len() <= FEW {
             return;
         }
+        if self.saved < -DEBT {
+            self.saved += part.len() as i64 / PER_DEBT;
+            return;
+        }
+        self.saved -= BOX;
         let lengths = self.bound.bound(tile, part);
         let mut inside = inside;
         if !inside {
@@ -208,30 +229,31 @@ impl<'a> Boxes<'a> {
         self.poses.clear();
         let Part { rows, poses } = part;
         for row in [rows.start, rows.end - 1] {
-            for pose in [poses.start, poses.end - 1] {
-                push(&mut self.poses, &mut self.pose, tile, row, pose);
+            for column in [poses.start, poses.end - 1] {
+                place(&mut self.pose, tile, row, column);
+                self.poses.extend_from_slice(&self.pose);
             }
         }
         self.decide_taken(found, true);
         known(found)
     }
 
-    /// Takes open poses of a tile from a number on. Returns the number of the next one.
+    /// Takes open poses of a tile from a number on. Returns the number from which on to take the next.
     fn take_open(&mut self, tile: &Tile<'_>, from: usize) -> usize {
-        self.poses.clear();
-        self.numbers.clear();
-        let columns = tile.first.len();
-        for (number, known) in self.known.iter().enumerate().skip(from) {
-            if *known == Known::Nothing {
-                if self.numbers.len() == MOST {
-                    return number;
-                }
-                self.numbers.push(number);
-                let (row, pose) = (number / columns, number % columns);
-                push(&mut self.poses, &mut self.pose, tile, row, pose);
-            }
+        let Self { known, pose, poses, numbers, .. } = self;
+        let open = known[from..].iter().zip(from..).filter(|(known, _)| **known == Known::Nothing);
+        numbers.clear();
+        numbers.extend(open.map(|(_, number)| number).take(MOST));
+        let (width, columns) = (pose.len(), tile.first.len());
+        poses.clear();
+        poses.resize(numbers.len() * width, 0.0);
+        for (coordinate, &value) in pose.iter().enumerate() {
+            poses.iter_mut().skip(coordinate).step_by(width).for_each(|to| *to = value);
         }
-        self.known.len()
+        for (pose, number) in poses.chunks_mut(width).zip(&*numbers) {
+            place(pose, tile, number / columns, number % columns);
+        }
+        numbers.last().map_or(known.len(), |last| last + 1)
     }
 
     /// Decides the poses that were taken.
@@ -243,7 +265,10 @@ impl<'a> Boxes<'a> {
         });
     }
 
-    fn fill(&mut self, tile: &Tile<'_>, Part { rows, poses }: &Part, known: Known) {
+    /// Notes what a box tells.
+    fn fill(&mut self, tile: &Tile<'_>, part: &Part, known: Known) {
+        self.saved = SAVED.min(self.saved + part.len() as i64);
+        let Part { rows, poses } = part;
         for row in self.known.chunks_mut(tile.first.len()).take(rows.end).skip(rows.start) {
             row[poses.clone()].fill(known);
         }
@@ -287,11 +312,10 @@ impl<'a> Boxes<'a> {
     }
 }
 
-/// Adds a pose of a tile.
-fn push(poses: &mut Vec<f64>, pose: &mut [f64], tile: &Tile<'_>, row: usize, number: usize) {
+/// Places a pose in a tile, whose other coordinates it has.
+fn place(pose: &mut [f64], tile: &Tile<'_>, row: usize, column: usize) {
     if let Some(&second) = tile.second.get(row) {
         pose[tile.axes[1]] = second;
     }
-    pose[tile.axes[0]] = tile.first[number];
-    poses.extend_from_slice(pose);
+    pose[tile.axes[0]] = tile.first[column];
 }
