@@ -385,6 +385,27 @@ fn judge(rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>) ->
     (judged, count)
 }
 
+/// How many boxes are inside, outside and in part, and how many poses were drawn from them.
+#[derive(Debug, Default)]
+struct Seen {
+    all: u32,
+    none: u32,
+    partly: u32,
+    draws: u32,
+}
+
+impl Seen {
+    fn judge(&mut self, rng: &mut Rng, m: &Manipulator, domain: &Domain, mode: Option<Mode>) {
+        let (judged, count) = judge(rng, m, domain, mode);
+        self.draws += count;
+        *match judged {
+            Judged::All => &mut self.all,
+            Judged::None => &mut self.none,
+            Judged::Partly => &mut self.partly,
+        } += 1;
+    }
+}
+
 /// At π of an imaginary joint, a helical joint that follows it jumps by a revolution: boxes across
 /// that value.
 #[test]
@@ -435,7 +456,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
 #[test]
 fn boxes_are_never_contradicted() {
     let mut rng = Rng::with_seed(31);
-    let (mut all, mut none, mut partly, mut draws) = (0, 0, 0, 0);
+    let mut seen = Seen::default();
     let rounds = std::env::var("ROUNDS").map_or(1600, |n| n.parse().unwrap());
     for round in 0..rounds {
         let (m, mode, sections) = random(&mut rng, round);
@@ -446,23 +467,17 @@ fn boxes_are_never_contradicted() {
                 let size = 10.0_f64.powf(-8.0 * rng.f64());
                 domain = at_the_boundary(&mut rng, &m, &domain, mode, size).unwrap_or(domain);
             }
-            let (judged, count) = judge(&mut rng, &m, &domain, mode);
-            draws += count;
-            match judged {
-                Judged::All => all += 1,
-                Judged::None => none += 1,
-                Judged::Partly => partly += 1,
-            }
+            seen.judge(&mut rng, &m, &domain, mode);
         }
     }
-    println!("{all} boxes inside, {none} outside, {partly} in part; {draws} poses");
+    println!("{seen:?}");
 }
 
 /// The same where coordinates are dependent, for every pair of subspaces and every number of freedoms that a leg lacks.
 #[test]
 fn boxes_of_constrained_mechanisms_are_never_contradicted() {
     let mut rng = Rng::with_seed(35);
-    let (mut all, mut none, mut partly, mut draws) = (0, 0, 0, 0);
+    let mut seen = Seen::default();
     let rounds: u32 = std::env::var("ROUNDS").map_or(16, |n| n.parse().unwrap());
     for _ in 0..rounds {
         for pair in PAIRS {
@@ -489,19 +504,14 @@ fn boxes_of_constrained_mechanisms_are_never_contradicted() {
                         domain =
                             at_the_boundary(&mut rng, &m, &domain, mode, size).unwrap_or(domain);
                     }
-                    let (judged, count) = judge(&mut rng, &m, &domain, mode);
-                    draws += count;
-                    match judged {
-                        Judged::All => all += 1,
-                        Judged::None => none += 1,
-                        Judged::Partly => partly += 1,
-                    }
+                    seen.judge(&mut rng, &m, &domain, mode);
                 }
             }
         }
     }
-    println!("{all} boxes inside, {none} outside, {partly} in part; {draws} poses");
-    assert!(all.min(none).min(partly) > 100 * rounds / 4, "{all} {none} {partly}");
+    println!("{seen:?}");
+    let Seen { all, none, partly, .. } = seen;
+    assert!(all.min(none).min(partly) > 100 * rounds / 4, "{seen:?}");
 }
 
 /// Whole measures where coordinates are dependent: bounds come close, and estimates lie in them.
