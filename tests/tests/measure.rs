@@ -241,14 +241,11 @@ fn the_line_of_sarrus() {
 /// A leg that repeats a constraint, and sections that depend on each other.
 #[test]
 fn what_has_no_bounds_is_refused() {
-    let file = |name: &str| {
-        let example = EXAMPLES.iter().find(|example| example.name == name).unwrap();
-        example.text.to_owned()
-    };
+    let five_bar = EXAMPLES.iter().find(|example| example.name == "five-bar").unwrap();
     let again = "[[leg]]\nname = \"again\"\njoints = [\n\
         { name = \"S3\", type = \"revolute\", axis = [0, 0, 1], point = [160, 0, 0] },\n\
         { name = \"E3\", type = \"revolute\", axis = [0, 0, 1], point = [229, 119.511505722253, 0] },\n]\n";
-    let repeated = Manipulator::read(&(file("five-bar") + "\n" + again)).unwrap();
+    let repeated = Manipulator::read(&format!("{}\n{again}", five_bar.text)).unwrap();
     assert!(!repeated.has_enclosures());
     let refused = |m: &Manipulator, sections| Domain::new(m, sections, &[]).unwrap_err();
     assert_eq!(refused(&repeated, Sections::Whole), DomainError::Repeated);

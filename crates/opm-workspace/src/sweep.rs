@@ -39,7 +39,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use worker::{Ranges, Visitor, Worker};
 
-/// Poses of a block, the unit of work, in all but large grids. There are enough blocks for threads to share evenly.
+/// Poses of a block, which a thread takes at a time. Large grids have larger blocks.
 const BLOCK: u64 = 1 << 15;
 
 /// Blocks of a large grid, unless they would be too large. In rows of thousands of poses a block of [`BLOCK`] poses takes less

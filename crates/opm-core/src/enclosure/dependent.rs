@@ -28,7 +28,7 @@ const MOST: f64 = 1e9;
 const INFINITE: f64 = f64::INFINITY;
 
 impl<const N: usize> LegConditions<'_, N> {
-    /// Writes the dependent coordinates to their places among all those of a box. Returns the share of the box for which they
+    /// Writes the dependent coordinates, which are at home so far, to their places among all those of a box. Returns the share of the box for which they
     /// exist, with the choices that are given.
     ///
     /// # Errors
@@ -58,15 +58,12 @@ impl<const N: usize> LegConditions<'_, N> {
         Ok(share)
     }
 
+    /// Takes one step of the solution. Returns the share for which its coordinates exist.
     fn take(&self, step: &Step, pose: &mut [Coordinate<N>]) -> Share<N> {
         let sign = step.sign(self.choices.chosen);
         match &step.solution {
-            Closed::Constant { coordinates, .. } => {
-                for &coordinate in coordinates {
-                    pose[coordinate] = self.home(coordinate);
-                }
-                Share::ALL
-            }
+            // They are at home.
+            Closed::Constant { .. } => Share::ALL,
             Closed::Condition { constraint, coordinate, function } => {
                 let Constraint { leg, section, condition } = constraint;
                 let (known, tau) = self.tau_before(*leg, *section, pose);
@@ -85,11 +82,6 @@ impl<const N: usize> LegConditions<'_, N> {
                 known.and(self.take_joint(joint, sign, tau, pose))
             }
         }
-    }
-
-    /// A coordinate at home.
-    fn home(&self, coordinate: usize) -> Coordinate<N> {
-        Coordinate::Linear(Affine::constant(self.manipulator.task().coordinates[coordinate].home))
     }
 
     /// Takes the coordinates of a section with one joint. Returns the share for which they exist.
