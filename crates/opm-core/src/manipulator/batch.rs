@@ -20,7 +20,7 @@ use super::solution::Solution;
 use super::{Manipulator, Mode};
 pub(crate) use block::Block;
 pub(in crate::manipulator) use block::SolveSection;
-use block::{Status, columns_of};
+use block::{Give, Status, columns_of};
 use lanes::{BranchesOfLeg, LANES};
 use pulp::{Arch, Simd, WithSimd};
 pub use rows::{RowArcs, RowEnds, SheetRows};
@@ -224,7 +224,7 @@ impl Manipulator {
             let refused =
                 |(row, error): (usize, PoseError)| BatchError::Pose { row: first + row, error };
             let arch = batch.arch;
-            if !batch.block.take(self, poses, arch) {
+            if !batch.block.take(self, poses) {
                 self.check(poses).map_err(refused)?;
             }
             let mut block_output = BatchOutput {
@@ -241,7 +241,8 @@ impl Manipulator {
             block.lanes = rows.next_multiple_of(16);
             block.displace(self, arch);
             let of_rows = modes.from(first);
-            arch.dispatch(Solve { manipulator: self, modes: of_rows, arch, block, out });
+            arch.dispatch(Solve { manipulator: self, modes: of_rows, arch, block });
+            self.arch.dispatch(Give { block, out });
             for row in (0..rows).filter(|&row| batch.block.is_open(row)) {
                 let pose = &poses[row * width..][..width];
                 let mode = of_rows.of(row);
@@ -373,25 +374,23 @@ impl Modes<'_> {
 }
 
 /// Solves a displaced block with the instructions of the processor at hand.
-struct Solve<'a, 'b> {
+struct Solve<'a> {
     manipulator: &'a Manipulator,
     modes: Modes<'a>,
     arch: Arch,
     block: &'a mut Block,
-    out: &'a mut BatchOutput<'b>,
 }
 
-impl WithSimd for Solve<'_, '_> {
+impl WithSimd for Solve<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { manipulator, modes, arch, block, out } = self;
+        let Self { manipulator, modes, arch, block } = self;
         for (number, leg) in manipulator.legs.iter().enumerate() {
             let branches = modes.branches(manipulator, number);
             block.solve_leg(manipulator, &branches, number, arch);
             block.report(manipulator, leg);
         }
-        block.give(out);
     }
 }

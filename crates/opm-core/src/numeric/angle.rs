@@ -5,7 +5,7 @@
 //! and on every processor. The standard library's functions guarantee neither.
 //!
 //! Against extended precision, on 10⁷ random arguments of all signs and sizes and near the multiples of
-//! π/2, [`atan2`] errs by at most 1.93 units in the last place and [`sin_cos`] by 0.80.
+//! π/2, [`atan2`] errs by at most 1.98 units in the last place and [`sin_cos`] by 0.80.
 
 use nalgebra::Complex;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, TAU};
@@ -76,7 +76,7 @@ pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     let below = if wide { short + long } else { long };
     let t = above / if below < SMALLEST { SMALLEST } else { below };
     let z = t * t;
-    let atan = t + t * (z * polynomial(&ATAN, z));
+    let atan = t + t * (z * long_polynomial(&ATAN, z));
     // Add the nearest multiple of 45 degrees, from 0 to 180.
     let wide_eighths = if backwards { 3.0 } else { 1.0 };
     let flat_eighths = if backwards { 4.0 } else { 0.0 };
@@ -168,13 +168,34 @@ pub(crate) fn sin_cos_reduced(angle: f64) -> (f64, f64) {
 #[inline(always)]
 fn polynomial<const N: usize>(coefficients: &[f64; N], z: f64) -> f64 {
     let square = z * z;
-    let mut sums = [0.0; 2];
-    let mut power = N;
-    while power > 0 {
-        power -= 1;
-        sums[power % 2] = sums[power % 2] * square + coefficients[power];
+    let [even, odd] = strands(coefficients, square);
+    even + z * odd
+}
+
+/// The same for many coefficients, in four sums.
+#[inline(always)]
+fn long_polynomial<const N: usize>(coefficients: &[f64; N], z: f64) -> f64 {
+    let square = z * z;
+    let [a, b, c, d] = strands(coefficients, square * square);
+    (a + z * b) + square * (c + z * d)
+}
+
+/// Polynomials in `power` with every `STRANDS`th coefficient.
+#[inline(always)]
+fn strands<const N: usize, const STRANDS: usize>(
+    coefficients: &[f64; N],
+    power: f64,
+) -> [f64; STRANDS] {
+    let mut number = N - STRANDS;
+    let mut sums = [0.0; STRANDS];
+    for number in number..N {
+        sums[number % STRANDS] = coefficients[number];
     }
-    sums[0] + z * sums[1]
+    while number > 0 {
+        number -= 1;
+        sums[number % STRANDS] = sums[number % STRANDS] * power + coefficients[number];
+    }
+    sums
 }
 
 /// The unit complex number `e(angle) = cos(angle) + i sin(angle)`.

@@ -12,7 +12,7 @@ use super::jacobian::Basis;
 use super::weighted::{Metric, Weighted};
 use crate::chain::Chain;
 use crate::manipulator::batch::Batch;
-use crate::manipulator::batch::lanes::{Column, LANES, Mask};
+use crate::manipulator::batch::lanes::{Column, LANES, Lanes, Mask};
 use crate::manipulator::{Choices, LARGEST, Manipulator, Mode};
 use leg::{BranchRows, LegRows, RowJoint, locked};
 use platform::PlatformColumns;
@@ -103,8 +103,8 @@ impl Manipulator {
                 branches: vec![Vec::new(); self.legs.len()],
                 counts: vec![0; self.legs.len()],
                 choice: vec![0; self.legs.len()],
-                open: [0; LANES],
-                conditions: [f64::NAN; LANES],
+                open: Lanes::all(0),
+                conditions: Lanes::all(f64::NAN),
                 ranges: vec![[f64::INFINITY, f64::NEG_INFINITY]; self.imaginary().len()],
             }),
         }
@@ -138,7 +138,7 @@ impl Manipulator {
             return u64::MAX;
         }
         let arch = batch.arch;
-        batch.block.take(self, poses, arch);
+        batch.block.take(self, poses);
         if let Some(mode) = query.mode {
             self.complete_block(mode, arch, &mut batch.block);
         }
@@ -191,7 +191,7 @@ impl WithSimd for Conditions<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) {
-        self.work.conditions = [f64::NAN; LANES];
+        self.work.conditions = Lanes::all(f64::NAN);
         self.work.ranges.fill([f64::INFINITY, f64::NEG_INFINITY]);
         if !self.solve() {
             return;

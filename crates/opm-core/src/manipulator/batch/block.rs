@@ -4,7 +4,7 @@
 use super::BatchOutput;
 use super::decide::Decided;
 use super::lanes::{
-    self, Branches, BranchesOfLeg, Column, DisplacementColumns, Displacements, LANES, Mask,
+    self, Branches, BranchesOfLeg, Column, DisplacementColumns, Displacements, LANES, Lanes, Mask,
 };
 use super::rows_and_columns::{read_rows, write_rows};
 use super::section::{self, Found, Side, Step};
@@ -68,11 +68,11 @@ impl WithSimd for Take<'_> {
     type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> bool {
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Self { manipulator, poses, block } = self;
         let width = manipulator.task_coordinates().len();
         let column_of = |number: usize| manipulator.number_among_all(number);
-        read_rows(poses, width, &mut block.pose, column_of);
+        read_rows(simd, poses, width, &mut block.pose, column_of);
         block.begin(manipulator);
         let mut fit = true;
         for column in (0..width).map(|number| &block.pose[column_of(number)]) {
@@ -165,20 +165,49 @@ impl WithSimd for SolveSection<'_> {
     }
 }
 
+/// Writes the results of a block to rows, including the rows that are still open.
+pub(super) struct Give<'a, 'b> {
+    pub block: &'a Block,
+    pub out: &'a mut BatchOutput<'b>,
+}
+
+impl WithSimd for Give<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { block: Block { joints, imaginary, status, .. }, out } = self;
+        write_rows(simd, joints, out.joints);
+        write_rows(simd, imaginary, out.imaginary);
+        for (to, &beyond) in out.reachable.iter_mut().zip(&status.beyond) {
+            *to = beyond == 0;
+        }
+        let flags = status.within_limits.iter().zip(&status.beyond);
+        for (to, (&within, &beyond)) in out.within_limits.iter_mut().zip(flags) {
+            *to = (within != 0) & (beyond == 0);
+        }
+        let (joints, imaginary) = (joints.len(), imaginary.len());
+        for (row, _) in out.reachable.iter().enumerate().filter(|(_, reached)| !**reached) {
+            out.joints[row * joints..][..joints].fill(f64::NAN);
+            out.imaginary[row * imaginary..][..imaginary].fill(f64::NAN);
+        }
+    }
+}
+
 impl Block {
     pub(super) fn new(manipulator: &Manipulator) -> Self {
-        let columns = |count: usize| vec![[0.0; LANES]; count];
-        let none = [0; LANES];
+        let columns = |count: usize| vec![Lanes::all(0.0); count];
+        let none = Lanes::all(0);
         Self {
             pose: columns(manipulator.task.coordinates.len()),
-            v: [[0.0; LANES]; 9],
-            b: [[0.0; LANES]; 9],
+            v: [Lanes::all(0.0); 9],
+            b: [Lanes::all(0.0); 9],
             lanes: LANES,
             upper_lanes: LANES,
             lower: Found::new(),
             upper: Found::new(),
             tau: DisplacementColumns::new(),
-            shifted: [[0.0; LANES]; 9],
+            shifted: [Lanes::all(0.0); 9],
             joints: columns(manipulator.coordinates.len()),
             imaginary: columns(manipulator.imaginary.len()),
             status: Status { beyond: none, open: none, within_limits: none },
@@ -188,16 +217,17 @@ impl Block {
 
     /// Copies poses into the block, and fills its remaining lanes with the last one, so that all can be computed. Returns
     /// whether all coordinates are numbers that are not too large.
-    pub fn take(&mut self, manipulator: &Manipulator, poses: &[f64], arch: Arch) -> bool {
+    pub fn take(&mut self, manipulator: &Manipulator, poses: &[f64]) -> bool {
         self.lanes = LANES;
-        arch.dispatch(Take { manipulator, poses, block: self })
+        manipulator.arch.dispatch(Take { manipulator, poses, block: self })
     }
 
     /// Begins with the poses of the block: nothing is known of them, but that angles of many revolutions are not solved
     /// together.
     #[inline(always)]
     pub fn begin(&mut self, manipulator: &Manipulator) {
-        self.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+        self.status =
+            Status { beyond: Lanes::all(0), open: Lanes::all(0), within_limits: Lanes::all(1) };
         self.leave_large(manipulator);
     }
 
@@ -233,23 +263,6 @@ impl Block {
     #[inline(always)]
     pub fn one_upper(&self) -> bool {
         self.upper_lanes == 1
-    }
-
-    /// Writes the block's results to rows, including the rows that are still open.
-    #[inline(always)]
-    pub(super) fn give(&self, out: &mut BatchOutput<'_>) {
-        write_rows(&self.joints, out.joints);
-        write_rows(&self.imaginary, out.imaginary);
-        let (joints, imaginary) = (self.joints.len(), self.imaginary.len());
-        for row in 0..out.reachable.len() {
-            let reached = self.status.beyond[row] == 0;
-            out.reachable[row] = reached;
-            out.within_limits[row] = reached && self.status.within_limits[row] != 0;
-            if !reached {
-                out.joints[row * joints..][..joints].fill(f64::NAN);
-                out.imaginary[row * imaginary..][..imaginary].fill(f64::NAN);
-            }
-        }
     }
 
     /// Whether a row has to be solved by [`Manipulator::inverse`].
@@ -384,7 +397,8 @@ pub(super) fn columns_of<'p>(
     section: Section,
     pose: &'p [Column],
 ) -> ([&'p Column; 3], [f64; 3]) {
-    let (mut at, mut home) = ([&[0.0; LANES]; 3], [0.0; 3]);
+    static ZEROS: Column = Lanes::all(0.0);
+    let (mut at, mut home) = ([&ZEROS; 3], [0.0; 3]);
     for (place, number) in task.in_plane(section, task.range(section)).enumerate() {
         (at[place], home[place]) = (&pose[number], task.coordinates[number].home);
     }
@@ -395,7 +409,7 @@ impl Status {
     /// Whether a branch reaches each pose within the leg's limits. Marks in `open` where that is not known.
     #[inline(always)]
     pub fn reaches(&self, open: &mut Mask) -> Mask {
-        let mut reaches = [0; LANES];
+        let mut reaches = Lanes::all(0);
         for lane in 0..LANES {
             let closes = self.beyond[lane] ^ 1;
             reaches[lane] = closes & (self.open[lane] ^ 1) & self.within_limits[lane];

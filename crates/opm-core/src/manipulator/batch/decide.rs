@@ -1,7 +1,7 @@
 //! Which of many poses are in reach within all limits, in one working mode or in any: the steps of
 //! [`Manipulator::inverse_many`] without the joints' values.
 
-use super::lanes::{BranchesOfLeg, Column, LANES, Mask};
+use super::lanes::{BranchesOfLeg, Column, LANES, Lanes, Mask};
 use super::{Batch, Block, Status, section};
 use crate::manipulator::{Choices, CompiledLeg, Dependent, LegBranches, Manipulator, Mode};
 use crate::mechanism::leg::Section;
@@ -30,7 +30,7 @@ struct OfBranch {
 
 impl Decided {
     pub fn new() -> Self {
-        Self { missed: [0; LANES], open: [0; LANES], imaginary: Vec::new() }
+        Self { missed: Lanes::all(0), open: Lanes::all(0), imaginary: Vec::new() }
     }
 }
 
@@ -83,10 +83,10 @@ impl Manipulator {
         let (width, rows) = (self.task_coordinates().len(), reached.len());
         let Batch { arch, block, solution, all, .. } = batch;
         let together = self.decides_many();
-        let mut alone = [u64::from(!together); LANES];
+        let mut alone = Lanes::all(u64::from(!together));
         reached.fill(false);
         if together {
-            block.take(self, poses, *arch);
+            block.take(self, poses);
         }
         for choices in self.completions(mode).take_while(|_| together) {
             self.complete_block(choices.chosen, *arch, block);
@@ -151,7 +151,8 @@ impl WithSimd for Reach<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, leg, branches, arch, block } = self;
-        block.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+        block.status =
+            Status { beyond: Lanes::all(0), open: Lanes::all(0), within_limits: Lanes::all(1) };
         block.solve_leg(manipulator, &BranchesOfLeg::repeated(branches), leg, arch);
         for section in [Section::Lower, Section::Upper] {
             block.admit(manipulator, &manipulator.legs[leg], section, LANES);
@@ -187,8 +188,8 @@ impl Block {
         }
         let mut number = 0;
         for (leg, compiled) in manipulator.legs.iter().enumerate() {
-            let mut reached = [0; LANES];
-            let mut open = [0; LANES];
+            let mut reached = Lanes::all(0);
+            let mut open = Lanes::all(0);
             for branches in manipulator.branches_of(choices, leg) {
                 self.reach(manipulator, leg, branches, arch);
                 let reaches = self.status.reaches(&mut open);
@@ -255,7 +256,7 @@ impl Block {
     ) {
         let noted = &mut self.decided.imaginary;
         if number == noted.len() {
-            noted.push(OfBranch { number: 0, reaches: [0; LANES], values: [0.0; LANES] });
+            noted.push(OfBranch { number: 0, reaches: Lanes::all(0), values: Lanes::all(0.0) });
         }
         let of_branch = &mut noted[number];
         (of_branch.number, of_branch.reaches) = (imaginary, reaches);

@@ -5,6 +5,8 @@ use crate::group::{CylindricalDisplacement, JointDisplacement, PlanarDisplacemen
 use crate::manipulator::leg::LegBranches;
 use crate::mechanism::leg::Section;
 use nalgebra::{Complex, Matrix3, Vector3};
+use std::ops::{Deref, DerefMut};
+use std::slice;
 
 /// The number of poses in a block.
 pub const LANES: usize = 64;
@@ -15,12 +17,62 @@ pub fn vectors(lanes: usize) -> usize {
     lanes.next_multiple_of(8).min(LANES)
 }
 
+/// One value for each pose. It begins where a vector of the processor may: one that reaches over two lines of the cache takes
+/// longer to read and to write.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
+pub struct Lanes<T>(pub [T; LANES]);
+
+impl<T: Copy> Lanes<T> {
+    /// The same value for all poses.
+    #[inline(always)]
+    pub const fn all(value: T) -> Self {
+        Self([value; LANES])
+    }
+}
+
+impl<T> Deref for Lanes<T> {
+    type Target = [T; LANES];
+
+    #[inline(always)]
+    fn deref(&self) -> &[T; LANES] {
+        &self.0
+    }
+}
+
+impl<T> DerefMut for Lanes<T> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [T; LANES] {
+        &mut self.0
+    }
+}
+
+impl<'a, T> IntoIterator for &'a Lanes<T> {
+    type Item = &'a T;
+    type IntoIter = slice::Iter<'a, T>;
+
+    #[inline(always)]
+    fn into_iter(self) -> slice::Iter<'a, T> {
+        self.0.iter()
+    }
+}
+
+impl<'a, T> IntoIterator for &'a mut Lanes<T> {
+    type Item = &'a mut T;
+    type IntoIter = slice::IterMut<'a, T>;
+
+    #[inline(always)]
+    fn into_iter(self) -> slice::IterMut<'a, T> {
+        self.0.iter_mut()
+    }
+}
+
 /// One number for each pose.
-pub type Column = [f64; LANES];
+pub type Column = Lanes<f64>;
 
 /// Zero or one for each pose. It is as wide as the numbers it is computed from, so that loops need no
 /// packing.
-pub type Mask = [u64; LANES];
+pub type Mask = Lanes<u64>;
 
 /// The branch of a chain for each pose.
 pub type Branches = [Branch; LANES];
@@ -107,7 +159,7 @@ impl Lane for Matrix3<f64> {
 #[inline(always)]
 pub fn repeat(columns: &mut [Column]) {
     for column in columns {
-        *column = [column[0]; LANES];
+        *column = Lanes::all(column[0]);
     }
 }
 
@@ -164,14 +216,14 @@ pub struct DisplacementColumns {
 
 impl DisplacementColumns {
     pub fn new() -> Self {
-        Self { are_directions: false, columns: [[0.0; LANES]; 2] }
+        Self { are_directions: false, columns: [Lanes::all(0.0); 2] }
     }
 
     /// Sets every displacement to zero.
     #[inline(always)]
     pub fn clear(&mut self) {
         self.are_directions = false;
-        self.columns[0] = [0.0; LANES];
+        self.columns[0] = Lanes::all(0.0);
     }
 
     /// Repeats the first one for all poses.

@@ -12,7 +12,7 @@ mod scale;
 pub use arcs::RowArcs;
 pub use ends::RowEnds;
 
-use super::lanes::{LANES, Lane, vectors};
+use super::lanes::{LANES, Lane, Lanes, vectors};
 use super::section::{self, FirstOfRows, OfSheet, Side, Step};
 use super::{Batch, Block, FEW, Status, columns_of};
 use crate::group::{Displacement, PlanarDisplacement};
@@ -120,7 +120,8 @@ impl WithSimd for ReachLower<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, branch, count, block } = self;
         let lanes = vectors(count);
-        block.status = Status { beyond: [0; LANES], open: [0; LANES], within_limits: [1; LANES] };
+        block.status =
+            Status { beyond: Lanes::all(0), open: Lanes::all(0), within_limits: Lanes::all(1) };
         let leg = &manipulator.legs[branch.leg];
         block.aim(manipulator, branch, Shared::AllButTwo, lanes);
         let Block { shifted, lower, status, .. } = &mut *block;
@@ -141,7 +142,7 @@ impl Block {
         rows: &SheetRows<'_>,
     ) -> RowScale {
         let home = manipulator.task.coordinates[0].home;
-        let firsts = &[home; LANES][..rows.second.len()];
+        let firsts = &Lanes::all(home)[..rows.second.len()];
         self.take_rows(manipulator.task.lower_count, firsts, rows.second, rows.others);
         self.aim(manipulator, branch, Shared::AllButSecond, vectors(rows.second.len()));
         // Along a row the first coordinate is a displacement from home.
@@ -157,7 +158,7 @@ impl Block {
             column[values.len()..].fill(values.last().copied().unwrap_or_default());
         }
         for (column, &other) in self.pose[..width].iter_mut().skip(2).zip(others) {
-            *column = [other; LANES];
+            *column = Lanes::all(other);
         }
     }
 

@@ -1,7 +1,9 @@
 //! The steps of inverse kinematics, each a loop over the poses of a block. The kind of chain, intersection
 //! motion or limits is decided outside of the loop; the loop does the same arithmetic as for one pose.
 
-use super::lanes::{Branches, Column, DisplacementColumns, Displacements, LANES, Lane, Mask};
+use super::lanes::{
+    Branches, Column, DisplacementColumns, Displacements, LANES, Lane, Lanes, Mask,
+};
 use crate::chain::cylindrical::WithRevolute;
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
@@ -42,7 +44,7 @@ impl Found {
     pub fn new() -> Self {
         let displacements =
             [DisplacementColumns::new(), DisplacementColumns::new(), DisplacementColumns::new()];
-        Self { displacements, holds: [0; LANES], beyond: [0; LANES] }
+        Self { displacements, holds: Lanes::all(0), beyond: Lanes::all(0) }
     }
 
     /// Repeats the result of the first pose for all.
@@ -51,7 +53,7 @@ impl Found {
         for displacements in &mut self.displacements {
             displacements.repeat();
         }
-        (self.holds, self.beyond) = ([self.holds[0]; LANES], [self.beyond[0]; LANES]);
+        (self.holds, self.beyond) = (Lanes::all(self.holds[0]), Lanes::all(self.beyond[0]));
     }
 }
 
@@ -207,7 +209,7 @@ pub fn solve_chain(
     lanes: usize,
 ) {
     match chain {
-        Chain::Rigid => (found.holds, found.beyond) = ([1; LANES], [0; LANES]),
+        Chain::Rigid => (found.holds, found.beyond) = (Lanes::all(1), Lanes::all(0)),
         Chain::Planar(PlanarChain::Rrr(chain)) => attempt(chain, branches, targets, found, lanes),
         Chain::Planar(PlanarChain::Prr(chain)) => attempt(chain, branches, targets, found, lanes),
         Chain::Planar(PlanarChain::Rrp(chain)) => attempt(chain, branches, targets, found, lanes),
@@ -236,7 +238,7 @@ fn solve_partial(
     found: &mut Found,
     lanes: usize,
 ) {
-    (found.holds, found.beyond) = ([1; LANES], [0; LANES]);
+    (found.holds, found.beyond) = (Lanes::all(1), Lanes::all(0));
     let to = &mut found.displacements;
     // Locked joints do not move.
     to.iter_mut().for_each(DisplacementColumns::clear);

@@ -9,7 +9,7 @@ use crate::chain::ReachDeficit;
 use crate::chain::condition::Condition;
 use crate::chain::equation::AttemptedZero;
 use crate::group::{CylindricalDisplacement, Displacement, PlanarDisplacement, SubspaceKind};
-use crate::manipulator::batch::lanes::{Column, LANES, Lane};
+use crate::manipulator::batch::lanes::{Column, LANES, Lane, Lanes};
 use crate::manipulator::batch::section::{self, Side, Step};
 use crate::manipulator::batch::{Block, SolveSection};
 use crate::manipulator::{CompiledLeg, Manipulator, Mode, Section};
@@ -32,7 +32,7 @@ impl Complete<'_> {
             block.pose[coordinate].fill(manipulator.home[coordinate]);
         }
         block.begin(manipulator);
-        let mut values = [[0.0; LANES]; 3];
+        let mut values = [Lanes::all(0.0); 3];
         for step in &dependent.steps {
             let sign = step.sign(mode);
             match &step.solution {

@@ -1,7 +1,5 @@
 //! A leg's rows of the Jacobian at every pose of a block.
 
-#![expect(clippy::needless_range_loop, reason = "a loop over the lanes is one for all columns")]
-
 use super::platform::{VectorColumns, fill, store, vector};
 use crate::chain::Chain;
 use crate::chain::partial::PartialChain;
@@ -10,7 +8,7 @@ use crate::group::{
 };
 use crate::manipulator::batch::Block;
 use crate::manipulator::batch::lanes::{
-    Column, DisplacementColumns, Displacements, LANES, Lane, Mask, repeat,
+    Column, DisplacementColumns, Displacements, LANES, Lane, Lanes, Mask, repeat,
 };
 use crate::manipulator::batch::section::{self, Found, Side, Step};
 use crate::manipulator::{CompiledLeg, CompiledSection, Manipulator, Section};
@@ -59,12 +57,12 @@ impl BranchRows {
         let locked = locked(manipulator).filter(|(of, _)| *of == leg).map(|(_, joint)| joint);
         let rows = actuated
             .chain(locked)
-            .map(|joint| JointRow { joint, rates: vec![[0.0; LANES]; freedoms] });
+            .map(|joint| JointRow { joint, rates: vec![Lanes::all(0.0); freedoms] });
         Self {
-            reaches: [0; LANES],
-            serial: [0; LANES],
+            reaches: Lanes::all(0),
+            serial: Lanes::all(0),
             rows: rows.collect(),
-            imaginary: compiled.imaginary.map(|number| (number, [0.0; LANES])),
+            imaginary: compiled.imaginary.map(|number| (number, Lanes::all(0.0))),
         }
     }
 
@@ -94,7 +92,11 @@ struct Screws {
 
 impl Screws {
     fn new() -> Self {
-        Self { moved: [[[0.0; LANES]; 3]; 3], inverse: [0.0; LANES], steps: [[[0.0; LANES]; 9]; 2] }
+        Self {
+            moved: [[Lanes::all(0.0); 3]; 3],
+            inverse: Lanes::all(0.0),
+            steps: [[Lanes::all(0.0); 9]; 2],
+        }
     }
 
     /// Displaces the screws of a section: see [`Screws`](crate::velocity::screws::Screws).
@@ -161,7 +163,7 @@ impl Screws {
     #[inline(always)]
     fn invert(&mut self, scale: f64, serial: &mut Mask, lanes: usize) {
         let Self { moved: [first, second, third], inverse, .. } = self;
-        let mut singular = [0; LANES];
+        let mut singular = Lanes::all(0);
         for lane in 0..lanes.min(LANES) {
             let cross = vector(second, lane).cross(&vector(third, lane));
             let determinant = vector(first, lane).dot(&cross);
@@ -169,7 +171,7 @@ impl Screws {
             inverse[lane] = determinant.recip();
         }
         if lanes < LANES {
-            singular = [singular[0]; LANES];
+            singular = Lanes::all(singular[0]);
         }
         for lane in 0..LANES {
             serial[lane] |= singular[lane];
@@ -268,7 +270,7 @@ pub struct LegRows {
 
 impl LegRows {
     pub fn new(manipulator: &Manipulator, basis: &Basis) -> Self {
-        let same = |twist: &LocalTwist| [twist.x, twist.y, twist.z].map(|value| [value; LANES]);
+        let same = |twist: &LocalTwist| [twist.x, twist.y, twist.z].map(Lanes::all);
         let none = same(&LocalTwist::zeros());
         Self {
             counts: basis.counts,
@@ -283,7 +285,7 @@ impl LegRows {
             upper_along: same(&manipulator.task().upper_intersection.unit_twist()),
             reciprocal: none,
             back: DisplacementColumns::new(),
-            steps: [[0.0; LANES]; 9],
+            steps: [Lanes::all(0.0); 9],
         }
     }
 
@@ -309,7 +311,7 @@ impl LegRows {
         out: &mut BranchRows,
     ) {
         let (task, leg) = (manipulator.task(), &manipulator.legs[number]);
-        out.serial = [0; LANES];
+        out.serial = Lanes::all(0);
         // What is solved first in the upper section may be the same at all poses.
         let first = leg.split_section == Section::Upper;
         let upper_lanes = if first { block.upper_lanes } else { LANES };
@@ -362,7 +364,7 @@ impl LegRows {
             if !kind.commutes() {
                 // The displacement back is one of the identity.
                 let step = Step { motion, side: Side::Before };
-                let mut identity = [[0.0; LANES]; 9];
+                let mut identity = [Lanes::all(0.0); 9];
                 for lane in 0..LANES {
                     kind.identity().store(&mut identity, lane);
                 }
@@ -373,7 +375,7 @@ impl LegRows {
             }
         }
         let Some(joint) = leg.imaginary_joint() else {
-            self.along = [[0.0; LANES]; 3];
+            self.along = [Lanes::all(0.0); 3];
             return;
         };
         let (screws, own, lanes) = match leg.split_section {

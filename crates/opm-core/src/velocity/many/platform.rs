@@ -4,7 +4,7 @@ use crate::group::{
     Cylindrical, Planar, Spherical, Subgroup, SubspaceKind, TranslationalPlane, TranslationalSpace,
 };
 use crate::manipulator::batch::Block;
-use crate::manipulator::batch::lanes::{Column, LANES, Lane, repeat};
+use crate::manipulator::batch::lanes::{Column, LANES, Lane, Lanes, repeat};
 use crate::manipulator::{Manipulator, Section};
 use crate::task::Height;
 use crate::velocity::jacobian::{BaseTwist, Basis};
@@ -42,7 +42,7 @@ pub struct PlatformColumns {
 
 impl PlatformColumns {
     pub fn new(freedoms: usize) -> Self {
-        let none = [[0.0; LANES]; 3];
+        let none = [Lanes::all(0.0); 3];
         Self { point: none, velocities: vec![none; freedoms] }
     }
 

@@ -6,7 +6,7 @@ use super::{SheetRows, vectors};
 use crate::chain::shell::{self, ArcHole, Shell};
 use crate::chain::surface::Surface;
 use crate::group::{Path, SubspaceKind};
-use crate::manipulator::batch::lanes::{Column, LANES, Lane};
+use crate::manipulator::batch::lanes::{Column, LANES, Lane, Lanes};
 use crate::manipulator::batch::{Batch, Block};
 use crate::manipulator::{LegBranch, Manipulator};
 use pulp::{Simd, WithSimd};
@@ -103,7 +103,7 @@ impl WithSimd for FindArcs<'_> {
         for cone in shell.cones() {
             let Surface::Cone { fixed, carried, cosine } = cone else { return };
             // The coefficients of a function of each row that is positive where the last axis is in the cone.
-            let mut along = [[0.0; LANES]; 3];
+            let mut along = [Lanes::all(0.0); 3];
             let mut any = 0;
             for lane in 0..lanes {
                 let path = Path::Spherical { start: Lane::load(&block.shifted, lane), axis };
@@ -114,7 +114,8 @@ impl WithSimd for FindArcs<'_> {
                 }
             }
             if any != 0 {
-                let mut found = HoleColumns { inner: [[0.0; LANES]; 2], outer: [[0.0; LANES]; 2] };
+                let mut found =
+                    HoleColumns { inner: [Lanes::all(0.0); 2], outer: [Lanes::all(0.0); 2] };
                 for lane in 0..lanes {
                     let function = along.each_ref().map(|column| column[lane]);
                     found.set(lane, shell::hole(function, tolerance, margin), scale.first);

@@ -4,7 +4,7 @@ use super::scale::RowScale;
 use super::{SheetRows, vectors};
 use crate::chain::surface::{Surface, Uncertainty};
 use crate::group::{Displacement, Path, PlanarPath, SubspaceKind};
-use crate::manipulator::batch::lanes::{Displacements, LANES, Lane};
+use crate::manipulator::batch::lanes::{Displacements, LANES, Lane, Lanes};
 use crate::manipulator::batch::{Batch, Block};
 use crate::manipulator::{LegBranch, Manipulator, Transitions};
 use crate::mechanism::leg::Section;
@@ -145,7 +145,7 @@ impl Finder<'_> {
                     return ends.push(RowEnds::everything(self.scale.count as u64));
                 };
                 let lanes = self.lanes.min(LANES);
-                let mut along = [[0.0; LANES]; 3];
+                let mut along = [Lanes::all(0.0); 3];
                 let mut any = 0;
                 for lane in 0..lanes {
                     let $start = Lane::load(self.starts, lane);
