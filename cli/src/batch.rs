@@ -66,6 +66,8 @@ struct Rows<'a> {
     manipulator: &'a Manipulator,
     units: FileUnits,
     wanted: RowContent,
+    /// The name of the mode, if one is requested.
+    mode: String,
     /// The numbers of the joint coordinates that are columns.
     joints: Vec<usize>,
     drives: ActuatedJoints,
@@ -101,10 +103,15 @@ impl<'a> Rows<'a> {
             .chain(joints.iter().map(|&i| &*coordinates[i].name))
             .collect();
         writer.header(header)?;
+        let mode = match wanted.modes {
+            Modes::One(mode) => manipulator.format_mode(mode),
+            Modes::All => String::new(),
+        };
         Ok(Self {
             manipulator,
             units: loaded.file.units,
             wanted,
+            mode,
             joints,
             drives: manipulator.actuated_joints(),
             all: manipulator.all_modes(),
@@ -152,7 +159,7 @@ impl<'a> Rows<'a> {
                     verified.map_err(|error| wrong(&error))?;
                 }
                 self.depend(dependent.as_deref());
-                self.write(writer, pose, [reachable, within], &manipulator.format_mode(mode))
+                self.write(writer, pose, [reachable, within], &self.mode)
             }
             Modes::All => {
                 let found = manipulator.inverse_all(pose, &mut self.all).map_err(of_pose)?;

@@ -17,8 +17,8 @@ pub fn vectors(lanes: usize) -> usize {
     lanes.next_multiple_of(8).min(LANES)
 }
 
-/// One value for each pose. It begins where a vector of the processor may: one that reaches over two lines of the cache takes
-/// longer to read and to write.
+/// One value for each pose. They begin at a line of the cache: a vector that reaches over two lines takes longer to read and
+/// to write.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct Lanes<T>(pub [T; LANES]);
