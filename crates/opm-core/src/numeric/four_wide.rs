@@ -8,7 +8,7 @@ use pulp::{Scalar, Simd, x86::V3};
 ///
 /// Work on one pose has three or four numbers of a kind. Compiled for AVX-512, the joints of a pose took up to 1.1 times
 /// as long on a processor that has it (Sapphire Rapids), and the actuated ones 1.3 times. Many poses at once took 0.7
-/// times as long; so work on blocks of them uses [`pulp::Arch`].
+/// times as long; so work on blocks of them uses [`pulp::Arch`], but for rows that become columns, four at a time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FourWide {
     #[cfg(target_arch = "x86_64")]

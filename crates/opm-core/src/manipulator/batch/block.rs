@@ -197,7 +197,6 @@ impl WithSimd for Give<'_, '_> {
 impl Block {
     pub(super) fn new(manipulator: &Manipulator) -> Self {
         let columns = |count: usize| vec![Lanes::all(0.0); count];
-        let none = Lanes::all(0);
         Self {
             pose: columns(manipulator.task.coordinates.len()),
             v: [Lanes::all(0.0); 9],
@@ -210,7 +209,7 @@ impl Block {
             shifted: [Lanes::all(0.0); 9],
             joints: columns(manipulator.coordinates.len()),
             imaginary: columns(manipulator.imaginary.len()),
-            status: Status { beyond: none, open: none, within_limits: none },
+            status: Status::UNKNOWN,
             decided: Decided::new(),
         }
     }
@@ -226,8 +225,7 @@ impl Block {
     /// together.
     #[inline(always)]
     pub fn begin(&mut self, manipulator: &Manipulator) {
-        self.status =
-            Status { beyond: Lanes::all(0), open: Lanes::all(0), within_limits: Lanes::all(1) };
+        self.status = Status::UNKNOWN;
         self.leave_large(manipulator);
     }
 
@@ -406,6 +404,10 @@ pub(super) fn columns_of<'p>(
 }
 
 impl Status {
+    /// Nothing is known of any pose.
+    pub const UNKNOWN: Self =
+        Self { beyond: Lanes::all(0), open: Lanes::all(0), within_limits: Lanes::all(1) };
+
     /// Whether a branch reaches each pose within the leg's limits. Marks in `open` where that is not known.
     #[inline(always)]
     pub fn reaches(&self, open: &mut Mask) -> Mask {

@@ -151,8 +151,7 @@ impl WithSimd for Reach<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, leg, branches, arch, block } = self;
-        block.status =
-            Status { beyond: Lanes::all(0), open: Lanes::all(0), within_limits: Lanes::all(1) };
+        block.status = Status::UNKNOWN;
         block.solve_leg(manipulator, &BranchesOfLeg::repeated(branches), leg, arch);
         for section in [Section::Lower, Section::Upper] {
             block.admit(manipulator, &manipulator.legs[leg], section, LANES);

@@ -120,8 +120,7 @@ impl WithSimd for ReachLower<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, branch, count, block } = self;
         let lanes = vectors(count);
-        block.status =
-            Status { beyond: Lanes::all(0), open: Lanes::all(0), within_limits: Lanes::all(1) };
+        block.status = Status::UNKNOWN;
         let leg = &manipulator.legs[branch.leg];
         block.aim(manipulator, branch, Shared::AllButTwo, lanes);
         let Block { shifted, lower, status, .. } = &mut *block;
