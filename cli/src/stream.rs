@@ -11,7 +11,7 @@ use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
-use opm_mcap::csv::{Line, Lines, Rows};
+use opm_mcap::csv::{self, Line, Lines, Rows};
 use opm_mcap::{PartialFile, Sink};
 use opm_study::effort_names;
 use opm_workspace::Progress;
@@ -305,11 +305,7 @@ impl Columns<'_> {
                 values[value] = f64::NAN;
                 continue;
             }
-            let number = std::str::from_utf8(field).ok().and_then(|text| text.parse().ok());
-            let number: f64 = number.ok_or_else(|| wrong("is not a number"))?;
-            if !number.is_finite() {
-                return Err(wrong("is not a finite number"));
-            }
+            let number = csv::number(field).map_err(wrong)?;
             match column {
                 Column::Time => time = Some(number),
                 Column::Value(value) => {

@@ -6,7 +6,7 @@ use crate::stream::{at, other_columns};
 use opm_calibrate::{BasePoint, Column, Measurements};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
-use opm_mcap::csv::Lines;
+use opm_mcap::csv::{self, Lines};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -77,10 +77,8 @@ pub fn read(
             if field.is_empty() {
                 continue;
             }
-            let text = String::from_utf8_lossy(field);
-            let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-            let Some(value) = value else {
-                let name = &columns[*column].name;
+            let Ok(value) = csv::number(field) else {
+                let (name, text) = (&columns[*column].name, String::from_utf8_lossy(field));
                 let problem = format!("{name} is {text:?}, expected a number or nothing");
                 return Err(at(&label, line.number, problem));
             };

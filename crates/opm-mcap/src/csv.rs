@@ -118,6 +118,16 @@ impl<'a> Line<'a> {
     }
 }
 
+/// The number in a field.
+///
+/// # Errors
+/// What is wrong with it: it is not a number, or not a finite one.
+pub fn number(field: &[u8]) -> Result<f64, &'static str> {
+    let number = std::str::from_utf8(field).ok().and_then(|text| text.parse().ok());
+    let number: f64 = number.ok_or("is not a number")?;
+    number.is_finite().then_some(number).ok_or("is not a finite number")
+}
+
 /// Refuses names of columns of which two are the same but for their units: who reads the table cannot tell which is
 /// meant.
 ///

@@ -19,9 +19,6 @@ use platform::PlatformColumns;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// The number of lanes whose singular values are computed together. Their matrices fit into the fastest memory.
-const CHUNK: usize = 16;
-
 /// What [`Manipulator::condition_many`] is asked for.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
@@ -196,14 +193,12 @@ impl WithSimd for Conditions<'_> {
         if !self.solve() {
             return;
         }
-        // With a constant number of freedoms, loops over the components are none.
-        match self.work.basis.in_base.len() {
-            1 => self.combine::<1>(),
-            2 => self.combine::<2>(),
-            3 => self.combine::<3>(),
-            4 => self.combine::<4>(),
-            5 => self.combine::<5>(),
-            _ => self.combine::<6>(),
+        // Several vectors together hide how long an operation takes, and their matrices fit into the fastest memory. Where
+        // vectors are short, more poses would only be more code.
+        match S::F64_LANES {
+            _ if !self.work.locked.is_empty() => self.restricted(),
+            4.. => self.combine_all::<16, false>(),
+            _ => self.combine_all::<4, false>(),
         }
     }
 }
@@ -254,27 +249,46 @@ impl Conditions<'_> {
         all
     }
 
-    /// Combines the branches to working modes, all-plus first.
+    /// [`Self::combine_all`] where constraining legs lack joints.
+    // Inlined, it would be compiled for every set of instructions.
+    #[inline(never)]
+    fn restricted(&mut self) {
+        self.combine_all::<4, true>();
+    }
+
+    /// Combines the branches to working modes, with singular values of `L` poses computed together.
     #[inline(always)]
-    fn combine<const N: usize>(&mut self) {
+    fn combine_all<const L: usize, const RESTRICTED: bool>(&mut self) {
+        // With a constant number of freedoms, loops over the components are none.
+        match self.work.basis.in_base.len() {
+            1 => self.combine::<1, L, RESTRICTED>(),
+            2 => self.combine::<2, L, RESTRICTED>(),
+            3 => self.combine::<3, L, RESTRICTED>(),
+            4 => self.combine::<4, L, RESTRICTED>(),
+            5 => self.combine::<5, L, RESTRICTED>(),
+            _ => self.combine::<6, L, RESTRICTED>(),
+        }
+    }
+
+    /// Combines the branches to working modes, all-plus first, for a platform with `N` freedoms.
+    #[inline(always)]
+    fn combine<const N: usize, const L: usize, const RESTRICTED: bool>(&mut self) {
         let scale = self.query.length.recip();
         let mut metric = None;
-        for start in (0..self.count).step_by(CHUNK) {
+        for start in (0..self.count).step_by(L) {
             // The platform's twist depends on the upper section alone.
             if metric.is_none() || !self.batch.block.one_upper() {
                 let Work { platform, basis, .. } = &*self.work;
-                metric = Some(Metric::new(&platform.chunk::<N, CHUNK>(basis, start), scale));
+                metric = Some(Metric::new(&platform.chunk::<N, L>(basis, start), scale));
             }
             let metric = metric.as_ref().expect("that of the first chunk, at least");
             self.work.choice.fill(0);
             loop {
-                let (mask, any) = self.asked(start);
+                let (mask, any) = self.asked::<L>(start);
                 if any {
                     // Without joints that legs lack, every loop has a constant length.
-                    let found = match self.work.locked.is_empty() {
-                        true => self.conditions::<N>(metric, start, &[]),
-                        false => self.restricted::<N>(metric, start),
-                    };
+                    let locked = if RESTRICTED { &*self.work.locked } else { &[] };
+                    let found = self.conditions(metric, start, locked);
                     self.admit(start, &mask, &found);
                 }
                 if !self.work.choose_next() {
@@ -286,9 +300,9 @@ impl Conditions<'_> {
 
     /// Which poses of a chunk the present mode reaches that are still asked for, and whether there are any.
     #[inline(always)]
-    fn asked(&self, start: usize) -> ([u64; CHUNK], bool) {
+    fn asked<const L: usize>(&self, start: usize) -> ([u64; L], bool) {
         let Work { branches, choice, open, conditions, .. } = &*self.work;
-        let mut mask = [0; CHUNK];
+        let mut mask = [0; L];
         for (i, mask) in mask.iter_mut().enumerate() {
             let decided = !self.query.every && !conditions[start + i].is_nan();
             *mask = u64::from(start + i < self.count && !decided) & (open[start + i] ^ 1);
@@ -301,28 +315,21 @@ impl Conditions<'_> {
         (mask, mask.iter().any(|&mask| mask != 0))
     }
 
-    /// The condition numbers of a chunk in the present mode, where constraining legs lack joints.
-    // Inlined, it would be compiled for every set of instructions.
-    #[inline(never)]
-    fn restricted<const N: usize>(&self, metric: &Metric<N, CHUNK>, start: usize) -> [f64; CHUNK] {
-        self.conditions::<N>(metric, start, &self.work.locked)
-    }
-
     /// The condition numbers of a chunk in the present mode. Of the joints that constraining legs lack, the legs and the
     /// numbers of their rows are given.
     #[inline(always)]
-    fn conditions<const N: usize>(
+    fn conditions<const N: usize, const L: usize>(
         &self,
-        metric: &Metric<N, CHUNK>,
+        metric: &Metric<N, L>,
         start: usize,
         locked: &[(usize, usize)],
-    ) -> [f64; CHUNK] {
+    ) -> [f64; L] {
         let Work { branches, choice, places, .. } = &*self.work;
         let rates_of = |&(leg, row): &(usize, usize)| {
             let found = &branches[leg][choice[leg]].rows[row].rates;
-            let mut rates = [[0.0; CHUNK]; N];
+            let mut rates = [[0.0; L]; N];
             for (rates, found) in rates.iter_mut().zip(found) {
-                rates.copy_from_slice(&found[start..start + CHUNK]);
+                rates.copy_from_slice(&found[start..start + L]);
             }
             rates
         };
@@ -331,7 +338,7 @@ impl Conditions<'_> {
             weighted.push(rates_of(place), self.manipulator.coordinates()[coordinate].quantity);
         }
         let found = weighted.conditioning(locked.iter().map(rates_of));
-        let mut serial = [0; CHUNK];
+        let mut serial = [0; L];
         for (of_leg, &choice) in branches.iter().zip(choice) {
             for (i, serial) in serial.iter_mut().enumerate() {
                 *serial |= of_leg[choice].serial[start + i];
@@ -342,11 +349,11 @@ impl Conditions<'_> {
 
     /// Takes the condition numbers of the asked poses of a chunk that are small enough.
     #[inline(always)]
-    fn admit(&mut self, start: usize, asked: &[u64; CHUNK], found: &[f64; CHUNK]) {
+    fn admit<const L: usize>(&mut self, start: usize, asked: &[u64; L], found: &[f64; L]) {
         let Work { branches, choice, conditions, ranges, .. } = &mut *self.work;
-        let admitted: [bool; CHUNK] =
+        let admitted: [bool; L] =
             std::array::from_fn(|i| asked[i] != 0 && found[i] <= self.query.most);
-        for i in 0..CHUNK {
+        for i in 0..L {
             let first = admitted[i] && conditions[start + i].is_nan();
             conditions[start + i] = if first { found[i] } else { conditions[start + i] };
         }
@@ -356,7 +363,7 @@ impl Conditions<'_> {
         for (of_leg, &choice) in branches.iter().zip(&*choice) {
             let Some((number, values)) = &of_leg[choice].imaginary else { continue };
             let range = &mut ranges[*number];
-            for i in (0..CHUNK).filter(|&i| admitted[i]) {
+            for i in (0..L).filter(|&i| admitted[i]) {
                 let value = values[start + i];
                 *range = [range[0].min(value), range[1].max(value)];
             }
