@@ -281,6 +281,18 @@ mod tests {
     }
 
     #[test]
+    fn a_field_is_a_finite_number_or_it_is_told_what_is_wrong() {
+        assert_eq!(number(b"-1.5e-3"), Ok(-0.0015));
+        for text in ["", "1,5", "x", "0x10"] {
+            assert_eq!(number(text.as_bytes()), Err("is not a number"), "{text}");
+        }
+        assert_eq!(number(&[b'1', 0xff]), Err("is not a number"));
+        for text in ["nan", "-inf", "1e400"] {
+            assert_eq!(number(text.as_bytes()), Err("is not a finite number"), "{text}");
+        }
+    }
+
+    #[test]
     fn a_file_without_line_ends_is_not_swallowed_whole() {
         let mut lines = Lines::new(Box::new(io::repeat(b'1')));
         let error = lines.next().map(|line| line.is_some()).unwrap_err();
