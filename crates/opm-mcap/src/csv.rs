@@ -174,9 +174,9 @@ impl<'w> Rows<'w> {
         self.writer.write_field(text).map_err(failure)
     }
 
-    /// Writes a number, with as many digits as tell it from its neighbours.
+    /// Writes a number as JSON has it, with as many digits as tell it from its neighbours.
     pub fn number(&mut self, value: f64) -> io::Result<()> {
-        self.text(ryu::Buffer::new().format(value))
+        self.text(zmij::Buffer::new().format(value))
     }
 
     /// Writes numbers.
@@ -247,7 +247,7 @@ mod tests {
         (number, fields.iter().map(|&field| field.to_owned()).collect())
     }
 
-    /// As the crate `csv` writes the same cells by serde.
+    /// As the crate `csv` writes the same cells by serde, except that large exponents have a sign.
     #[test]
     fn rows_are_those_of_csv() {
         let numbers = [0.1, -0.0, 1e300, 5e-324, f64::NAN, f64::INFINITY, 1.0, 123_456_789.25];
@@ -267,6 +267,7 @@ mod tests {
         rows.flush().unwrap();
         drop(rows);
         let other = String::from_utf8(other.into_inner().unwrap()).unwrap();
+        let other = other.replace("1e300", "1e+300");
         assert_eq!(String::from_utf8(own).unwrap(), other);
 
         // Rows of one cell, which must not be blank lines.
@@ -278,6 +279,22 @@ mod tests {
         }
         drop(rows);
         assert_eq!(own, b"\"\"\n1.0\n");
+    }
+
+    #[test]
+    fn numbers_are_those_of_json() {
+        for number in [0.0, -0.0, 1.0, 1e-4, 1e-5, 1.5e-7, 1e15, 1e16, 1e17, 1e22, 5e-324, f64::MAX] {
+            for number in [number, -number, number / 3.0] {
+                let mut own = Vec::new();
+                let mut rows = Rows::new(&mut own);
+                rows.number(number).unwrap();
+                rows.end().unwrap();
+                rows.flush().unwrap();
+                drop(rows);
+                let json = serde_json::to_string(&number).unwrap();
+                assert_eq!(String::from_utf8(own).unwrap(), format!("{json}\n"));
+            }
+        }
     }
 
     #[test]
