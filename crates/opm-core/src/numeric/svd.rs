@@ -90,10 +90,10 @@ pub fn orthogonalise(image: &mut DMatrix<f64>, mut right: Option<&mut DMatrix<f6
                     continue;
                 }
                 settled = false;
+                // Both columns being above `negligible`, its square does not overflow.
                 let zeta = (qq - pp) / (2.0 * pq);
-                // `hypot` does not overflow, whatever the scale.
-                let tan = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let cos = 1.0 / tan.hypot(1.0);
+                let tan = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
+                let cos = 1.0 / (1.0 + tan * tan).sqrt();
                 let rotation = Rotation { cos, sin: cos * tan };
                 rotation.apply(image, rows, p, q);
                 if let Some(right) = &mut right {
