@@ -174,7 +174,7 @@ impl<'w> Rows<'w> {
         self.writer.write_field(text).map_err(failure)
     }
 
-    /// Writes a number as JSON has it, with as many digits as tell it from its neighbours.
+    /// Writes a number, a finite one as JSON has it: with as many digits as tell it from its neighbours.
     pub fn number(&mut self, value: f64) -> io::Result<()> {
         self.text(zmij::Buffer::new().format(value))
     }

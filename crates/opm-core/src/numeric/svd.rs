@@ -90,7 +90,7 @@ pub fn orthogonalise(image: &mut DMatrix<f64>, mut right: Option<&mut DMatrix<f6
                     continue;
                 }
                 settled = false;
-                // Both columns being above `negligible`, its square does not overflow.
+                // Both columns are above `negligible`, so that `zeta` is at most 1/(2 ε²), and its square does not overflow.
                 let zeta = (qq - pp) / (2.0 * pq);
                 let tan = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
                 let cos = 1.0 / (1.0 + tan * tan).sqrt();
