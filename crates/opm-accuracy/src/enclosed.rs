@@ -330,7 +330,7 @@ impl<const N: usize> Legs<N> {
                 if std::ptr::eq(points[number], points[with]) {
                     let [one, two] =
                         [number, with].map(|n| self.at_joint(screws[n], points[number]));
-                    let pairs: [[Affine<N>; 2]; 6] = std::array::from_fn(|i| [one[i], two[i]]);
+                    let pairs: [[&Affine<N>; 2]; 6] = std::array::from_fn(|i| [&one[i], &two[i]]);
                     system.set(last + column, mu + other, Affine::products(pairs));
                 }
             }
@@ -370,7 +370,7 @@ impl<const N: usize> Legs<N> {
         let mut gram = [[Affine::constant(0.0); 6]; 6];
         for point in &self.legs[leg].points {
             let rho = self.arm(point);
-            let square = Affine::products([[rho[0], rho[0]], [rho[1], rho[1]], [rho[2], rho[2]]]);
+            let square = Affine::products([[&rho[0], &rho[0]], [&rho[1], &rho[1]], [&rho[2], &rho[2]]]);
             for i in 0..3 {
                 gram[i][i] = gram[i][i] + 1.0;
                 for j in 0..3 {
@@ -453,7 +453,7 @@ fn at_reference<const N: usize>(
 fn cross<const N: usize>(a: &Vector<N>, b: &Vector<N>) -> Vector<N> {
     [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        Affine::products([[a[j], b[k]], [-a[k], b[j]]])
+        Affine::products([[&a[j], &b[k]], [&-a[k], &b[j]]])
     })
 }
 

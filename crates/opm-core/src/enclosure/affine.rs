@@ -108,7 +108,8 @@ impl<const N: usize> Affine<N> {
         }
     }
 
-    pub(crate) fn square(self) -> Self {
+    #[inline(never)]
+    pub(crate) fn square(&self) -> Self {
         let spread = self.spread();
         let all: f64 = spread.iter().sum();
         // The square of the deviation from the centre lies between zero and this.
@@ -127,7 +128,7 @@ impl<const N: usize> Affine<N> {
 
     /// A convex (`bend` 1) or concave (-1) function with its derivative, on those values that are at
     /// least `least`: it lies on one side of a tangent, farthest from it at an end.
-    fn curved(self, least: f64, bend: f64, f: impl Fn(f64) -> [f64; 2]) -> Self {
+    fn curved(&self, least: f64, bend: f64, f: impl Fn(f64) -> [f64; 2]) -> Self {
         let (low, high) = (self.low().max(least), self.high());
         let at = if self.low() < least { 0.5 * (low + high) } else { self.centre };
         let [value, slope] = f(at);
@@ -148,7 +149,8 @@ impl<const N: usize> Affine<N> {
     }
 
     /// The root. The bounds hold for those values that are not negative.
-    pub(crate) fn sqrt(self) -> Self {
+    #[inline(never)]
+    pub(crate) fn sqrt(&self) -> Self {
         let high = self.high();
         if high <= 0.0 {
             return Self::constant(0.0);
@@ -156,18 +158,20 @@ impl<const N: usize> Affine<N> {
         self.curved(0.0, -1.0, |x| [x.sqrt(), 0.5 / x.sqrt()])
     }
 
-    pub(crate) fn recip(self) -> Self {
+    #[inline(never)]
+    pub(crate) fn recip(&self) -> Self {
         if self.low() > 0.0 {
             self.curved(0.0, 1.0, |x| [1.0 / x, -1.0 / (x * x)])
         } else if self.high() < 0.0 {
-            -(-self).recip()
+            -(-*self).recip()
         } else {
             Self::unknown(0.0, UNBOUNDED, &self.spread())
         }
     }
 
     /// The inverse of the root of a number that is not negative.
-    fn recip_sqrt(self) -> Self {
+    #[inline(never)]
+    fn recip_sqrt(&self) -> Self {
         if self.low() > 0.0 {
             self.curved(0.0, 1.0, |x| [1.0 / x.sqrt(), -0.5 / (x * x.sqrt())])
         } else {
@@ -177,8 +181,9 @@ impl<const N: usize> Affine<N> {
 
     /// `θ / sin θ` for the cosine of an angle from zero to π: `Σ aₙ yⁿ` with `y = (1 - cos θ)/2`
     /// and `aₙ₊₁ = aₙ (2n + 2)/(2n + 3)`, so that it is convex.
-    pub(crate) fn angle_over_sine(self) -> Self {
-        let y = (-self + 1.0) * 0.5;
+    #[inline(never)]
+    pub(crate) fn angle_over_sine(&self) -> Self {
+        let y = (-*self + 1.0) * 0.5;
         if y.high() > NEAR_HALF_TURN {
             return Self::unknown(0.0, UNBOUNDED, &self.spread());
         }
@@ -203,7 +208,8 @@ impl<const N: usize> Affine<N> {
     }
 
     /// The unit vector at this angle.
-    pub(crate) fn unit_vector(self) -> Plane<N> {
+    #[inline(never)]
+    pub(crate) fn unit_vector(&self) -> Plane<N> {
         let radius = self.radius();
         let spread = self.spread();
         if radius > WIDE || radius.is_nan() {
@@ -219,7 +225,8 @@ impl<const N: usize> Affine<N> {
         Plane { re: along(cos, -sin), im: along(sin, cos) }
     }
 
-    fn atan(self) -> Self {
+    #[inline(never)]
+    fn atan(&self) -> Self {
         let slope = 1.0 / (1.0 + self.centre * self.centre);
         let bend = -2.0 * self.centre * slope * slope;
         // The third derivative is at most 2.
@@ -230,7 +237,8 @@ impl<const N: usize> Affine<N> {
 
     /// A function with its value and derivative in the middle, whose second derivative lies between two
     /// bounds.
-    pub(crate) fn bent(self, [value, slope]: [f64; 2], bends: [f64; 2]) -> Self {
+    #[inline(never)]
+    pub(crate) fn bent(&self, [value, slope]: [f64; 2], bends: [f64; 2]) -> Self {
         let radius = self.radius();
         let [least, most] = [bends[0].min(0.0), bends[1].max(0.0)].map(|b| 0.5 * b * radius);
         let (spread, share) = (self.spread(), 0.5 * (most - least));
@@ -243,8 +251,41 @@ impl<const N: usize> Affine<N> {
         .rounded(4.0 * (1.0 + value.abs() + slope.abs() * self.size()))
     }
 
+    /// The sum with another one times 1 or -1.
+    #[inline(never)]
+    fn sum(&self, other: &Self, sign: f64) -> Self {
+        Self {
+            centre: self.centre + sign * other.centre,
+            slope: std::array::from_fn(|i| self.slope[i] + sign * other.slope[i]),
+            error: std::array::from_fn(|i| self.error[i] + other.error[i]),
+            rounding: self.rounding + other.rounding,
+        }
+        .rounded(self.size() + other.size())
+    }
+
+    /// The sum with a number.
+    #[inline(never)]
+    fn moved(&self, by: f64) -> Self {
+        let size = self.size() + by.abs();
+        Self { centre: self.centre + by, ..*self }.rounded(size)
+    }
+
+    /// The product with a number.
+    #[inline(never)]
+    fn scaled(&self, by: f64) -> Self {
+        let size = self.size() * by.abs();
+        Self {
+            centre: self.centre * by,
+            slope: self.slope.map(|s| s * by),
+            error: self.error.map(|e| e * by.abs()),
+            rounding: self.rounding * by.abs(),
+        }
+        .rounded(size)
+    }
+
     /// A sum of products. The quadratic terms are summed before their signs are dropped.
-    pub fn products<const K: usize>(pairs: [[Self; 2]; K]) -> Self {
+    #[inline(never)]
+    pub fn products<const K: usize>(pairs: [[&Self; 2]; K]) -> Self {
         let mut result = Self::constant(0.0);
         // The coefficients of the products of two coordinates, below the diagonal.
         let mut bends = [[0.0; N]; N];
@@ -289,14 +330,9 @@ impl<const N: usize> Affine<N> {
 impl<const N: usize> Add for Affine<N> {
     type Output = Self;
 
+    #[inline]
     fn add(self, other: Self) -> Self {
-        Self {
-            centre: self.centre + other.centre,
-            slope: std::array::from_fn(|i| self.slope[i] + other.slope[i]),
-            error: std::array::from_fn(|i| self.error[i] + other.error[i]),
-            rounding: self.rounding + other.rounding,
-        }
-        .rounded(self.size() + other.size())
+        self.sum(&other, 1.0)
     }
 }
 
@@ -304,7 +340,7 @@ impl<const N: usize> Sub for Affine<N> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
-        self + -other
+        self.sum(&other, -1.0)
     }
 }
 
@@ -319,9 +355,9 @@ impl<const N: usize> Neg for Affine<N> {
 impl<const N: usize> Add<f64> for Affine<N> {
     type Output = Self;
 
+    #[inline]
     fn add(self, number: f64) -> Self {
-        let size = self.size() + number.abs();
-        Self { centre: self.centre + number, ..self }.rounded(size)
+        self.moved(number)
     }
 }
 
@@ -329,22 +365,16 @@ impl<const N: usize> Sub<f64> for Affine<N> {
     type Output = Self;
 
     fn sub(self, number: f64) -> Self {
-        self + -number
+        self.moved(-number)
     }
 }
 
 impl<const N: usize> Mul<f64> for Affine<N> {
     type Output = Self;
 
+    #[inline]
     fn mul(self, number: f64) -> Self {
-        let size = self.size() * number.abs();
-        Self {
-            centre: self.centre * number,
-            slope: self.slope.map(|s| s * number),
-            error: self.error.map(|e| e * number.abs()),
-            rounding: self.rounding * number.abs(),
-        }
-        .rounded(size)
+        self.scaled(number)
     }
 }
 
@@ -352,7 +382,7 @@ impl<const N: usize> Mul for Affine<N> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        Self::products([[self, other]])
+        Self::products([[&self, &other]])
     }
 }
 
@@ -378,6 +408,26 @@ impl<const N: usize> Plane<N> {
         Self { im: -self.im, ..self }
     }
 
+    /// The sum with another one times 1 or -1.
+    #[inline(never)]
+    fn sum(&self, other: &Self, sign: f64) -> Self {
+        Self { re: self.re.sum(&other.re, sign), im: self.im.sum(&other.im, sign) }
+    }
+
+    #[inline(never)]
+    fn product(&self, other: &Self) -> Self {
+        Self {
+            re: Affine::products([[&self.re, &other.re], [&-self.im, &other.im]]),
+            im: Affine::products([[&self.re, &other.im], [&self.im, &other.re]]),
+        }
+    }
+
+    /// The product with a complex number.
+    #[inline(never)]
+    fn turned(&self, z: Complex<f64>) -> Self {
+        Self { re: self.re * z.re - self.im * z.im, im: self.re * z.im + self.im * z.re }
+    }
+
     pub fn scaled(self, factor: Affine<N>) -> Self {
         Self { re: self.re * factor, im: self.im * factor }
     }
@@ -388,7 +438,7 @@ impl<const N: usize> Plane<N> {
 
     /// The third component of the cross product `self × other`.
     pub fn cross(self, other: Self) -> Affine<N> {
-        Affine::products([[self.re, other.im], [-self.im, other.re]])
+        Affine::products([[&self.re, &other.im], [&-self.im, &other.re]])
     }
 
     pub fn spread(&self) -> [f64; N] {
@@ -402,7 +452,8 @@ impl<const N: usize> Plane<N> {
     }
 
     /// The unit vector that results from multiplying by `factor`.
-    pub fn divided(self, factor: Affine<N>) -> Self {
+    #[inline(never)]
+    pub fn divided(&self, factor: Affine<N>) -> Self {
         let unit = self.scaled(factor);
         // The bounds are wider than the set of unit vectors, which is then the better bound.
         let wide = |x: &Affine<N>| x.radius() > 1.0 || x.radius().is_nan();
@@ -413,7 +464,8 @@ impl<const N: usize> Plane<N> {
     }
 
     /// The argument, in `(-π, π]` in the middle of the box and continuous over the box.
-    pub fn argument(self) -> Affine<N> {
+    #[inline(never)]
+    pub fn argument(&self) -> Affine<N> {
         let middle = Complex::new(self.re.centre, self.im.centre);
         let angle = middle.im.atan2(middle.re);
         let length = middle.norm();
@@ -423,14 +475,14 @@ impl<const N: usize> Plane<N> {
         }
         // Of `log(1 + z)`, the imaginary part: `|log(1 + z) - z + z²/2| <= |z|³/3 / (1 - |z|)`, and that of `z²/2` is the
         // product of both components.
-        let z = self * (middle.conj() / (length * length)) - Complex::ONE;
+        let z = *self * (middle.conj() / (length * length)) - Complex::ONE;
         let [re, im] = [z.re.furthest(), z.im.furthest()];
         let size = re.hypot(im);
         if size < NEAR {
             let bound = re * im + size.powi(3) / (3.0 * (1.0 - size));
             return z.im + angle + Affine::unknown(0.0, bound, &z.spread());
         }
-        let ahead = self * (middle.conj() / length);
+        let ahead = *self * (middle.conj() / length);
         if ahead.re.low() > 0.0 { (ahead.im * ahead.re.recip()).atan() + angle } else { unknown() }
     }
 }
@@ -438,33 +490,34 @@ impl<const N: usize> Plane<N> {
 impl<const N: usize> Add for Plane<N> {
     type Output = Self;
 
+    #[inline]
     fn add(self, other: Self) -> Self {
-        Self { re: self.re + other.re, im: self.im + other.im }
+        self.sum(&other, 1.0)
     }
 }
 
 impl<const N: usize> Sub for Plane<N> {
     type Output = Self;
 
+    #[inline]
     fn sub(self, other: Self) -> Self {
-        Self { re: self.re - other.re, im: self.im - other.im }
+        self.sum(&other, -1.0)
     }
 }
 
 impl<const N: usize> Mul for Plane<N> {
     type Output = Self;
 
+    #[inline]
     fn mul(self, other: Self) -> Self {
-        Self {
-            re: Affine::products([[self.re, other.re], [-self.im, other.im]]),
-            im: Affine::products([[self.re, other.im], [self.im, other.re]]),
-        }
+        self.product(&other)
     }
 }
 
 impl<const N: usize> Add<Complex<f64>> for Plane<N> {
     type Output = Self;
 
+    #[inline]
     fn add(self, z: Complex<f64>) -> Self {
         Self { re: self.re + z.re, im: self.im + z.im }
     }
@@ -481,8 +534,9 @@ impl<const N: usize> Sub<Complex<f64>> for Plane<N> {
 impl<const N: usize> Mul<Complex<f64>> for Plane<N> {
     type Output = Self;
 
+    #[inline]
     fn mul(self, z: Complex<f64>) -> Self {
-        Self { re: self.re * z.re - self.im * z.im, im: self.re * z.im + self.im * z.re }
+        self.turned(z)
     }
 }
 
@@ -532,7 +586,7 @@ mod tests {
             let (a, b) = (linear(&x, at) + x_off, linear(&y, at) + y_off);
             prop_assert!(holds(&x.square(), at, a * a));
             prop_assert!(holds(&(x * y), at, a * b));
-            prop_assert!(holds(&Affine::products([[x, y], [y, -x], [x, x]]), at, a * a));
+            prop_assert!(holds(&Affine::products([[&x, &y], [&y, &-x], [&x, &x]]), at, a * a));
             prop_assert!(holds(&(x * 3.0 - y + 0.5), at, a * 3.0 - b + 0.5));
             prop_assert!(a < 0.0 || holds(&x.sqrt(), at, a.sqrt()));
             prop_assert!(holds(&x.recip(), at, 1.0 / a));

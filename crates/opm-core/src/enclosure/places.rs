@@ -384,7 +384,7 @@ fn displaced<const N: usize>(
     let e = displacement.unit_vector();
     let rotated: Place<N> = [0, 1, 2].map(|i| {
         let fixed = along * angular[i];
-        Affine::products([[arm[i] - fixed, e.re], [across[i], e.im]]) + fixed + foot[i]
+        Affine::products([[&(arm[i] - fixed), &e.re], [&across[i], &e.im]]) + fixed + foot[i]
     });
     if pitch == 0.0 {
         return rotated;
@@ -400,8 +400,8 @@ fn apply<const N: usize>(subspace: &Subspace, target: &Target<N>, point: &Place<
     let local: Place<N> = [0, 1, 2].map(|i| dot(&axes.column(i).into_owned(), &arm));
     let rotated = |e: &super::affine::Plane<N>| {
         [
-            Affine::products([[local[0], e.re], [-local[1], e.im]]),
-            Affine::products([[local[0], e.im], [local[1], e.re]]),
+            Affine::products([[&local[0], &e.re], [&-local[1], &e.im]]),
+            Affine::products([[&local[0], &e.im], [&local[1], &e.re]]),
         ]
     };
     let moved: Place<N> = match target {
@@ -411,7 +411,7 @@ fn apply<const N: usize>(subspace: &Subspace, target: &Target<N>, point: &Place<
             [x + g.translation.re, y + g.translation.im, local[2]]
         }
         Target::Spherical(rotation) => rotation.0.map(|row| {
-            Affine::products([[row[0], local[0]], [row[1], local[1]], [row[2], local[2]]])
+            Affine::products([[&row[0], &local[0]], [&row[1], &local[1]], [&row[2], &local[2]]])
         }),
         Target::Cylindrical(angle, advance) => {
             let [x, y] = rotated(&angle.unit_vector());

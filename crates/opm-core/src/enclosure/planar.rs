@@ -96,11 +96,11 @@ impl<const N: usize> Length<N> for Affine<N> {
     }
 
     fn sqrt(self) -> Self {
-        self.sqrt()
+        Self::sqrt(&self)
     }
 
     fn recip(self) -> Self {
-        self.recip()
+        Self::recip(&self)
     }
 
     fn times(self, x: Affine<N>) -> Affine<N> {

@@ -263,8 +263,8 @@ pub fn after<const N: usize>(
         IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
             let e = tau.unit_vector();
             Target::Spherical(Rotation(v.spherical().0.map(|[x, y, z]| {
-                let first = Affine::products([[x, e.re], [y, e.im]]);
-                [first, Affine::products([[y, e.re], [-x, e.im]]), z]
+                let first = Affine::products([[&x, &e.re], [&y, &e.im]]);
+                [first, Affine::products([[&y, &e.re], [&-x, &e.im]]), z]
             })))
         }
         IntersectionMotion::Cylindrical(motion) => {
@@ -310,8 +310,8 @@ pub fn before<const N: usize>(
             let (e, [x, y, z]) = (tau.unit_vector(), b.spherical().0);
             let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
             Target::Spherical(Rotation([
-                row(&|i| Affine::products([[x[i], e.re], [-y[i], e.im]])),
-                row(&|i| Affine::products([[x[i], e.im], [y[i], e.re]])),
+                row(&|i| Affine::products([[&x[i], &e.re], [&-y[i], &e.im]])),
+                row(&|i| Affine::products([[&x[i], &e.im], [&y[i], &e.re]])),
                 z,
             ]))
         }
@@ -536,8 +536,8 @@ pub mod task {
         let first = [cx * psi.re, -(cx * psi.im), sx];
         let second = [psi.im, psi.re, Affine::constant(0.0)];
         Rotation([
-            [0, 1, 2].map(|j| Affine::products([[zeta.re, first[j]], [-zeta.im, second[j]]])),
-            [0, 1, 2].map(|j| Affine::products([[zeta.im, first[j]], [zeta.re, second[j]]])),
+            [0, 1, 2].map(|j| Affine::products([[&zeta.re, &first[j]], [&-zeta.im, &second[j]]])),
+            [0, 1, 2].map(|j| Affine::products([[&zeta.im, &first[j]], [&zeta.re, &second[j]]])),
             [-(sx * psi.re), sx * psi.im, cx],
         ])
     }
