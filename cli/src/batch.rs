@@ -51,8 +51,7 @@ fn solve(
     let start = Instant::now();
     let mut columns = pose_table::columns(&mut stream, (loaded, manipulator))?;
     let mut table = Rows::new((loaded, manipulator), wanted, columns.timed(), &mut stream.rows)?;
-    let mut values = pose_table::blank(manipulator);
-    stream.each(&mut columns, &mut values, |stream, line, time, values| {
+    stream.each(&mut columns, &pose_table::blank(manipulator), |stream, line, time, values| {
         table.time = time;
         let label = stream.label;
         let wrong = |error: &dyn Display| stream::at(label, line, error);
@@ -68,17 +67,13 @@ struct Rows<'a> {
     wanted: RowContent,
     /// The name of the mode, if one is requested.
     mode: String,
-    /// The numbers of the joint coordinates that are columns.
+    /// The places of the joints that are columns among those that are found.
     joints: Vec<usize>,
     drives: ActuatedJoints,
     all: AllModes,
     solution: Solution,
     /// The time of the pose, if the input has times.
     time: Option<f64>,
-    /// Imaginary joints, then the other joints; empty if the pose is out of reach.
-    cells: Vec<Option<f64>>,
-    /// Dependent coordinates; empty if they have no solution.
-    dependent: Vec<Option<f64>>,
     reachable: u64,
     within_limits: u64,
 }
@@ -103,6 +98,11 @@ impl<'a> Rows<'a> {
             .chain(joints.iter().map(|&i| &*coordinates[i].name))
             .collect();
         writer.header(header)?;
+        // In one mode, no other joints are found.
+        let places = match wanted.modes {
+            Modes::One(_) => (0..joints.len()).collect(),
+            Modes::All => joints,
+        };
         let mode = match wanted.modes {
             Modes::One(mode) => manipulator.format_mode(mode),
             Modes::All => String::new(),
@@ -112,13 +112,11 @@ impl<'a> Rows<'a> {
             units: loaded.file.units,
             wanted,
             mode,
-            joints,
+            joints: places,
             drives: manipulator.actuated_joints(),
             all: manipulator.all_modes(),
             solution: manipulator.solution(),
             time: None,
-            cells: Vec::new(),
-            dependent: Vec::new(),
             reachable: 0,
             within_limits: 0,
         })
@@ -132,43 +130,40 @@ impl<'a> Rows<'a> {
         writer: &mut csv::Rows<'_>,
         wrong: &dyn Fn(&dyn Display) -> Failure,
     ) -> Result<(), Stop> {
-        let manipulator = self.manipulator;
+        let (manipulator, time, joints) = (self.manipulator, self.time, &*self.joints);
+        let row = Row { manipulator, time, pose, joints };
         let of_pose = |error: PoseError| wrong(&error);
         match self.wanted.modes {
             Modes::One(mode) => {
-                let [reachable, within] = if self.wanted.all_joints {
+                let (joints, within) = if self.wanted.all_joints {
                     let found =
                         manipulator.inverse(pose, mode, &mut self.solution).map_err(of_pose)?;
-                    let answers = [found.is_some(), found.is_some_and(Solution::within_limits)];
-                    self.take_solution(answers[0]);
-                    answers
+                    let joints = found.map(|found| [found.imaginary(), found.joints()]);
+                    (joints, found.is_some_and(Solution::within_limits))
                 } else {
                     let found = manipulator.inverse_actuated(pose, mode, &mut self.drives);
                     let found = found.map_err(of_pose)?;
-                    let answers =
-                        [found.is_some(), found.is_some_and(ActuatedJoints::within_limits)];
-                    let joints = self.drives.imaginary().iter().chain(self.drives.actuated());
-                    fill(&mut self.cells, joints.copied(), answers[0]);
-                    answers
+                    let joints = found.map(|found| [found.imaginary(), found.actuated()]);
+                    (joints, found.is_some_and(ActuatedJoints::within_limits))
                 };
-                self.reachable += u64::from(reachable);
+                self.reachable += u64::from(joints.is_some());
                 self.within_limits += u64::from(within);
-                let dependent = manipulator.dependent_values(pose, mode).ok().flatten();
-                if reachable && let Some(values) = &dependent {
-                    let verified = checks.verify(manipulator, values, self.units);
-                    verified.map_err(|error| wrong(&error))?;
+                let mut dependent = None;
+                if !manipulator.dependent_coordinates().is_empty() {
+                    dependent = manipulator.dependent_values(pose, mode).ok().flatten();
+                    if let (Some(_), Some(values)) = (joints, &dependent) {
+                        let verified = checks.verify(manipulator, values, self.units);
+                        verified.map_err(|error| wrong(&error))?;
+                    }
                 }
-                self.depend(dependent.as_deref());
-                self.write(writer, pose, [reachable, within], &self.mode)
+                row.write(writer, dependent.as_deref(), (within, &self.mode), joints)
             }
             Modes::All => {
                 let found = manipulator.inverse_all(pose, &mut self.all).map_err(of_pose)?;
                 let reachable = found.is_some();
                 self.reachable += u64::from(reachable);
                 if !reachable {
-                    self.take_solution(false);
-                    self.depend(None);
-                    return self.write(writer, pose, [false, false], "");
+                    return row.write(writer, None, (false, ""), None);
                 }
                 let (mut any_within, mut held) = (false, 0);
                 let found: Vec<_> = self.all.modes(manipulator).collect();
@@ -181,11 +176,11 @@ impl<'a> Rows<'a> {
                     }
                     held += 1;
                     let within = solution.within_limits();
-                    self.dependent.clear();
-                    self.dependent.extend(solution.dependent().iter().map(|&value| Some(value)));
-                    self.take_solution(true);
                     any_within |= within;
-                    self.write(writer, pose, [true, within], &manipulator.format_mode(mode))?;
+                    let (dependent, mode) =
+                        (Some(solution.dependent()), manipulator.format_mode(mode));
+                    let joints = Some([solution.imaginary(), solution.joints()]);
+                    row.write(writer, dependent, (within, &mode), joints)?;
                 }
                 self.within_limits += u64::from(any_within);
                 match held {
@@ -195,37 +190,33 @@ impl<'a> Rows<'a> {
             }
         }
     }
+}
 
-    /// Takes the joints of the solution, if the pose is in reach.
-    fn take_solution(&mut self, reachable: bool) {
-        let solution = &self.solution;
-        let joints = self.joints.iter().map(|&i| solution.joints()[i]);
-        let joints = solution.imaginary().iter().copied().chain(joints);
-        fill(&mut self.cells, joints, reachable);
-    }
+/// What is written about a pose.
+struct Row<'a> {
+    manipulator: &'a Manipulator,
+    time: Option<f64>,
+    pose: &'a [f64],
+    /// The places of the joints that are columns.
+    joints: &'a [usize],
+}
 
-    /// Takes the values of the dependent coordinates, if they have some.
-    fn depend(&mut self, values: Option<&[f64]>) {
-        let count = self.manipulator.dependent_coordinates().len();
-        self.dependent.clear();
-        self.dependent.extend((0..count).map(|i| values.map(|values| values[i])));
-    }
-
-    /// Writes a row; `answers` are whether the pose is in reach, and within limits.
+impl Row<'_> {
+    /// Writes the row of a mode: the dependent coordinates if they are known, whether the pose is within limits, and, if it is
+    /// in reach, the imaginary joints and the other ones.
     fn write(
         &self,
         writer: &mut csv::Rows<'_>,
-        pose: &[f64],
-        answers: [bool; 2],
-        mode: &str,
+        dependent: Option<&[f64]>,
+        (within, mode): (bool, &str),
+        joints: Option<[&[f64]; 2]>,
     ) -> Result<(), Stop> {
-        pose_table::begin(writer, self.time, pose, &self.dependent, answers, mode)?;
-        writer.cells(&self.cells)?;
+        let manipulator = self.manipulator;
+        let dependent = (dependent, manipulator.dependent_coordinates().len());
+        let answers = [joints.is_some(), within];
+        pose_table::begin(writer, self.time, self.pose, dependent, answers, mode)?;
+        writer.known(joints.map(|[imaginary, _]| imaginary), manipulator.imaginary().len())?;
+        writer.selected(joints.map(|[_, others]| others), self.joints)?;
         Ok(writer.end()?)
     }
-}
-
-fn fill(cells: &mut Vec<Option<f64>>, joints: impl Iterator<Item = f64>, reachable: bool) {
-    cells.clear();
-    cells.extend(joints.map(|value| reachable.then_some(value)));
 }

@@ -15,19 +15,20 @@ use std::io;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-/// Begins a row about a pose: its time if it has one, its coordinates, whether it is in reach and within limits, and the mode.
+/// Begins a row about a pose: its time if it has one, its coordinates and those that follow from them if they are known,
+/// whether it is in reach and within limits, and the mode.
 pub fn begin(
     rows: &mut Rows<'_>,
     time: Option<f64>,
     pose: &[f64],
-    dependent: &[Option<f64>],
+    (dependent, count): (Option<&[f64]>, usize),
     answers: [bool; 2],
     mode: &str,
 ) -> io::Result<()> {
     rows.numbers(time.as_slice())?;
     rows.numbers(pose)?;
-    rows.cells(dependent)?;
-    answers.iter().try_for_each(|&answer| rows.answer(answer))?;
+    rows.known(dependent, count)?;
+    rows.answers(&answers)?;
     rows.text(mode)
 }
 

@@ -11,7 +11,7 @@ use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
-use opm_mcap::csv::{self, Line, Lines, Rows};
+use opm_mcap::csv::{Line, Lines, Place, Rows};
 use opm_mcap::{PartialFile, Sink};
 use opm_study::effort_names;
 use opm_workspace::Progress;
@@ -58,14 +58,17 @@ pub struct Stream<'a> {
 }
 
 impl Stream<'_> {
-    /// Calls `take` with every line of numbers: the time if it has one, and the values, which keep what a line does not
-    /// have.
+    /// Calls `take` with every line of numbers: the time if it has one, and the values, which are as given where there is no
+    /// column.
     pub fn each(
         &mut self,
         columns: &mut Columns<'_>,
-        values: &mut [f64],
+        values: &[f64],
         mut take: impl FnMut(&mut Self, u64, Option<f64>, &[f64]) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
+        let places = columns.places();
+        // The time has the last place.
+        let mut row = [&*values, &[f64::NAN]].concat();
         loop {
             let label = self.label;
             let line = self.lines.next().map_err(|error| Failure::at(label, error))?;
@@ -74,11 +77,15 @@ impl Stream<'_> {
                 return Err(Failure::interrupted("interrupted").into());
             }
             let number = line.number;
-            let time = columns.read(line, values, |problem| at(label, number, problem))?;
-            columns.note(values, |problem| {
-                self.output.note(format_args!("{label}:{number}: {problem}"));
-            });
-            take(self, number, time, values)?;
+            let usual =
+                columns.read(line, &places, &mut row, |problem| at(label, number, problem))?;
+            let [values @ .., time] = &*row else { unreachable!("the row has a place for a time") };
+            if !usual {
+                columns.note(values, |problem| {
+                    self.output.note(format_args!("{label}:{number}: {problem}"));
+                });
+            }
+            take(self, number, (!time.is_nan()).then_some(*time), values)?;
             self.number.fetch_add(1, Ordering::Relaxed);
         }
         self.rows.flush().map_err(Stop::Write)
@@ -129,7 +136,12 @@ impl Stream<'_> {
             columns.push((column, units));
         }
         let noted = vec![false; values.len()];
-        Ok(Columns { number, columns, values, noted })
+        let with_unit = |&(column, units): &(Column, Option<FileUnits>)| match column {
+            Column::Value(number) => Some((number, units?)),
+            Column::Time | Column::Other => None,
+        };
+        let converted = columns.iter().filter_map(with_unit).collect();
+        Ok(Columns { number, columns, converted, values, noted })
     }
 }
 
@@ -241,6 +253,8 @@ pub struct Columns<'a> {
     pub number: u64,
     /// What is in every column, and in which units if its heading names one.
     columns: Vec<(Column, Option<FileUnits>)>,
+    /// The numbers of the values that have a unit.
+    converted: Vec<(usize, FileUnits)>,
     values: Vec<Wanted<'a>>,
     /// The values that have been noted to look misread: each is noted once.
     noted: Vec<bool>,
@@ -272,13 +286,29 @@ impl Columns<'_> {
         }
     }
 
-    /// Reads a row into the values that have columns, and returns its time if it has one.
+    /// The place of every column's number in a row: that of its value, or behind the values for the time.
+    fn places(&self) -> Vec<Option<Place>> {
+        const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+        let place = |&(column, units): &(Column, Option<FileUnits>)| match column {
+            Column::Time => Some(Place { number: self.values.len(), optional: false, usual: ANY }),
+            Column::Value(number) => {
+                let Wanted { plausible, optional, .. } = self.values[number];
+                let usual = if units.is_none() { plausible.usual() } else { ANY };
+                Some(Place { number, optional, usual })
+            }
+            Column::Other => None,
+        };
+        self.columns.iter().map(place).collect()
+    }
+
+    /// Reads a row. Returns whether the values of columns without a unit are usual.
     fn read(
         &self,
         line: Line<'_>,
-        values: &mut [f64],
+        places: &[Option<Place>],
+        row: &mut [f64],
         at: impl Fn(String) -> Failure,
-    ) -> Result<Option<f64>, Failure> {
+    ) -> Result<bool, Failure> {
         let name = |column: Column| match column {
             Column::Time => "t",
             Column::Value(number) => self.values[number].name,
@@ -291,31 +321,14 @@ impl Columns<'_> {
             let (expected, names) = (self.columns.len(), names.join(","));
             return Err(at(format!("{given}, expected {expected}: {names}")));
         }
-        let mut time = None;
-        let read = line.fields().zip(&self.columns).filter(|(_, c)| c.0 != Column::Other);
-        for (field, &(column, units)) in read {
-            let wrong = |problem: &str| {
-                let (name, field) = (name(column), String::from_utf8_lossy(field));
-                at(format!("column {name}: {field:?} {problem}"))
-            };
-            if let Column::Value(value) = column
-                && field.is_empty()
-                && self.values[value].optional
-            {
-                values[value] = f64::NAN;
-                continue;
-            }
-            let number = csv::number(field).map_err(wrong)?;
-            match column {
-                Column::Time => time = Some(number),
-                Column::Value(value) => {
-                    let units = units.unwrap_or(FileUnits::SI);
-                    values[value] = units.si(number, self.values[value].quantity);
-                }
-                Column::Other => {}
-            }
+        let usual = line.numbers(places, row).map_err(|(number, problem)| {
+            let field = line.fields().nth(number).map(String::from_utf8_lossy).unwrap_or_default();
+            at(format!("column {}: {field:?} {problem}", name(self.columns[number].0)))
+        })?;
+        for &(number, units) in &self.converted {
+            row[number] = units.si(row[number], self.values[number].quantity);
         }
-        Ok(time)
+        Ok(usual)
     }
 }
 

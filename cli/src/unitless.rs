@@ -43,13 +43,19 @@ impl Plausible {
         }
     }
 
+    /// The least and the largest value in SI that looks right.
+    pub fn usual(&self) -> [f64; 2] {
+        let (middle, most) = match self.quantity {
+            Quantity::Length => (self.home, self.far * self.size),
+            Quantity::Angle => (0.0, TAU),
+        };
+        [middle - most, middle + most]
+    }
+
     /// Whether a value in SI looks right. What is refused anyway is not judged.
     pub fn holds(&self, value: f64) -> bool {
-        let right = match self.quantity {
-            Quantity::Length => (value - self.home).abs() <= self.far * self.size,
-            Quantity::Angle => value.abs() <= TAU,
-        };
-        right || value.abs() >= ABSURD
+        let [low, high] = self.usual();
+        (low..=high).contains(&value) || value.abs() >= ABSURD
     }
 
     /// How a number in SI was read, and how large that is.

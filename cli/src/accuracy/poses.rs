@@ -37,21 +37,19 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> 
         .chain(["reachable", "within_limits", "mode"])
         .chain(errors.iter().map(String::as_str));
     stream.rows.header(header)?;
-    let (mut at, mut values) = (manipulator.solution(), pose_table::blank(manipulator));
+    let mut at = manipulator.solution();
     let (mut reachable, mut within_limits) = (0, 0);
     let mode_text = manipulator.format_mode(mode);
-    stream.each(&mut columns, &mut values, |stream, line, time, values| {
+    stream.each(&mut columns, &pose_table::blank(manipulator), |stream, line, time, values| {
         let label = stream.label;
         let (pose, checks) = pose_table::split(manipulator, values);
         let found = manipulator.inverse(pose, mode, &mut at);
         let reached = found.map_err(|error| stream::at(label, line, error))?.is_some();
         let within = reached && at.within_limits();
-        let mut dependent = vec![None; manipulator.dependent_coordinates().len()];
         let mut cells = vec![None; errors.len()];
         if reached {
             let verified = checks.verify(manipulator, at.dependent(), setting.loaded.file.units);
             verified.map_err(|error| stream::at(label, line, error))?;
-            dependent = at.dependent().iter().map(|&value| Some(value)).collect();
             let response = setting.model.at(&at);
             let response = response.map_err(|error| stream::at(label, line, error))?;
             cells = row::cells(&Budget::new(&response, &setting.sizes)).collect();
@@ -59,7 +57,9 @@ fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> 
         reachable += u64::from(reached);
         within_limits += u64::from(within);
         let rows = &mut stream.rows;
-        pose_table::begin(rows, time, pose, &dependent, [reached, within], &mode_text)?;
+        let following =
+            (reached.then(|| at.dependent()), manipulator.dependent_coordinates().len());
+        pose_table::begin(rows, time, pose, following, [reached, within], &mode_text)?;
         rows.cells(&cells)?;
         Ok(rows.end()?)
     })?;

@@ -57,17 +57,16 @@ fn solve(
         .chain(efforts.iter().map(String::as_str))
         .chain(known.iter().map(|index| index.name()));
     stream.rows.header(header)?;
-    let (mut at, mut values) = (manipulator.solution(), pose_table::blank(manipulator));
+    let mut at = manipulator.solution();
     let (mut reachable, mut within_limits, mut balanced) = (0, 0, 0);
     let mode_text = manipulator.format_mode(mode);
-    stream.each(&mut columns, &mut values, |stream, line, time, values| {
+    stream.each(&mut columns, &pose_table::blank(manipulator), |stream, line, time, values| {
         let label = stream.label;
         let (pose, checks) = pose_table::split(manipulator, values);
         let found = manipulator.inverse(pose, mode, &mut at);
         let reached = found.map_err(|error| stream::at(label, line, error))?.is_some();
         let within = reached && at.within_limits();
         let blank = |count: usize| vec![None::<f64>; count];
-        let mut dependent = blank(manipulator.dependent_coordinates().len());
         let mut cells = blank(efforts.len());
         let mut numbers = blank(known.len());
         let mut balance = "";
@@ -75,7 +74,6 @@ fn solve(
             let verified = checks.verify(manipulator, at.dependent(), loaded.file.units);
             verified.map_err(|error| stream::at(label, line, error))?;
             analyser.update(&at)?;
-            dependent = at.dependent().iter().map(|&value| Some(value)).collect();
             let finite = |&value: &f64| value.is_finite().then_some(value);
             numbers = analyser.indices.values().iter().map(finite).collect();
             if let Some((_, found)) = &analyser.acting {
@@ -87,7 +85,9 @@ fn solve(
         reachable += u64::from(reached);
         within_limits += u64::from(within);
         let rows = &mut stream.rows;
-        pose_table::begin(rows, time, pose, &dependent, [reached, within], &mode_text)?;
+        let following =
+            (reached.then(|| at.dependent()), manipulator.dependent_coordinates().len());
+        pose_table::begin(rows, time, pose, following, [reached, within], &mode_text)?;
         if loaded_with {
             rows.text(balance)?;
         }

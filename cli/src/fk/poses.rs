@@ -115,8 +115,7 @@ impl Request<'_> {
         let seed = seed.map_err(|error| Failure::flag("--near", error))?;
         let mut tracker = Tracker::new(m, &self.seed, self.only.unwrap_or(m.home_mode()));
         let (mut reachable, mut within_limits, mut assemblies) = (0, 0, 0);
-        let mut values = vec![0.0; joints.len()];
-        stream.each(&mut columns, &mut values, |stream, line, time, joints| {
+        stream.each(&mut columns, &vec![0.0; joints.len()], |stream, line, time, joints| {
             let label = stream.label;
             let wrong = |error: &dyn std::error::Error| stream::at(label, line, error);
             let mut list: Vec<Assembly>;
@@ -174,13 +173,10 @@ impl Request<'_> {
     ) -> Result<(), Stop> {
         let m = self.manipulator;
         let numbers: &[u64] = if self.all { &[row, number as u64] } else { &[] };
-        let cells = |values: Option<&Vec<f64>>, count: usize| -> Vec<Option<f64>> {
-            (0..count).map(|i| values.map(|values| values[i])).collect()
-        };
         rows.numbers(time.as_slice())?;
         numbers.iter().try_for_each(|&number| rows.count(number))?;
-        rows.cells(&cells(assembly.map(|a| &a.pose), m.task_coordinates().len()))?;
-        rows.cells(&cells(assembly.map(|a| &a.dependent), m.dependent_coordinates().len()))?;
+        rows.known(assembly.map(|a| &*a.pose), m.task_coordinates().len())?;
+        rows.known(assembly.map(|a| &*a.dependent), m.dependent_coordinates().len())?;
         rows.text(&assembly.map_or_else(String::new, |a| m.format_mode(a.mode)))?;
         rows.answer(assembly.is_some())?;
         rows.answer(assembly.is_some_and(|a| a.within_limits))?;

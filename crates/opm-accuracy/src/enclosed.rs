@@ -370,7 +370,8 @@ impl<const N: usize> Legs<N> {
         let mut gram = [[Affine::constant(0.0); 6]; 6];
         for point in &self.legs[leg].points {
             let rho = self.arm(point);
-            let square = Affine::products([[&rho[0], &rho[0]], [&rho[1], &rho[1]], [&rho[2], &rho[2]]]);
+            let square =
+                Affine::products([[&rho[0], &rho[0]], [&rho[1], &rho[1]], [&rho[2], &rho[2]]]);
             for i in 0..3 {
                 gram[i][i] = gram[i][i] + 1.0;
                 for j in 0..3 {

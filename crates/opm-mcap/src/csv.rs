@@ -116,6 +116,61 @@ impl<'a> Line<'a> {
     pub fn fields(self) -> impl ExactSizeIterator<Item = &'a [u8]> {
         self.fields.iter().map(move |field| &self.line[field.clone()])
     }
+
+    /// Reads the numbers of a row, of which `places` says where each field's belongs; `None` is passed over. An optional number
+    /// whose field is empty is NaN. Returns whether all others are usual.
+    ///
+    /// # Errors
+    /// The number of the first wrong field, and what is wrong with it ([`number`]).
+    ///
+    /// # Panics
+    /// If a place is outside of the row.
+    ///
+    /// ```
+    /// use opm_mcap::csv::{Lines, Place};
+    ///
+    /// # fn main() -> std::io::Result<()> {
+    /// let mut lines = Lines::new(Box::new("2,home,\n".as_bytes()));
+    /// let line = lines.next()?.expect("a row");
+    /// let place = |number, optional| Some(Place { number, optional, usual: [-1.0, 1.0] });
+    /// let mut row = [0.0; 2];
+    /// assert_eq!(line.numbers(&[place(1, false), None, place(0, true)], &mut row), Ok(false));
+    /// assert!(row[0].is_nan() && row[1] == 2.0);
+    /// let wrong = line.numbers(&[place(1, false), place(0, false), None], &mut row);
+    /// assert_eq!(wrong, Err((1, "is not a number")));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn numbers(
+        self,
+        places: &[Option<Place>],
+        row: &mut [f64],
+    ) -> Result<bool, (usize, &'static str)> {
+        let mut usual = true;
+        for (i, (field, place)) in self.fields().zip(places).enumerate() {
+            let Some(place) = place else { continue };
+            if place.optional && field.is_empty() {
+                row[place.number] = f64::NAN;
+                continue;
+            }
+            let number = number(field).map_err(|problem| (i, problem))?;
+            let [low, high] = place.usual;
+            usual &= low <= number && number <= high;
+            row[place.number] = number;
+        }
+        Ok(usual)
+    }
+}
+
+/// Where the number of a field belongs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Its place in the row.
+    pub number: usize,
+    /// Whether the field may be empty.
+    pub optional: bool,
+    /// The least and the largest number that is usual there.
+    pub usual: [f64; 2],
 }
 
 /// The number in a field.
@@ -184,6 +239,22 @@ impl<'w> Rows<'w> {
         values.iter().try_for_each(|&value| self.number(value))
     }
 
+    /// Writes numbers, or as many empty cells if they are unknown.
+    pub fn known(&mut self, values: Option<&[f64]>, count: usize) -> io::Result<()> {
+        match values {
+            Some(values) => self.numbers(values),
+            None => (0..count).try_for_each(|_| self.text("")),
+        }
+    }
+
+    /// Writes those of the numbers that have these places, or as many empty cells if they are unknown.
+    pub fn selected(&mut self, values: Option<&[f64]>, places: &[usize]) -> io::Result<()> {
+        match values {
+            Some(values) => places.iter().try_for_each(|&place| self.number(values[place])),
+            None => self.known(None, places.len()),
+        }
+    }
+
     /// Writes numbers; an empty cell where there is none.
     pub fn cells(&mut self, values: &[Option<f64>]) -> io::Result<()> {
         values.iter().try_for_each(|value| match value {
@@ -195,6 +266,11 @@ impl<'w> Rows<'w> {
     /// Writes a whole number.
     pub fn count(&mut self, number: u64) -> io::Result<()> {
         self.text(itoa::Buffer::new().format(number))
+    }
+
+    /// Writes answers, as [`Rows::answer`] does.
+    pub fn answers(&mut self, answers: &[bool]) -> io::Result<()> {
+        answers.iter().try_for_each(|&yes| self.answer(yes))
     }
 
     /// Writes an answer, as 1 or 0.

@@ -98,6 +98,7 @@ impl<const N: usize> Share<N> {
 
     /// The share for which `quantity` lies in a range, whose ends count as inside; an end may be infinite.
     /// `slack` is added to the margin at each end.
+    #[inline(never)]
     pub fn within(quantity: &Affine<N>, [low, high]: [f64; 2], slack: f64) -> Self {
         let finite = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
         let (centre, radius) = (quantity.centre, quantity.radius());
@@ -167,6 +168,7 @@ impl<const N: usize> Share<N> {
 ///
 /// With `a` the largest slope, it is `(H(number + a) - H(number - a)) / 2a`, where `H(t)` is the mean
 /// of `max(t - X, 0)` and `X` the sum of the other slopes times their `δ`.
+#[inline(never)]
 fn share_below<const N: usize>(slope: &[f64; N], number: f64) -> [f64; 2] {
     let mut slopes = slope.map(f64::abs);
     slopes.sort_unstable_by(|a, b| b.total_cmp(a));

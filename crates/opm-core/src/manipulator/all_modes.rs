@@ -275,12 +275,15 @@ impl AllModes {
 
     /// The modes in which the pose is in reach, all-plus first.
     pub fn modes<'a>(&'a self, manipulator: &'a Manipulator) -> impl Iterator<Item = Mode> + 'a {
+        manipulator.modes().filter(move |&mode| self.reached_in(manipulator, mode))
+    }
+
+    /// Whether the pose is in reach in a mode.
+    fn reached_in(&self, manipulator: &Manipulator, mode: Mode) -> bool {
         let layout = &manipulator.modes;
-        manipulator.modes().filter(move |&mode| {
-            let completion = &self.completions[manipulator.completion(mode)];
-            let mut legs = completion.legs.iter().enumerate();
-            completion.missed.is_none()
-                && legs.all(|(number, leg)| leg.solution(layout.of_leg(mode, number)).is_some())
-        })
+        let completion = &self.completions[manipulator.completion(mode)];
+        let mut legs = completion.legs.iter().enumerate();
+        completion.missed.is_none()
+            && legs.all(|(number, leg)| leg.solution(layout.of_leg(mode, number)).is_some())
     }
 }
