@@ -68,7 +68,7 @@ impl Stream<'_> {
     ) -> Result<(), Stop> {
         let places = columns.places();
         // The time has the last place.
-        let mut row = [&*values, &[f64::NAN]].concat();
+        let mut row = [values, &[f64::NAN]].concat();
         loop {
             let label = self.label;
             let line = self.lines.next().map_err(|error| Failure::at(label, error))?;

@@ -334,11 +334,17 @@ mod tests {
         for text in ["+--", "", "a,b", "say \"so\""] {
             rows.numbers(&numbers).unwrap();
             rows.cells(&cells).unwrap();
+            rows.known(Some(&numbers[..2]), 2).unwrap();
+            rows.known(None, 2).unwrap();
+            rows.selected(Some(&numbers), &[7, 0]).unwrap();
+            rows.selected(None, &[7, 0]).unwrap();
             rows.count(u64::MAX).unwrap();
-            rows.answer(true).unwrap();
+            rows.answers(&[true, false]).unwrap();
             rows.text(text).unwrap();
             rows.end().unwrap();
-            other.serialize((numbers, cells, u64::MAX, 1, text)).unwrap();
+            let none = [None::<f64>; 2];
+            let given = (&numbers[..2], none, [numbers[7], numbers[0]], none);
+            other.serialize((numbers, cells, given, u64::MAX, [1, 0], text)).unwrap();
         }
         rows.flush().unwrap();
         drop(rows);

@@ -86,6 +86,13 @@ pub struct Column<'a> {
     kind: NumericType,
 }
 
+impl Column<'_> {
+    /// The values in another unit, of which each has `size`.
+    pub fn in_units_of(self, size: f64) -> Vec<f64> {
+        self.map(|value| value / size).collect()
+    }
+}
+
 impl Iterator for Column<'_> {
     type Item = f64;
 

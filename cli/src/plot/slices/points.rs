@@ -39,9 +39,8 @@ impl Slices<'_> {
             (Some(_), _) => Some((CAUSE, 1.0)),
             (None, color) => color.as_ref().map(|color| (&*color.field, color.factor)),
         };
-        let color: Option<Vec<f64>> = color.and_then(|(field, factor)| {
-            Some(cloud.column(field)?.map(|value| value / factor).collect())
-        });
+        let color: Option<Vec<f64>> =
+            color.and_then(|(field, factor)| Some(cloud.column(field)?.in_units_of(factor)));
         self.each(cloud, slice, self.varied, |point, value| {
             let Some((_, content)) = tiles.iter_mut().find(|tile| tile.0 == value) else { return };
             let x = x.get(point) / a.factor;
@@ -124,7 +123,7 @@ impl Slices<'_> {
                 })
             }
             Place::Field(field, scale) => {
-                Some(Values::Each(cloud.column(field)?.map(|value| value / scale).collect()))
+                Some(Values::Each(cloud.column(field)?.in_units_of(*scale)))
             }
         }
     }

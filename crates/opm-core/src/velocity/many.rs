@@ -196,8 +196,9 @@ impl WithSimd for Conditions<'_> {
         // Several vectors together hide how long an operation takes, and their matrices fit into the fastest memory. Where
         // vectors are short, more poses would only be more code.
         match S::F64_LANES {
-            4.. if self.work.locked.is_empty() => self.combine_all::<16, false>(),
-            _ => self.restricted(),
+            _ if !self.work.locked.is_empty() => self.restricted(),
+            4.. => self.combine_all::<16, false>(),
+            _ => self.combine_all::<4, false>(),
         }
     }
 }
