@@ -6,8 +6,8 @@
 //! applications*, Numerical Algorithms 37, 2004). They are recorded by the coordinate that
 //! they come from, which tells which side of a box to bisect.
 //!
-//! Operations are functions of references that are not inlined: a box takes hundreds of them, and numbers are too large for
-//! registers. Code that has them inlined is several times as long, takes longer to compile and is no faster.
+//! Operations are functions of references, and are not inlined: the numbers are too large for registers. Inlined, the code
+//! would be several times as long, and no faster.
 
 use nalgebra::Complex;
 use std::ops::{Add, Mul, Neg, Sub};
