@@ -253,7 +253,7 @@ pub struct Columns<'a> {
     pub number: u64,
     /// What is in every column, and in which units if its heading names one.
     columns: Vec<(Column, Option<FileUnits>)>,
-    /// The numbers of the values that have a unit.
+    /// The numbers of the values whose heading names units, and these.
     converted: Vec<(usize, FileUnits)>,
     values: Vec<Wanted<'a>>,
     /// The values that have been noted to look misread: each is noted once.

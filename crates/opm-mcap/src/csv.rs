@@ -239,7 +239,7 @@ impl<'w> Rows<'w> {
         values.iter().try_for_each(|&value| self.number(value))
     }
 
-    /// Writes numbers, or as many empty cells if they are unknown.
+    /// Writes numbers; `count` empty cells if they are unknown.
     pub fn known(&mut self, values: Option<&[f64]>, count: usize) -> io::Result<()> {
         match values {
             Some(values) => self.numbers(values),
@@ -247,7 +247,7 @@ impl<'w> Rows<'w> {
         }
     }
 
-    /// Writes those of the numbers that have these places, or as many empty cells if they are unknown.
+    /// Writes the numbers that have these places; an empty cell for each place if they are unknown.
     pub fn selected(&mut self, values: Option<&[f64]>, places: &[usize]) -> io::Result<()> {
         match values {
             Some(values) => places.iter().try_for_each(|&place| self.number(values[place])),
