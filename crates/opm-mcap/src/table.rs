@@ -46,8 +46,7 @@ pub enum TableFormat {
 /// let (points, run) = (1, Metadata::new());
 /// let mut table = TableRecorder::new(file, TableFormat::Npy, &layout, points, &run)?;
 /// assert_eq!(table_columns(&layout), ["x", "y", "xi"]);
-/// let point = [0.1_f64, 0.2, 0.3];
-/// table.push(&point.map(f64::to_le_bytes).concat())?;
+/// table.push_rows(&[0.1, 0.2, 0.3])?;
 /// table.finish()?;
 /// assert!(std::fs::read(&path)?.starts_with(b"\x93NUMPY"));
 /// # Ok(())
@@ -59,6 +58,8 @@ pub struct TableRecorder<W: Sink = PartialFile> {
     stride: usize,
     announced: u64,
     pushed: u64,
+    /// Rows as bytes.
+    bytes: Vec<u8>,
 }
 
 impl<W: Sink> TableRecorder<W> {
@@ -82,7 +83,7 @@ impl<W: Sink> TableRecorder<W> {
             TableFormat::Ply => (ply(layout, points, run), layout.stride()),
         };
         sink.write_all(&header).map_err(RecordError::Io)?;
-        Ok(Self { sink: Some(sink), stride, announced: points, pushed: 0 })
+        Ok(Self { sink: Some(sink), stride, announced: points, pushed: 0, bytes: Vec::new() })
     }
 
     /// Starts an NPY table of rows of any named columns.
@@ -91,11 +92,23 @@ impl<W: Sink> TableRecorder<W> {
     /// A failed write.
     pub fn npy(mut sink: W, columns: &[&str], rows: u64) -> Result<Self, RecordError> {
         sink.write_all(&npy(columns, rows)).map_err(RecordError::Io)?;
-        Ok(Self { sink: Some(sink), stride: 8 * columns.len(), announced: rows, pushed: 0 })
+        let stride = 8 * columns.len();
+        Ok(Self { sink: Some(sink), stride, announced: rows, pushed: 0, bytes: Vec::new() })
     }
 
-    /// Adds points as bytes. NPY has rows of [`table_columns`] as little-endian doubles; PLY has points of a
-    /// [`Packer`](crate::Packer).
+    /// Adds rows of numbers to an NPY table, in the order of its columns ([`table_columns`] for points).
+    ///
+    /// # Errors
+    /// As [`TableRecorder::push`].
+    pub fn push_rows(&mut self, rows: &[f64]) -> Result<(), RecordError> {
+        let mut bytes = std::mem::take(&mut self.bytes);
+        little_endian(rows, &mut bytes);
+        self.push(&bytes)?;
+        self.bytes = bytes;
+        Ok(())
+    }
+
+    /// Adds points as bytes: in PLY, points of a [`Packer`](crate::Packer); in NPY, rows of little-endian doubles.
     ///
     /// # Errors
     /// [`RecordError::Layout`] if `points` is not a whole number of points, or a failed write.
@@ -123,6 +136,14 @@ impl<W: Sink> TableRecorder<W> {
         }
         let sink = self.sink.ok_or(RecordError::AfterFailure)?;
         sink.commit().map_err(RecordError::Io)
+    }
+}
+
+/// Puts numbers into `bytes`, instead of what is there.
+fn little_endian(numbers: &[f64], bytes: &mut Vec<u8>) {
+    bytes.resize(8 * numbers.len(), 0);
+    for (number, bytes) in numbers.iter().zip(bytes.as_chunks_mut().0) {
+        *bytes = number.to_le_bytes();
     }
 }
 

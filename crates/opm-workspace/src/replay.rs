@@ -4,6 +4,7 @@ use crate::grid::{Grid, fill};
 use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::{Hits, Run};
+use std::slice;
 
 /// The number of poses that are made into points together.
 const BLOCK: u64 = 1 << 15;
@@ -65,7 +66,7 @@ pub fn replay<T: Send, E: From<Cancelled> + Send>(
                 let mut from = run.from;
                 while from < run.to {
                     let to = run.to.min((from / row + 1) * row);
-                    scratch.hit(Run { from, to }, |hits| make(hits, &mut made));
+                    make(&scratch.hits(Run { from, to }), &mut made);
                     from = to;
                 }
             }
@@ -112,6 +113,8 @@ struct Row<'a> {
     number: Option<u64>,
     /// The number of rows in a slice.
     slice: u64,
+    /// The poses that were found, by their numbers in the row.
+    run: Run,
     first: Vec<f64>,
     others: Vec<f64>,
 }
@@ -120,11 +123,12 @@ impl<'a> Row<'a> {
     fn new(grid: &'a Grid) -> Self {
         let others = vec![0.0; grid.axes().len() - 1];
         let slice = grid.poses() / grid.row() / grid.slices();
-        Self { grid, number: None, slice, first: Vec::new(), others }
+        let run = Run { from: 0, to: 0 };
+        Self { grid, number: None, slice, run, first: Vec::new(), others }
     }
 
-    /// Gives the poses of a run of numbers in one row.
-    fn hit(&mut self, run: Run, hit: impl FnOnce(&Hits<'_>)) {
+    /// The poses of a run of numbers in one row.
+    fn hits(&mut self, run: Run) -> Hits<'_> {
         let (axes, length) = (self.grid.axes(), self.grid.row());
         let row = run.from / length;
         if self.number != Some(row) {
@@ -135,8 +139,8 @@ impl<'a> Row<'a> {
         self.first.clear();
         self.first.extend((run.from..run.to).map(|number| axes[0].value(number % along)));
         let start = row * length;
-        let runs = &[Run { from: run.from - start, to: run.to - start }][..];
-        let (slice, first, others) = (row / self.slice, &self.first[..], &self.others[..]);
-        hit(&Hits { slice, row, runs, first, others });
+        self.run = Run { from: run.from - start, to: run.to - start };
+        let (slice, runs) = (row / self.slice, slice::from_ref(&self.run));
+        Hits { slice, row, runs, first: &self.first, others: &self.others }
     }
 }

@@ -195,10 +195,10 @@ impl WithSimd for Conditions<'_> {
         }
         // Several vectors together hide how long an operation takes, and their matrices fit into the fastest memory. Where
         // vectors are short, more poses would only be more code.
-        match S::F64_LANES {
-            _ if !self.work.locked.is_empty() => self.restricted(),
-            4.. => self.combine_all::<16, false>(),
-            _ => self.combine_all::<4, false>(),
+        if S::F64_LANES >= 4 && self.work.locked.is_empty() {
+            self.combine_all::<16, false>();
+        } else {
+            self.combine_few();
         }
     }
 }
@@ -249,10 +249,10 @@ impl Conditions<'_> {
         all
     }
 
-    /// [`Self::combine_all`] where constraining legs lack joints.
+    /// [`Self::combine_all`] where vectors are short, or where constraining legs lack joints.
     // Inlined, it would be compiled for every set of instructions.
     #[inline(never)]
-    fn restricted(&mut self) {
+    fn combine_few(&mut self) {
         self.combine_all::<4, true>();
     }
 

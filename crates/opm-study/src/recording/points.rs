@@ -368,24 +368,23 @@ impl<'a> Points<'a> {
         pose.clear();
         pose.push(0.0);
         pose.extend(others);
-        match self.packing {
-            Some(packing) if self.plain => self.plain_line(&packing.packer, slice, first, &pose),
-            _ => {
-                if let Some(conditions) = &mut self.conditions {
-                    conditions.find(self.cloud.workspace.modes, first, others);
-                }
-                for (number, &value) in first.iter().enumerate() {
-                    pose[0] = value;
-                    self.point(slice, &pose, number);
-                }
-                self.pack();
+        if self.plain {
+            self.plain_line(slice, first, &pose);
+        } else {
+            if let Some(conditions) = &mut self.conditions {
+                conditions.find(self.cloud.workspace.modes, first, others);
             }
+            for (number, &value) in first.iter().enumerate() {
+                pose[0] = value;
+                self.point(slice, &pose, number);
+            }
+            self.pack();
         }
         self.pose = pose;
     }
 
     /// Points whose values are all coordinates, or zero.
-    fn plain_line(&mut self, packer: &Packer, slice: u64, first: &[f64], pose: &[f64]) {
+    fn plain_line(&mut self, slice: u64, first: &[f64], pose: &[f64]) {
         let value = |column: &Column| match *column {
             Column::Coordinate(number) => pose[number],
             Column::Zero => 0.0,
@@ -396,10 +395,18 @@ impl<'a> Points<'a> {
         row.extend(self.columns.iter().map(value));
         let column = self.columns.iter().position(|column| *column == Column::Coordinate(0));
         self.open(slice);
-        if let Some(portion) = self.portions.last_mut()
-            && let Err(error) = packer.pack_line(&row, column, first, &mut portion.packed)
-        {
-            self.wrong.get_or_insert(StudyError::record("a point", error));
+        let Some(Portion { values, packed, .. }) = self.portions.last_mut() else { return };
+        if let Some(packing) = self.packing {
+            if let Err(error) = packing.packer.pack_line(&row, column, first, packed) {
+                self.wrong.get_or_insert(StudyError::record("a point", error));
+            }
+        } else {
+            for &value in first {
+                if let Some(column) = column {
+                    row[column] = value;
+                }
+                values.extend_from_slice(&row);
+            }
         }
         self.row = row;
     }

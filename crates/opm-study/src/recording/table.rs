@@ -191,12 +191,10 @@ pub fn write_motion_table(
             let samples = trajectory.samples();
             let mut table: TableRecorder<PartialFile> =
                 TableRecorder::npy(file, &names, samples).map_err(failed)?;
-            let (mut row, mut bytes) = (Vec::new(), Vec::new());
+            let mut row = Vec::new();
             let take = |_, sample: &Sample, _: &[_]| {
                 columns.write(sample, &mut row);
-                bytes.clear();
-                bytes.extend(row.iter().flat_map(|value| value.to_le_bytes()));
-                table.push(&bytes).map_err(failed)
+                table.push_rows(&row).map_err(failed)
             };
             let summary = request.follow(trajectory, take, go_on)?;
             table.finish().map_err(failed)?;

@@ -268,14 +268,13 @@ impl PoseRecording<'_> {
         let table = TableRecorder::new(file, format, layout, points, &run);
         let mut table = table.map_err(failed)?;
         let made = || Points::new(cloud, &columns, packing.as_ref());
-        let mut bytes = Vec::new();
         let mut write = |portion: Portion| {
-            bytes.clear();
-            bytes.extend(portion.values.iter().flat_map(|value| value.to_le_bytes()));
-            table.push(&bytes).map_err(failed)?;
-            table.push(&portion.packed).map_err(failed)?;
-            if let Some(packing) = &packing {
-                packing.reuse(portion);
+            match &packing {
+                None => table.push_rows(&portion.values).map_err(failed)?,
+                Some(packing) => {
+                    table.push(&portion.packed).map_err(failed)?;
+                    packing.reuse(portion);
+                }
             }
             Ok(())
         };
