@@ -1,7 +1,7 @@
 //! Files that are written at once, under a temporary name until they are whole.
 
 use crate::failure::Failure;
-use opm_mcap::{PartialFile, Sink};
+use opm_mcap::PartialFile;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

@@ -18,26 +18,26 @@ use crate::RecordError;
 /// # recorder.finish(&opm_mcap::Metadata::new())
 /// # }
 /// ```
-pub trait Sink: Write + Seek {
-    /// Makes final what was written. It is called once, after the last byte.
-    fn commit(self) -> io::Result<()>;
+pub trait Sink: Write + Seek + Send {
+    /// Makes final what was written, after the last byte.
+    fn commit(self: Box<Self>) -> io::Result<()>;
 }
 
 /// A recording in memory. Lend a buffer to keep what is written: `Cursor::new(&mut bytes)`.
 impl Sink for io::Cursor<&mut Vec<u8>> {
-    fn commit(self) -> io::Result<()> {
+    fn commit(self: Box<Self>) -> io::Result<()> {
         Ok(())
     }
 }
 
-/// A file being written as `NAME.partial`, which [`Sink::commit`] renames to `NAME`.
+/// A file being written as `NAME.partial`, which [`commit`](Self::commit) renames to `NAME`.
 ///
 /// Until then a file `NAME` stays as it is; then it is replaced. Where `NAME` is a symbolic link, the file that it leads to
 /// is written, and the link stays. A run that ends early, for whatever reason, leaves the `.partial` file, unless it
 /// [discards](Self::discard) it. The next run overwrites it.
 ///
 /// ```
-/// use opm_mcap::{PartialFile, Sink};
+/// use opm_mcap::PartialFile;
 /// use std::io::Write;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -109,6 +109,17 @@ impl PartialFile {
     pub fn discard(mut self) {
         self.begun = false;
     }
+
+    /// Gives the file its name, once all of it is on the disk.
+    ///
+    /// # Errors
+    /// A failed write, or a name that cannot be given. The `.partial` file then stays.
+    pub fn commit(mut self) -> io::Result<()> {
+        self.begun = true;
+        self.file.flush()?;
+        self.file.get_ref().sync_all()?;
+        fs::rename(&self.partial, &self.target)
+    }
 }
 
 /// The file that a symbolic link leads to, whether it is there yet or not; another name as it is.
@@ -147,11 +158,8 @@ impl Seek for PartialFile {
 }
 
 impl Sink for PartialFile {
-    fn commit(mut self) -> io::Result<()> {
-        self.begun = true;
-        self.file.flush()?;
-        self.file.get_ref().sync_all()?;
-        fs::rename(&self.partial, &self.target)
+    fn commit(self: Box<Self>) -> io::Result<()> {
+        (*self).commit()
     }
 }
 

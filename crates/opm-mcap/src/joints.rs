@@ -6,8 +6,8 @@
 //! `tau_leg1`), and the metadata record `joints` says which joint a field is. [`crate::trajectory`] writes
 //! such topics, and [`Message::values`](crate::Message::values) reads them.
 
+use crate::RecordError;
 use crate::log::{Log, Topic};
-use crate::{RecordError, Sink};
 
 /// The package of the message types.
 const PACKAGE: &str = "opm";
@@ -27,8 +27,8 @@ pub(crate) struct JointsTopic {
 
 impl JointsTopic {
     /// Adds the topic `name` with messages of type `opm.MESSAGE`.
-    pub fn new<W: Sink>(
-        log: &mut Log<W>,
+    pub fn new(
+        log: &mut Log<'_>,
         name: &str,
         message: &str,
         joints: &[String],
@@ -41,9 +41,9 @@ impl JointsTopic {
     }
 
     /// Writes one value for each joint, SI, in the order of the joints.
-    pub fn write<W: Sink>(
+    pub fn write(
         &mut self,
-        log: &mut Log<W>,
+        log: &mut Log<'_>,
         time: u64,
         values: &[f64],
     ) -> Result<(), RecordError> {
@@ -55,17 +55,13 @@ impl JointsTopic {
     }
 
     /// Writes NaN for each joint.
-    pub fn write_unknown<W: Sink>(
-        &mut self,
-        log: &mut Log<W>,
-        time: u64,
-    ) -> Result<(), RecordError> {
+    pub fn write_unknown(&mut self, log: &mut Log<'_>, time: u64) -> Result<(), RecordError> {
         self.write_all(log, time, std::iter::repeat_n(f64::NAN, self.joints))
     }
 
-    fn write_all<W: Sink>(
+    fn write_all(
         &mut self,
-        log: &mut Log<W>,
+        log: &mut Log<'_>,
         time: u64,
         values: impl Iterator<Item = f64>,
     ) -> Result<(), RecordError> {

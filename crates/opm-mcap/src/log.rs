@@ -35,16 +35,16 @@ pub(crate) struct Topic {
 /// Chunks are closed, and the operating system is given everything, by the volume of data and not
 /// by the clock: the same messages give the same bytes, and a killed process loses at most the last
 /// chunk and the message being written.
-pub(crate) struct Log<W: Sink> {
-    writer: Option<Writer<W>>,
+pub(crate) struct Log<'w> {
+    writer: Option<Writer<Box<dyn Sink + 'w>>>,
     /// Uncompressed bytes after which a chunk is closed.
     chunk_bytes: u64,
     /// Message bytes in the open chunk.
     pending: u64,
 }
 
-impl<W: Sink> Log<W> {
-    pub fn new(sink: W, chunk_bytes: u64) -> Result<Self, RecordError> {
+impl<'w> Log<'w> {
+    pub fn new(sink: Box<dyn Sink + 'w>, chunk_bytes: u64) -> Result<Self, RecordError> {
         let writer = WriteOptions::new()
             .library(concat!("opm-mcap/", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Zstd))
@@ -174,7 +174,7 @@ impl<W: Sink> Log<W> {
 
     fn attempt<T>(
         &mut self,
-        action: impl FnOnce(&mut Writer<W>) -> Result<T, RecordError>,
+        action: impl FnOnce(&mut Writer<Box<dyn Sink + 'w>>) -> Result<T, RecordError>,
     ) -> Result<T, RecordError> {
         let writer = self.writer.as_mut().ok_or(RecordError::AfterFailure)?;
         let result = action(writer);
@@ -185,7 +185,7 @@ impl<W: Sink> Log<W> {
     }
 }
 
-impl<W: Sink> Drop for Log<W> {
+impl Drop for Log<'_> {
     fn drop(&mut self) {
         self.give_up();
     }

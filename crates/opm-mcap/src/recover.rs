@@ -61,13 +61,13 @@ pub fn recover(path: &Path, target: &Path) -> Result<Recovered, RecoverError> {
     }
     let sink = PartialFile::create(target)?;
     let unfinished = sink.path().to_owned();
-    copy(path, sink).inspect_err(|_| {
+    copy(path, Box::new(sink)).inspect_err(|_| {
         // If it stays, its name tells that it is not whole.
         let _ = fs::remove_file(unfinished);
     })
 }
 
-fn copy(path: &Path, sink: impl Sink) -> Result<Recovered, RecoverError> {
+fn copy(path: &Path, sink: Box<dyn Sink>) -> Result<Recovered, RecoverError> {
     let mut copy = Copy {
         log: Log::new(sink, CHUNK_BYTES)?,
         schemas: BTreeMap::new(),
@@ -95,15 +95,15 @@ fn copy(path: &Path, sink: impl Sink) -> Result<Recovered, RecoverError> {
     Ok(found)
 }
 
-struct Copy<W: Sink> {
-    log: Log<W>,
+struct Copy {
+    log: Log<'static>,
     /// The numbers of schemas in the new file, by those in the old one.
     schemas: BTreeMap<u16, u16>,
     topics: BTreeMap<u16, Topic>,
     found: Recovered,
 }
 
-impl<W: Sink> Copy<W> {
+impl Copy {
     fn record(&mut self, opcode: u8, data: &[u8]) -> Result<(), RecoverError> {
         match opcode {
             op::ATTACHMENT => {

@@ -16,7 +16,7 @@
 use crate::decode::varint;
 use crate::joints::{self, Field};
 use crate::log::{CHUNK_BYTES, Log, Topic};
-use crate::{Metadata, PartialFile, RecordError, Sink};
+use crate::{Metadata, RecordError, Sink};
 
 /// The topic of the runs.
 pub const RUNS_TOPIC: &str = "/shard/runs";
@@ -74,8 +74,8 @@ pub struct Shard<'a> {
 /// # Ok(())
 /// # }
 /// ```
-pub struct ShardRecorder<W: Sink = PartialFile> {
-    log: Log<W>,
+pub struct ShardRecorder<'w> {
+    log: Log<'w>,
     topic: Topic,
     messages: u64,
     /// The first pose of the open message, and one more than its last pose.
@@ -83,12 +83,16 @@ pub struct ShardRecorder<W: Sink = PartialFile> {
     lengths: Vec<u8>,
 }
 
-impl<W: Sink> ShardRecorder<W> {
+impl<'w> ShardRecorder<'w> {
     /// Starts a file that is written to `sink`.
     ///
     /// # Errors
     /// A failed write ([`RecordError::Io`]).
-    pub fn new(sink: W, shard: &Shard<'_>) -> Result<Self, RecordError> {
+    pub fn new(sink: impl Sink + 'w, shard: &Shard<'_>) -> Result<Self, RecordError> {
+        Self::begin(Box::new(sink), shard)
+    }
+
+    fn begin(sink: Box<dyn Sink + 'w>, shard: &Shard<'_>) -> Result<Self, RecordError> {
         let mut log = Log::new(sink, CHUNK_BYTES)?;
         log.attach(shard.mechanism_name, "application/toml", START, shard.mechanism)?;
         log.metadata("run", &shard.run)?;
@@ -175,7 +179,7 @@ mod tests {
     use super::*;
     use std::io::Cursor;
 
-    fn recorder(bytes: &mut Vec<u8>) -> ShardRecorder<Cursor<&mut Vec<u8>>> {
+    fn recorder(bytes: &mut Vec<u8>) -> ShardRecorder<'_> {
         let (run, shard) = (Metadata::new(), Metadata::new());
         let shard = Shard { mechanism_name: "m.toml", mechanism: b"", run, shard };
         ShardRecorder::new(Cursor::new(bytes), &shard).unwrap()

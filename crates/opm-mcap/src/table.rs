@@ -11,7 +11,7 @@
 use std::fmt::Write as _;
 
 use crate::cloud::{COLOR_FIELDS, POSITION_FIELDS};
-use crate::{CloudLayout, Metadata, PartialFile, RecordError, Sink};
+use crate::{CloudLayout, Metadata, RecordError, Sink};
 
 /// The number of bytes that the array of an NPY file is aligned to.
 const ALIGNMENT: usize = 64;
@@ -52,9 +52,9 @@ pub enum TableFormat {
 /// # Ok(())
 /// # }
 /// ```
-pub struct TableRecorder<W: Sink = PartialFile> {
+pub struct TableRecorder<'w> {
     /// `None` after an error.
-    sink: Option<W>,
+    sink: Option<Box<dyn Sink + 'w>>,
     stride: usize,
     announced: u64,
     pushed: u64,
@@ -62,37 +62,43 @@ pub struct TableRecorder<W: Sink = PartialFile> {
     bytes: Vec<u8>,
 }
 
-impl<W: Sink> TableRecorder<W> {
+impl<'w> TableRecorder<'w> {
     /// Starts a table with the given number of points, which is written to `sink`. `run` is written as
     /// comments, if the format has comments.
     ///
     /// # Errors
     /// A failed write.
     pub fn new(
-        mut sink: W,
+        sink: impl Sink + 'w,
         format: TableFormat,
         layout: &CloudLayout,
         points: u64,
         run: &Metadata,
     ) -> Result<Self, RecordError> {
-        let (header, stride) = match format {
-            TableFormat::Npy => {
-                let columns = table_columns(layout);
-                (npy(&columns, points), 8 * columns.len())
+        match format {
+            TableFormat::Npy => Self::npy(sink, &table_columns(layout), points),
+            TableFormat::Ply => {
+                Self::begin(Box::new(sink), &ply(layout, points, run), layout.stride(), points)
             }
-            TableFormat::Ply => (ply(layout, points, run), layout.stride()),
-        };
-        sink.write_all(&header).map_err(RecordError::Io)?;
-        Ok(Self { sink: Some(sink), stride, announced: points, pushed: 0, bytes: Vec::new() })
+        }
     }
 
     /// Starts an NPY table of rows of any named columns.
     ///
     /// # Errors
     /// A failed write.
-    pub fn npy(mut sink: W, columns: &[&str], rows: u64) -> Result<Self, RecordError> {
-        sink.write_all(&npy(columns, rows)).map_err(RecordError::Io)?;
-        let stride = 8 * columns.len();
+    pub fn npy(sink: impl Sink + 'w, columns: &[&str], rows: u64) -> Result<Self, RecordError> {
+        Self::begin(Box::new(sink), &npy(columns, rows), 8 * columns.len(), rows)
+    }
+
+    /// Starts a table with this header, whose rows have `stride` bytes.
+    fn begin(
+        mut sink: Box<dyn Sink + 'w>,
+        header: &[u8],
+        stride: usize,
+        rows: u64,
+    ) -> Result<Self, RecordError> {
+        sink.write_all(header).map_err(RecordError::Io)?;
         Ok(Self { sink: Some(sink), stride, announced: rows, pushed: 0, bytes: Vec::new() })
     }
 

@@ -134,8 +134,8 @@ pub const PICTURE_PERIOD: u64 = 16_666_667;
 pub const VALID: &str = "valid";
 
 /// Writes a recording of a motion. Any error is final. The [module](self) has an example.
-pub struct TrajectoryRecorder<W: Sink = PartialFile> {
-    log: Log<W>,
+pub struct TrajectoryRecorder<'w> {
+    log: Log<'w>,
     pose: Option<JointsTopic>,
     pose_velocities: Option<JointsTopic>,
     dependent: Option<JointsTopic>,
@@ -159,7 +159,7 @@ pub struct TrajectoryRecorder<W: Sink = PartialFile> {
     picture: u64,
 }
 
-impl TrajectoryRecorder {
+impl TrajectoryRecorder<'static> {
     /// Starts a recording that will appear as the file `path`; see [`PartialFile`].
     ///
     /// # Errors
@@ -170,12 +170,16 @@ impl TrajectoryRecorder {
     }
 }
 
-impl<W: Sink> TrajectoryRecorder<W> {
+impl<'w> TrajectoryRecorder<'w> {
     /// Starts a recording that is written to `sink`.
     ///
     /// # Errors
     /// As [`create`](TrajectoryRecorder::create).
-    pub fn new(sink: W, trajectory: &Trajectory<'_>) -> Result<Self, RecordError> {
+    pub fn new(sink: impl Sink + 'w, trajectory: &Trajectory<'_>) -> Result<Self, RecordError> {
+        Self::begin(Box::new(sink), trajectory)
+    }
+
+    fn begin(sink: Box<dyn Sink + 'w>, trajectory: &Trajectory<'_>) -> Result<Self, RecordError> {
         let names = |coordinates: &[Coordinate]| -> Vec<String> {
             coordinates.iter().map(|c| c.name.clone()).collect()
         };
@@ -297,7 +301,7 @@ impl<W: Sink> TrajectoryRecorder<W> {
         let interfering = sample.posture.filter(|_| shows).map(|posture| posture.interfering);
         self.draw_change(time, (state, interfering))?;
         let log = &mut self.log;
-        let write = |log: &mut Log<W>, topic: &mut Option<JointsTopic>, values: &[f64]| match topic
+        let write = |log: &mut Log<'_>, topic: &mut Option<JointsTopic>, values: &[f64]| match topic
         {
             Some(topic) => topic.write(log, time, values),
             None if values.is_empty() => Ok(()),
@@ -411,8 +415,8 @@ fn stamp(time: u64) -> Timestamp {
 }
 
 /// Writes a message of a well-known type.
-fn put<W: Sink, M: Encode>(
-    log: &mut Log<W>,
+fn put<M: Encode>(
+    log: &mut Log<'_>,
     buffer: &mut Vec<u8>,
     topic: &mut Topic,
     time: u64,

@@ -141,8 +141,8 @@ struct Open {
 /// number of their slice, to [`push`](Self::push). The portions in which they come make no difference to
 /// the file. Any error is final. It takes the memory of one message, at most [`MAX_MESSAGE_BYTES`]. The
 /// [crate] has an example.
-pub struct WorkspaceRecorder<W: Sink = PartialFile> {
-    log: Log<W>,
+pub struct WorkspaceRecorder<'w> {
+    log: Log<'w>,
     encoder: CloudEncoder,
     plan: Plan,
     overview: Topic,
@@ -163,7 +163,7 @@ pub struct WorkspaceRecorder<W: Sink = PartialFile> {
     bounds: Option<[[f64; 2]; 3]>,
 }
 
-impl WorkspaceRecorder {
+impl WorkspaceRecorder<'static> {
     /// Starts a recording that will appear as the file `path`; see [`PartialFile`].
     ///
     /// # Errors
@@ -174,12 +174,16 @@ impl WorkspaceRecorder {
     }
 }
 
-impl<W: Sink> WorkspaceRecorder<W> {
+impl<'w> WorkspaceRecorder<'w> {
     /// Starts a recording that is written to `sink`.
     ///
     /// # Errors
     /// As [`create`](WorkspaceRecorder::create).
-    pub fn new(sink: W, workspace: &Workspace<'_>) -> Result<Self, RecordError> {
+    pub fn new(sink: impl Sink + 'w, workspace: &Workspace<'_>) -> Result<Self, RecordError> {
+        Self::begin(Box::new(sink), workspace)
+    }
+
+    fn begin(sink: Box<dyn Sink + 'w>, workspace: &Workspace<'_>) -> Result<Self, RecordError> {
         let Workspace { layout, slices: told, points, .. } = workspace;
         let slices = told.count();
         if slices > MAX_SLICES {

@@ -2,12 +2,11 @@
 
 mod common;
 
-use std::cell::RefCell;
 use std::fs;
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::rc::Rc;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use common::{clouds, file, layout, nothing, record_slices, recorded, row, rows, workspace};
@@ -18,7 +17,7 @@ const COUNTS: [u64; 5] = [300, 0, 50_000, 20, 40_000];
 
 /// A disk that is full at one write and has room again afterwards.
 #[derive(Clone)]
-struct FullDisk(Rc<RefCell<Disk>>);
+struct FullDisk(Arc<Mutex<Disk>>);
 
 struct Disk {
     file: Cursor<Vec<u8>>,
@@ -29,7 +28,7 @@ struct Disk {
 
 impl Write for FullDisk {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let mut disk = self.0.borrow_mut();
+        let mut disk = self.0.lock().unwrap();
         let now = disk.countdown == 0;
         disk.countdown = disk.countdown.wrapping_sub(1);
         if now { Err(io::ErrorKind::StorageFull.into()) } else { disk.file.write(bytes) }
@@ -42,13 +41,13 @@ impl Write for FullDisk {
 
 impl Seek for FullDisk {
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
-        self.0.borrow_mut().file.seek(position)
+        self.0.lock().unwrap().file.seek(position)
     }
 }
 
 impl Sink for FullDisk {
-    fn commit(self) -> io::Result<()> {
-        self.0.borrow_mut().committed = true;
+    fn commit(self: Box<Self>) -> io::Result<()> {
+        self.0.lock().unwrap().committed = true;
         Ok(())
     }
 }
@@ -57,9 +56,9 @@ impl Sink for FullDisk {
 fn a_failed_write_is_final_wherever_it_happens() {
     let run = |countdown| {
         let disk = Disk { file: Cursor::default(), countdown, committed: false };
-        let disk = FullDisk(Rc::new(RefCell::new(disk)));
+        let disk = FullDisk(Arc::new(Mutex::new(disk)));
         let result = record_slices(disk.clone(), &COUNTS, 5000);
-        let disk = Rc::into_inner(disk.0).unwrap().into_inner();
+        let disk = Arc::into_inner(disk.0).unwrap().into_inner().unwrap();
         (result, disk)
     };
     let (result, whole) = run(usize::MAX);
@@ -97,7 +96,7 @@ fn a_device_that_is_full_is_reported() {
         }
     }
     impl Sink for Device {
-        fn commit(self) -> io::Result<()> {
+        fn commit(self: Box<Self>) -> io::Result<()> {
             panic!("nothing was written")
         }
     }

@@ -292,7 +292,7 @@ fn rates_in_a_recording_without_rates() {
     let mut bytes = Vec::new();
     let trajectory = trajectory(&[]);
     let mut recorder = TrajectoryRecorder::new(Cursor::new(&mut bytes), &trajectory).unwrap();
-    let push = |recorder: &mut TrajectoryRecorder<_>, rates| {
+    let push = |recorder: &mut TrajectoryRecorder<'_>, rates| {
         let joints = &[1.0, 2.0, 3.0];
         let posture = Posture { joints, rates: Some(rates), ..Posture::default() };
         recorder.push(0, &Sample { posture: Some(posture), ..Sample::default() })

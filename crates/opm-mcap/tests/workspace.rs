@@ -219,9 +219,7 @@ fn memory_is_bounded_for_wide_points_too() {
 }
 
 /// What a misuse answers, and that the recorder is finished with after it.
-fn refused(
-    misuse: impl FnOnce(&mut WorkspaceRecorder<Cursor<&mut Vec<u8>>>) -> RecordError,
-) -> String {
+fn refused(misuse: impl FnOnce(&mut WorkspaceRecorder<'_>) -> RecordError) -> String {
     let mut bytes = Vec::new();
     let mut recorder =
         WorkspaceRecorder::new(Cursor::new(&mut bytes), &workspace(layout(), 4, 3)).unwrap();

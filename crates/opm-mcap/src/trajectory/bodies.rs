@@ -1,9 +1,9 @@
 //! The bodies of a recording: their shapes, and their colours, which change where they are stuck or interfere.
 
 use super::{BODIES_TOPIC, FRAMES_TOPIC, SCENE_TOPIC, START, TrajectoryRecorder, put, stamp};
+use crate::RecordError;
 use crate::log::Topic;
 use crate::scene::{Body, State, surface, update};
-use crate::{RecordError, Sink};
 use foxglove::messages::{FrameTransform, FrameTransforms};
 
 /// The bodies that the scene shows.
@@ -17,7 +17,7 @@ pub(super) struct Shown {
     interfering: Vec<usize>,
 }
 
-impl<W: Sink> TrajectoryRecorder<W> {
+impl TrajectoryRecorder<'_> {
     /// Writes the shapes of the bodies.
     pub(super) fn show(&mut self, bodies: &[Body]) -> Result<(), RecordError> {
         let topic = self.log.topic::<foxglove::messages::SceneUpdate>(SCENE_TOPIC)?;

@@ -12,14 +12,14 @@ use opm_core::task::TaskCoordinate;
 use opm_core::trajectory::{Change, Sample, Trajectory, Violation, ViolationReport};
 use opm_interference::{Distances, Interference};
 use opm_mcap::trajectory::{Coordinate, Posture, Rates, Role, Sample as Recorded};
-use opm_mcap::{Metadata, PartialFile, RecordError, TrajectoryRecorder};
+use opm_mcap::{Metadata, RecordError, TrajectoryRecorder};
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// A recording of a motion that is being written.
 pub struct MotionRecorder<'a> {
     request: MotionRequest<'a>,
-    recorder: TrajectoryRecorder<PartialFile>,
+    recorder: TrajectoryRecorder<'static>,
     scene: Scene,
     place: String,
     /// The time of the last message, nanoseconds.

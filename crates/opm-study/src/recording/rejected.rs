@@ -65,7 +65,7 @@ impl Rejected<'_> {
     /// Records every k-th of the points. `slice` gives the number of the slice that a point is in.
     pub fn record(
         &self,
-        recorder: &mut WorkspaceRecorder,
+        recorder: &mut WorkspaceRecorder<'_>,
         slice: impl Fn(&RejectedPoint) -> u64 + Sync,
         progress: &Progress,
         failed: impl Fn(RecordError) -> StudyError + Sync,

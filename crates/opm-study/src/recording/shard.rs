@@ -86,7 +86,7 @@ impl ShardRecording {
 
 /// Writes the numbers of the poses. Runs that continue from row to row are written as one.
 fn write_runs(
-    recorder: &mut ShardRecorder,
+    recorder: &mut ShardRecorder<'_>,
     sweep: &Sweep<'_>,
     progress: &Progress,
     failed: impl Fn(RecordError) -> StudyError + Sync,

@@ -8,7 +8,7 @@ use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Sample, Trajectory};
 use opm_mcap::csv::distinct;
-use opm_mcap::{PartialFile, RecordError, Sink, TableRecorder};
+use opm_mcap::{RecordError, TableRecorder};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -189,8 +189,7 @@ pub fn write_motion_table(
             let header = columns.header().map_err(|error| failed(RecordError::Io(error)))?;
             let names: Vec<&str> = header.iter().map(String::as_str).collect();
             let samples = trajectory.samples();
-            let mut table: TableRecorder<PartialFile> =
-                TableRecorder::npy(file, &names, samples).map_err(failed)?;
+            let mut table = TableRecorder::npy(file, &names, samples).map_err(failed)?;
             let mut row = Vec::new();
             let take = |_, sample: &Sample, _: &[_]| {
                 columns.write(sample, &mut row);

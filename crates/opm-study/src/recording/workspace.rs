@@ -327,7 +327,7 @@ impl PoseRecording<'_> {
                 |mut points: Points<'_>| points.take()?.into_iter().try_for_each(&mut *write);
             poses.points(progress, add, made, visit).map_err(|error| self.interrupted(error))
         };
-        let push = |recorder: &mut WorkspaceRecorder, portion: Portion| {
+        let push = |recorder: &mut WorkspaceRecorder<'_>, portion: Portion| {
             let slice = portion.slice / together;
             recorder.push_packed(slice, &portion.packed).map_err(failed)?;
             packing.reuse(portion);
@@ -362,7 +362,7 @@ impl PoseRecording<'_> {
     /// The overview of a recording in which it does not have every point.
     fn overview(
         &self,
-        recorder: &mut WorkspaceRecorder,
+        recorder: &mut WorkspaceRecorder<'_>,
         packing: &Packing,
         columns: &[Column],
     ) -> Result<(), StudyError> {
