@@ -135,9 +135,10 @@ impl<'a> Row<'a> {
             self.number = Some(row);
             fill(&axes[1..], run.from / axes[0].count, &mut self.others);
         }
-        let along = axes[0].count;
+        let place = run.from % axes[0].count;
+        let places = place..place + (run.to - run.from);
         self.first.clear();
-        self.first.extend((run.from..run.to).map(|number| axes[0].value(number % along)));
+        self.first.extend(places.map(|place| axes[0].value(place)));
         let start = row * length;
         self.run = Run { from: run.from - start, to: run.to - start };
         let (slice, runs) = (row / self.slice, slice::from_ref(&self.run));
