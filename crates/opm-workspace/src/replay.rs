@@ -7,7 +7,10 @@ use crate::sweep::{Hits, Run};
 use std::slice;
 
 /// The number of poses that are made into points together.
-const BLOCK: u64 = 1 << 15;
+const BLOCK: u64 = 1 << 13;
+
+/// Values of the first axis are computed together for so many places of a row, and stay there for the next rows.
+const WINDOW: u64 = 1 << 10;
 
 /// Gives poses of a grid as [`Sweep::points`](crate::Sweep::points) does, from `runs` of their numbers,
 /// which ascend and lie apart. Only the division of rows into segments may differ from a sweep's.
@@ -115,7 +118,9 @@ struct Row<'a> {
     slice: u64,
     /// The poses that were found, by their numbers in the row.
     run: Run,
-    first: Vec<f64>,
+    /// The places on the first axis whose values are in `values`.
+    window: Run,
+    values: Vec<f64>,
     others: Vec<f64>,
 }
 
@@ -123,8 +128,8 @@ impl<'a> Row<'a> {
     fn new(grid: &'a Grid) -> Self {
         let others = vec![0.0; grid.axes().len() - 1];
         let slice = grid.poses() / grid.row() / grid.slices();
-        let run = Run { from: 0, to: 0 };
-        Self { grid, number: None, slice, run, first: Vec::new(), others }
+        let none = Run { from: 0, to: 0 };
+        Self { grid, number: None, slice, run: none, window: none, values: Vec::new(), others }
     }
 
     /// The poses of a run of numbers in one row.
@@ -136,12 +141,18 @@ impl<'a> Row<'a> {
             fill(&axes[1..], run.from / axes[0].count, &mut self.others);
         }
         let place = run.from % axes[0].count;
-        let places = place..place + (run.to - run.from);
-        self.first.clear();
-        self.first.extend(places.map(|place| axes[0].value(place)));
+        let places = Run { from: place, to: place + (run.to - run.from) };
+        if places.from < self.window.from || self.window.to < places.to {
+            let from = places.from / WINDOW * WINDOW;
+            let to = places.to.next_multiple_of(WINDOW).min(axes[0].count);
+            self.window = Run { from, to };
+            self.values.clear();
+            self.values.extend((from..to).map(|place| axes[0].value(place)));
+        }
+        let [from, to] = [places.from, places.to].map(|place| (place - self.window.from) as usize);
         let start = row * length;
         self.run = Run { from: run.from - start, to: run.to - start };
         let (slice, runs) = (row / self.slice, slice::from_ref(&self.run));
-        Hits { slice, row, runs, first: &self.first, others: &self.others }
+        Hits { slice, row, runs, first: &self.values[from..to], others: &self.others }
     }
 }
