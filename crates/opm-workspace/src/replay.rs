@@ -156,3 +156,53 @@ impl<'a> Row<'a> {
         Hits { slice, row, runs, first: &self.values[from..to], others: &self.others }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Axis;
+    use opm_core::Manipulator;
+
+    /// Rows shorter and longer than a window and than a block; runs that lie apart, end with a row, go over its end, and over
+    /// several rows. What a number means is told by [`Grid::pose`].
+    #[test]
+    fn poses_are_those_of_their_numbers() {
+        let manipulator = Manipulator::example("plano-spherical-5dof").unwrap();
+        for count in [1, 7, WINDOW, WINDOW + 1, 3 * WINDOW - 1, 3 * BLOCK + 5] {
+            let x =
+                if count == 1 { Axis::fixed("x", 0.1) } else { Axis::new("x", -0.3, 0.2, count) };
+            let axes = vec![x, Axis::new("y", -0.1, 0.3, 3), Axis::new("xi", 0.0, 0.4, 2)];
+            let grid = Grid::new(&manipulator, axes).unwrap();
+            let last = grid.poses();
+            let ends =
+                [0, 1, 2, count / 3, count / 2, count - 1, count, 2 * count, 5 * count, last];
+            let mut ends: Vec<u64> = ends.into_iter().filter(|&end| end <= last).collect();
+            ends.sort_unstable();
+            ends.dedup();
+            let apart = ends.chunks_exact(2).map(|ends| Run { from: ends[0], to: ends[1] });
+            for runs in [apart.collect(), vec![Run { from: 0, to: last }]] {
+                let mut poses: Vec<Vec<f64>> = Vec::new();
+                let replayed: Result<(), Cancelled> = replay(
+                    &grid,
+                    runs.iter().copied().map(Ok),
+                    &Progress::default(),
+                    |hits, made: &mut Vec<Vec<f64>>| {
+                        assert_eq!(hits.runs.len(), 1);
+                        let numbers = hits.numbers(&grid).flat_map(|run| run.from..run.to);
+                        assert_eq!(numbers.count(), hits.first.len());
+                        let pose = |&first: &f64| [&[first], hits.others].concat();
+                        made.extend(hits.first.iter().map(pose));
+                    },
+                    Vec::new,
+                    |made| {
+                        poses.extend(made);
+                        Ok(())
+                    },
+                );
+                assert!(replayed.is_ok());
+                let numbers = runs.iter().flat_map(|run| run.from..run.to);
+                assert!(poses.into_iter().eq(numbers.map(|number| grid.pose(number))), "{count}");
+            }
+        }
+    }
+}
