@@ -12,7 +12,7 @@ use crate::text::{self, Table, chain, plural, short};
 use answer::Answer;
 use nalgebra::{Point3, Vector3};
 use opm_core::Quantity;
-use opm_core::decomposition::mobility::{HomeSingularity, Mobility};
+use opm_core::decomposition::mobility::Mobility;
 use opm_core::decomposition::{
     Applies, Decomposition, Freedom, JointMiss, MAX_DECOMPOSITIONS, check_actuators, survey,
 };
@@ -131,10 +131,9 @@ fn actuator_warnings(report: &Mobility) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Err(error) = check_actuators(report) {
         warnings.push(error.to_string());
+        return warnings;
     }
-    let parallel = report.singular.iter().filter(|s| matches!(s, HomeSingularity::Parallel { .. }));
-    warnings
-        .extend(parallel.map(|singularity| format!("the home pose is singular: {singularity}")));
+    warnings.extend(report.parallel_home());
     if !report.redundant.is_empty() {
         warnings.push(format!(
             "the actuators are redundant: {} actuated freedoms for {} that they control; any one of \
@@ -439,7 +438,7 @@ fn actuation(loaded: &Loaded, report: &Mobility) -> String {
     let names: Vec<&str> = joints.map(|joint| &*joint.name).collect();
     let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
     let mut text = format!("actuated: {names}; ");
-    if report.redundant.is_empty() {
+    if report.redundant.is_empty() || check_actuators(report).is_err() {
         let _ = write!(text, "{} for mobility N = {}", report.actuators, report.mobility);
     } else {
         let _ = write!(

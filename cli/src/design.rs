@@ -25,6 +25,7 @@ pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
     let given = load::text(&args.problem, LONGEST, "problem of design")?;
     let text = given.ok_or_else(|| Failure::work(format!("{label}: No such file or directory")))?;
     let (problem, loaded) = read(&text, args)?;
+    loaded.warn_of_home(output);
     let picture = match &args.picture {
         None => None,
         Some(path) => {

@@ -6,6 +6,7 @@ use crate::pose::Number;
 use crate::text::chain;
 use crate::unitless;
 use opm_core::Quantity;
+use opm_core::decomposition::mobility::mobility;
 use opm_core::decomposition::{DecomposeError, JointMiss, NearMiss, Snapped, nearly, snap};
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
@@ -44,6 +45,7 @@ pub struct Loaded {
 pub fn open(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
     let loaded = read(given, output)?;
     loaded.note_snapped(output);
+    loaded.warn_of_home(output);
     Ok(loaded)
 }
 
@@ -166,6 +168,13 @@ impl Loaded {
     pub fn note_snapped(&self, output: &Output) {
         for miss in self.snapped.iter().flatten() {
             output.note(format_args!("{}: snapped {miss}", self.label));
+        }
+    }
+
+    /// Warns where the home pose is a parallel singularity.
+    pub fn warn_of_home(&self, output: &Output) {
+        if let Some(text) = mobility(&self.file.mechanism).ok().and_then(|m| m.parallel_home()) {
+            output.warn(format_args!("{}: {text}", self.label));
         }
     }
 

@@ -51,6 +51,7 @@ impl Manipulator {
     // One a keyword of Python's.
     #[allow(clippy::too_many_arguments)]
     fn from_screws(
+        py: Python<'_>,
         legs: &Bound<'_, PyAny>,
         actuated: &Bound<'_, PyAny>,
         home: Option<&Bound<'_, PyAny>>,
@@ -106,7 +107,7 @@ impl Manipulator {
         // The mechanism goes through a file, so that it is checked like any other, can be saved, and can be pickled.
         let text = file::write(&mechanism, FileUnits::SI, Digits::All);
         let file = file::read(&text).map_err(|e| wrong(message(&e, &text, &legs)))?;
-        Self::compile(file, text, name.to_owned())
+        Self::compile(file, text, name.to_owned())?.warned(py)
     }
 
     /// The joints' unit screws by leg, (f, 6) each: (omega; v) in base coordinates, as they are at home, one row for each degree of freedom.

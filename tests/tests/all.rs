@@ -11,6 +11,7 @@ mod forward;
 mod fuzzed;
 mod gallery;
 mod height;
+mod homes;
 mod inclined;
 mod inverse;
 mod kinds;

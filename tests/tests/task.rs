@@ -210,6 +210,7 @@ fn level(rng: &mut Rng, rise: f64) -> Mechanism {
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }
 

@@ -633,6 +633,9 @@ class Manipulator:
     def home_mode(self) -> str:
         """The working mode that the mechanism is assembled in."""
     @property
+    def home_warning(self) -> str | None:
+        """What cannot be told at home, where home is a parallel singularity; None where it is regular. Reading such a mechanism gives this as a UserWarning."""
+    @property
     def choices(self) -> int:
         """Number of two-valued choices; there are ``2**choices`` working modes."""
     @property

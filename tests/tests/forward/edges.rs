@@ -321,6 +321,7 @@ fn turntable(rng: &mut Rng) -> Option<Manipulator> {
         task: Default::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     };
     Manipulator::new(mechanism).ok()
 }

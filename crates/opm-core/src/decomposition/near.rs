@@ -17,13 +17,14 @@ mod search;
 mod snapped;
 
 pub use miss::JointMiss;
-pub(super) use miss::misses_of;
+pub(super) use miss::{misses_of, shown};
 pub(super) use search::{MOST_DIMENSIONS, elements};
 
 use super::{DecomposeError, Decomposition, passive};
 use crate::decomposition::mobility::{MobilityError, frame, mobility};
 use crate::group::subspace::{Frame, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::Vector3;
 use search::{NearSplit, Parts};
@@ -52,6 +53,8 @@ pub struct NearMiss {
     pub joints: Vec<JointMiss>,
     /// The tolerance that [`snap`] needs to accept the mechanism, metres.
     pub tolerance: f64,
+    /// The units of the mechanism's file, for messages.
+    pub units: FileUnits,
 }
 
 /// Axes that miss a point by less than this share of the spread of the joints' points are nearly concurrent.
@@ -146,13 +149,15 @@ pub(super) fn near_miss(mechanism: &Mechanism, dimensions: usize) -> Option<Near
     let length = sized_frame(mechanism).length;
     let Correction { split, snapped } = correction(mechanism, FARTHEST, dimensions)?;
     let off = |joint: &JointMiss| joint.relative(length) > TOLERANCE;
-    let tolerance = snapped.joints.first().map_or(0.0, |worst| worst.relative(length) * length);
-    let worst = snapped.joints.first().cloned();
+    // Without a joint that is moved, the mechanism is as it was.
+    let worst = snapped.joints.first()?.clone();
+    let tolerance = worst.relative(length) * length;
     let mut joints: Vec<_> = snapped.joints.into_iter().filter(off).collect();
     if joints.is_empty() {
-        joints.extend(worst);
+        joints.push(worst);
     }
-    Some(NearMiss { lower: split.lower, upper: split.upper, joints, tolerance })
+    let units = mechanism.units;
+    Some(NearMiss { lower: split.lower, upper: split.upper, joints, tolerance, units })
 }
 
 /// Puts every joint exactly into the subspace of its section, if none is farther from it than

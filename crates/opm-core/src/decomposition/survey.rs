@@ -229,7 +229,7 @@ pub fn survey(mechanism: &Mechanism) -> Result<Survey, MobilityError> {
     let chains: Vec<String> = legs.iter().map(|leg| leg.chain.clone()).collect();
     let notation = notation(&chains);
     let common_name = common_name(&notation, platform.subspace.as_ref());
-    let (applies, near) = match found_or_near(mechanism, passive(mechanism, &report)) {
+    let (applies, near) = match found_or_near(mechanism, &report, passive(mechanism, &report)) {
         Ok(found) => {
             let near = near_smaller(mechanism, &found);
             (Applies::Decomposed(found), near)

@@ -2,6 +2,7 @@ use super::samples::*;
 use super::*;
 use crate::group::screw::Screw;
 use crate::group::subspace::TOLERANCE;
+use crate::mechanism::file::LengthUnit;
 use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{DMatrix, Isometry3, Point3, Unit, Vector3};
 use proptest::prelude::*;
@@ -147,6 +148,7 @@ fn a_gough_platform_has_no_partial_subspaces() {
         odd: None,
         height: None,
         subspace,
+        units: FileUnits::SI,
     };
     assert_eq!(error, expected);
     assert_eq!(
@@ -164,6 +166,9 @@ fn a_joint_that_misses_the_centre_is_named() {
     let joint = &mut mechanism.legs[1].joints[4];
     let across = joint.axis.cross(&Vector3::x()).normalize();
     joint.point += across * 4.3e-3;
+    let text = decompose(&mechanism).unwrap_err().to_string();
+    assert!(text.contains("within a tolerance of 4.3e-3 m") && !text.contains("mm"), "{text}");
+    mechanism.units.length = LengthUnit::Millimetre;
     let error = decompose(&mechanism).unwrap_err();
     let near = match &error {
         DecomposeError::NoPartialSubspaces { near: Some(near), .. }
@@ -250,7 +255,7 @@ fn a_loose_platform_is_reported_with_its_motion() {
     let mut mechanism = PlanoSpherical::default().mechanism();
     mechanism.legs[3].joints[1].actuated = false;
     let error = decompose(&mechanism).unwrap_err();
-    let DecomposeError::Loose { mobility: 5, actuators: 4, controlled: 4, free } = &error else {
+    let DecomposeError::Loose { mobility: 5, actuators: 4, controlled: 4, free, .. } = &error else {
         panic!("{error}")
     };
     assert_eq!(free.len(), 1);
@@ -298,7 +303,7 @@ fn six_legs_of_six_joints_visit_few_splits() {
     let gough = gough(&mut Numbers::new(1));
     for (mechanism, ways) in [(&redundant, 1), (&pairs, 1), (&gough, 0)] {
         let report = crate::decomposition::mobility::mobility(mechanism).unwrap();
-        let (found, visited) = search(mechanism, report.lambda, report.mobility, 1);
+        let (found, visited) = search(mechanism, &report, 1);
         assert_eq!(found.len(), ways);
         // A leg has seven candidates; six of them are dropped at once.
         assert!(visited <= 7 * 6, "{}: {visited}", mechanism.name);

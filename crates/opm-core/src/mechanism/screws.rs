@@ -2,6 +2,7 @@
 
 use super::{BodyMasses, Mechanism, Shapes, TaskHints};
 use crate::group::screw::Screw;
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::Leg;
 use nalgebra::{Point3, Unit, Vector3};
@@ -122,7 +123,8 @@ impl Mechanism {
             .collect();
         let (task, bodies) = (TaskHints::default(), BodyMasses::default());
         let shapes = Shapes::default();
-        Ok(Self { name: name.into(), legs, platform, task, bodies, shapes })
+        let units = FileUnits::SI;
+        Ok(Self { name: name.into(), legs, platform, task, bodies, shapes, units })
     }
 }
 

@@ -144,7 +144,9 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         root.reader.report(at, problem);
     }
     let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
-    (Mechanism { name: name.to_owned(), legs, platform, task, bodies, shapes }, locations)
+    let units = root.reader.units();
+    let name = name.to_owned();
+    (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations)
 }
 
 /// Reads `[task]`: how the pose is measured. Whether it fits the geometry is checked later.

