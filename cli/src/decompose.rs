@@ -450,7 +450,8 @@ fn actuation(loaded: &Loaded, report: &Mobility) -> String {
         );
     }
     if report.idle > 0 {
-        let _ = write!(text, "; {} of N do not move the platform", report.idle);
+        let verb = if report.idle == 1 { "does" } else { "do" };
+        let _ = write!(text, "; {} of N {verb} not move the platform", report.idle);
     }
     text
 }

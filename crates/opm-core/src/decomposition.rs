@@ -232,7 +232,10 @@ fn one_group(group: &SubspaceClass, units: FileUnits) -> String {
     match group {
         SubspaceClass::Full => "the joints of all legs together move in all six dimensions".into(),
         group => {
-            format!("all legs move in one subgroup, {}", motions(std::slice::from_ref(group), units))
+            format!(
+                "all legs move in one subgroup, {}",
+                motions(std::slice::from_ref(group), units)
+            )
         }
     }
 }
@@ -388,7 +391,8 @@ fn one_subspace(mechanism: &Mechanism, report: &Mobility) -> Option<Decompositio
         let parts = mechanism.legs.iter().enumerate();
         parts.flat_map(|(number, leg)| nearby.part(number, &Freedom::of_leg(leg)).screws).collect()
     };
-    let group = group_of(&screws, moved).filter(|group| group.class.dimension() == report.lambda)?;
+    let group =
+        group_of(&screws, moved).filter(|group| group.class.dimension() == report.lambda)?;
     // Others have no closed forms, alone.
     SubspaceKind::of(&group.class)?;
     let class = group.class.restored(&frame);
@@ -423,11 +427,7 @@ fn height_miss(mechanism: &Mechanism, group: &SubspaceClass) -> Option<HeightMis
 
 /// All decompositions into two subgroups that share a group of `shared` dimensions, and the number of partial
 /// splits that were visited.
-fn search(
-    mechanism: &Mechanism,
-    report: &Mobility,
-    shared: usize,
-) -> (Vec<Decomposition>, usize) {
+fn search(mechanism: &Mechanism, report: &Mobility, shared: usize) -> (Vec<Decomposition>, usize) {
     let frame = frame(mechanism);
     let nearby = NearbyPose::new(mechanism, &frame, report);
     let candidates: Vec<Vec<SplitCandidate>> =

@@ -3,9 +3,9 @@
 use super::shapes::{SHAPES, redrawn, regular};
 use opm_cli::fuzzed::silently;
 use opm_core::decomposition::mobility::mobility;
-use opm_core::{Quantity, TaskCoordinate};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{self, AngleUnit, Digits, FileUnits, LengthUnit};
+use opm_core::{Quantity, TaskCoordinate};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
@@ -116,7 +116,8 @@ fn values(manipulator: &Manipulator, folder: &Path) -> Values {
     };
     let unit = |quantity| if quantity == Quantity::Angle { "rad" } else { "m" };
     let named = |pose: &[f64]| {
-        let one = |(c, value): (&TaskCoordinate, &f64)| format!("{}={value}{}", c.name, unit(c.quantity));
+        let one =
+            |(c, value): (&TaskCoordinate, &f64)| format!("{}={value}{}", c.name, unit(c.quantity));
         coordinates.iter().zip(pose).map(one).collect::<Vec<_>>().join(",")
     };
     let [pose, other, below] = [0.0, 0.02, -0.02].map(by);
@@ -139,12 +140,7 @@ fn values(manipulator: &Manipulator, folder: &Path) -> Values {
     }
 }
 
-fn run(
-    folder: &Path,
-    lines: &[String],
-    what: &str,
-    outcomes: &mut BTreeMap<String, [usize; 2]>,
-) {
+fn run(folder: &Path, lines: &[String], what: &str, outcomes: &mut BTreeMap<String, [usize; 2]>) {
     for line in lines {
         let (mut words, mut takes_file) = (vec![OsString::from("opm")], false);
         for word in line.split(' ') {

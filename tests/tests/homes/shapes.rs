@@ -62,6 +62,7 @@ pub fn redrawn(mechanism: &Mechanism, decomposition: &Decomposition, shape: Shap
         }
     }
     actuate(&mut drawn);
+    drawn.name = "home".to_owned();
     drawn
 }
 
@@ -80,9 +81,7 @@ fn symmetric(drawn: &mut Mechanism, decomposition: &Decomposition) {
     let step = std::f64::consts::TAU / drawn.legs.len() as f64;
     let first = drawn.legs[0].joints.clone();
     for (number, leg) in drawn.legs.iter_mut().enumerate().skip(1) {
-        if leg.joints.len() != first.len()
-            || decomposition.legs[number] != decomposition.legs[0]
-        {
+        if leg.joints.len() != first.len() || decomposition.legs[number] != decomposition.legs[0] {
             continue;
         }
         let g = about.screws()[0].exp(number as f64 * step);

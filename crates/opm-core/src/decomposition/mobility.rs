@@ -63,7 +63,7 @@ pub struct Mobility {
     pub lambda: usize,
     /// Mobility `N`: the freedoms of all joints minus the rank of the loop closure.
     pub mobility: usize,
-    /// Those of the `mobility` freedoms that do not move the platform, such as a strut that spins
+    /// Those of the `mobility` freedoms that do not move the platform at poses near home, such as a strut that spins
     /// between two spherical joints.
     pub idle: usize,
     /// The number of freedoms of the actuated joints.
@@ -89,14 +89,13 @@ pub struct Mobility {
 }
 
 impl Mobility {
-    /// What people have to know about a home that is a parallel singularity, in one sentence; `None` if it is none, or if
-    /// the actuators control as little at poses nearby.
+    /// What people have to know about a home that is a parallel singularity, in one sentence; `None` if it is none, if it
+    /// is singular in another respect, too, or if the actuators control as little at poses nearby.
     pub fn parallel_home(&self) -> Option<String> {
-        let parallel = self.singular.iter().find_map(|singularity| match singularity {
-            HomeSingularity::Parallel { loose, .. } => Some(loose),
-            _ => None,
-        });
-        let loose = parallel.filter(|_| self.loose.is_empty())?;
+        let [HomeSingularity::Parallel { loose, .. }] = &self.singular[..] else { return None };
+        if !self.loose.is_empty() {
+            return None;
+        }
         let moves = match loose.is_empty() {
             true => "a joint that does not move the platform".to_owned(),
             false => format!("the platform ({})", motions(loose, self.units)),
@@ -122,7 +121,6 @@ pub fn mobility(mechanism: &Mechanism) -> Result<Mobility, MobilityError> {
     let mobility = ranks.mobility;
 
     let motions = home.motions(mobility);
-    let platform = motions.rows(motions.nrows() - 6, 6).into_owned();
     let at_home = nearby.controlled(&linkage.controls(&motions));
     let loose = loose_twists(&linkage, &motions, at_home);
     let motion = |twist: &Vector6<f64>| Some(fit(&[*twist])?.class.restored(&linkage.frame));
@@ -145,21 +143,29 @@ pub fn mobility(mechanism: &Mechanism) -> Result<Mobility, MobilityError> {
     Ok(Mobility {
         lambda: ranks.lambda,
         mobility,
-        idle: mobility - span(&platform).dimension(),
+        idle: nearby.generic.as_ref().map_or(mobility - platform(&motions), |generic| generic.idle),
         actuators: linkage.actuated_rows().count(),
         controlled,
-        redundant: redundant(mechanism, &linkage, &nearby),
+        redundant: redundant(mechanism, &linkage, &nearby, controlled),
         loose,
         singular,
-        nearby: nearby.coordinates(),
+        nearby: nearby.poses.into_iter().next().map(|(coordinates, _)| coordinates),
         units: mechanism.units,
     })
 }
 
 /// The actuated joints whose rates follow from those of the other actuated joints at poses near home.
-fn redundant(mechanism: &Mechanism, linkage: &Linkage, nearby: &Nearby) -> Vec<String> {
+fn redundant(
+    mechanism: &Mechanism,
+    linkage: &Linkage,
+    nearby: &Nearby,
+    controlled: usize,
+) -> Vec<String> {
     let mut row = 0;
     let mut redundant = vec![];
+    if linkage.actuated_rows().count() <= controlled {
+        return redundant;
+    }
     for joint in mechanism.joints() {
         let rows: Vec<usize> = (row..row + joint.freedoms()).collect();
         row += joint.freedoms();
@@ -186,6 +192,11 @@ fn loose_twists(linkage: &Linkage, motions: &DMatrix<f64>, controlled: usize) ->
     };
     let free = motions * right.columns(controlled, right.ncols() - controlled);
     span(&free.rows(free.nrows() - 6, 6).into_owned())
+}
+
+/// How many independent twists of the platform motions have that are orthonormal columns.
+fn platform(motions: &DMatrix<f64>) -> usize {
+    span(&motions.rows(motions.nrows() - 6, 6).into_owned()).dimension()
 }
 
 /// The span of the columns of a 6 × n block of orthonormal columns. Columns that are nearly zero

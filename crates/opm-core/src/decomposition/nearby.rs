@@ -64,6 +64,9 @@ impl NearbyPart {
 }
 
 /// The group of some parts, with these screws at home. Those nearby count only where those at home span no group.
-pub(super) fn group_of(home: &[Vector6<f64>], nearby: impl Fn() -> Vec<Vector6<f64>>) -> Option<Fit> {
+pub(super) fn group_of(
+    home: &[Vector6<f64>],
+    nearby: impl Fn() -> Vec<Vector6<f64>>,
+) -> Option<Fit> {
     fit(home).or_else(|| fit(&[home, &nearby()].concat()))
 }

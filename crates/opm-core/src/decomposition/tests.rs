@@ -255,7 +255,8 @@ fn a_loose_platform_is_reported_with_its_motion() {
     let mut mechanism = PlanoSpherical::default().mechanism();
     mechanism.legs[3].joints[1].actuated = false;
     let error = decompose(&mechanism).unwrap_err();
-    let DecomposeError::Loose { mobility: 5, actuators: 4, controlled: 4, free, .. } = &error else {
+    let DecomposeError::Loose { mobility: 5, actuators: 4, controlled: 4, free, .. } = &error
+    else {
         panic!("{error}")
     };
     assert_eq!(free.len(), 1);

@@ -7,7 +7,7 @@
 //! is in every overconstrained mechanism.
 
 use super::linkage::{FirstOrder, Linkage, Pose};
-use super::{absolute_values, loose_twists};
+use super::{absolute_values, loose_twists, platform};
 use crate::group::screw::Screw;
 use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::numeric::svd::Svd;
@@ -125,6 +125,8 @@ pub(super) struct Generic {
     pub controlled: usize,
     /// How many motions the platform has with the actuators locked.
     pub loose: usize,
+    /// How many motions do not move the platform.
+    pub idle: usize,
 }
 
 /// Ranks at home.
@@ -160,6 +162,7 @@ impl Nearby {
                 let rank = clear(&linkage.controls(&motions));
                 loose_twists(linkage, &motions, rank).dimension()
             });
+            let idle = poses.iter().map(|(_, pose)| mobility - platform(&pose.motions(mobility)));
             let of_leg = |leg: usize| largest(&|pose| pose.legs[leg].clone()).unwrap_or_default();
             Generic {
                 all: largest(&|pose| pose.all.clone()).unwrap_or_default(),
@@ -167,16 +170,12 @@ impl Nearby {
                 mobility,
                 controlled: clear(&controls),
                 loose: loose.min().unwrap_or_default(),
+                idle: idle.min().unwrap_or_default(),
                 controls,
                 closure,
             }
         });
         Self { poses, generic }
-    }
-
-    /// The coordinates of a pose nearby.
-    pub fn coordinates(self) -> Option<Vec<f64>> {
-        self.poses.into_iter().next().map(|(coordinates, _)| coordinates)
     }
 
     /// The ranks at home, whose first-order kinematics are `home`.

@@ -163,15 +163,8 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
             .collect();
         legs[0].joints[0].actuated = true;
         let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
-        let mut mechanism = Mechanism {
-            name,
-            legs,
-            platform,
-            task,
-            bodies,
-            shapes,
-            units: FileUnits::SI,
-        };
+        let mut mechanism =
+            Mechanism { name, legs, platform, task, bodies, shapes, units: FileUnits::SI };
         let names = mechanism.body_names().map(str::to_owned);
         let masses = names.zip(weights.1).collect();
         mechanism.bodies = BodyMasses { density: weights.0, masses };
