@@ -86,7 +86,7 @@ fn solve(
         (None, Ok(())) => {
             let mut found = manipulator.forward(&actuated).map_err(|e| wrong(&e))?;
             if let Some(mode) = only {
-                found.list.retain(|assembly| assembly.mode == mode);
+                manipulator.keep_assemblies_in(&mut found.list, mode);
             }
             let home = manipulator.platform_pose(&manipulator.home_pose());
             let home = home.map_err(|error| Failure::at(&loaded.label, error))?;

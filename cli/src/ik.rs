@@ -41,7 +41,13 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
             checks = Some(given);
             Located::Pose(pose)
         }
-        (None, Some(transform)) => transform.locate(&manipulator),
+        (None, Some(transform)) => {
+            let mode = match modes {
+                Modes::One(mode) => mode,
+                Modes::All => manipulator.home_mode(),
+            };
+            transform.locate(&manipulator, mode)
+        }
         (None, None) => return batch::run(args, output, &loaded, &manipulator, modes),
     };
     let answer = match located {

@@ -138,14 +138,12 @@ impl Manipulator {
                 return Ok(Vec::new());
             }
             let (values, start) = (joints.row(row), start(row));
-            let mut found = if newton {
+            let found = if newton {
                 self.nearest_assembly(values, start, mode)
             } else {
-                self.every_assembly(values, start)
-            }
-            .map_err(|problem| format!("row {row}: {problem}"))?;
-            found.retain(|assembly| mode.is_none_or(|mode| assembly.mode == mode));
-            Ok(found)
+                self.every_assembly(values, start, mode)
+            };
+            found.map_err(|problem| format!("row {row}: {problem}"))
         };
         let found: Vec<_> = if joints.count <= FEW {
             (0..joints.count).map(solve).collect()
@@ -227,11 +225,20 @@ impl Manipulator {
 }
 
 impl Manipulator {
-    /// Every assembly with these values of the actuated joints, those nearest to a pose first.
-    fn every_assembly(&self, joints: &[f64], near: &[f64]) -> Result<Vec<core::Assembly>, String> {
+    /// Every assembly with these values of the actuated joints, in one mode if that is given, those nearest to a pose first.
+    fn every_assembly(
+        &self,
+        joints: &[f64],
+        near: &[f64],
+        mode: Option<Mode>,
+    ) -> Result<Vec<core::Assembly>, String> {
         let found = self.inner.forward(joints);
         let mut list = found.map_err(|error: ForwardError| error.to_string())?.list;
-        let near = self.inner.platform_pose(near).map_err(|error| format!("near: {error}"))?;
+        if let Some(mode) = mode {
+            self.inner.keep_assemblies_in(&mut list, mode);
+        }
+        let near = self.inner.displacement_in(near, mode.unwrap_or(self.inner.home_mode()));
+        let near = self.inner.platform_at(&near.map_err(|error| format!("near: {error}"))?);
         self.inner.sort_assemblies(&mut list, &near);
         Ok(list)
     }

@@ -111,9 +111,10 @@ impl Request<'_> {
         }
         stream.rows.header(self.header(columns.timed(), &joints))?;
 
-        let seed = m.platform_pose(&self.seed);
-        let seed = seed.map_err(|error| Failure::flag("--near", error))?;
-        let mut tracker = Tracker::new(m, &self.seed, self.only.unwrap_or(m.home_mode()));
+        let mode = self.only.unwrap_or(m.home_mode());
+        let seed = m.displacement_in(&self.seed, mode);
+        let seed = m.platform_at(&seed.map_err(|error| Failure::flag("--near", error))?);
+        let mut tracker = Tracker::new(m, &self.seed, mode);
         let (mut reachable, mut within_limits, mut assemblies) = (0, 0, 0);
         stream.each(&mut columns, &vec![0.0; joints.len()], |stream, line, time, joints| {
             let label = stream.label;
@@ -121,7 +122,9 @@ impl Request<'_> {
             let mut list: Vec<Assembly>;
             let found: &[Assembly] = if self.all {
                 list = m.forward(joints).map_err(|error| wrong(&error))?.list;
-                list.retain(|assembly| self.only.is_none_or(|mode| assembly.mode == mode));
+                if let Some(only) = self.only {
+                    m.keep_assemblies_in(&mut list, only);
+                }
                 m.sort_assemblies(&mut list, &seed);
                 &list
             } else {

@@ -69,6 +69,7 @@ pub(crate) use displacement::{
 };
 pub use error::{FrameProblem, OddJoint, TaskError};
 pub(crate) use height::Height;
+pub(crate) use pose::other_triple;
 
 // The types of `Task`'s fields and results.
 pub use crate::group::{Displacement, Subspace, SubspaceKind};

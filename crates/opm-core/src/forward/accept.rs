@@ -27,7 +27,9 @@ const SAME: f64 = 1e-9;
 pub(super) struct Place<'a> {
     /// The independent task coordinates, metres and radians.
     pub pose: &'a [f64],
-    /// The platform's displacement from home at this pose.
+    /// All task coordinates, dependent ones too.
+    pub all: &'a [f64],
+    /// The platform's displacement from home at this pose, which the legs have to reach.
     pub target: &'a Isometry3<f64>,
     pub mode: Mode,
 }
@@ -35,8 +37,6 @@ pub(super) struct Place<'a> {
 /// A solution of inverse kinematics at the place.
 #[derive(Clone, Copy)]
 pub(super) struct Solved<'a> {
-    /// The dependent coordinates, metres and radians.
-    pub dependent: &'a [f64],
     /// The values of all joint coordinates, radians and metres.
     pub joints: &'a [f64],
     /// The values of all imaginary joints, radians and metres.
@@ -79,7 +79,7 @@ impl Manipulator {
     /// does not close to rounding.
     pub(super) fn write_assembly(
         &self,
-        Place { pose, target, mode }: Place<'_>,
+        Place { pose, all, target, mode }: Place<'_>,
         solved: Solved<'_>,
         residual: f64,
         buffer: &mut ClosureBuffer,
@@ -90,7 +90,8 @@ impl Manipulator {
             to.extend_from_slice(from);
         };
         write(&mut out.pose, pose);
-        write(&mut out.dependent, solved.dependent);
+        out.dependent.clear();
+        out.dependent.extend(self.dependent.iter().flat_map(|dependent| dependent.values(all)));
         write(&mut out.joints, solved.joints);
         write(&mut out.imaginary, solved.imaginary);
         (out.mode, out.within_limits) = (mode, solved.within_limits);
