@@ -15,7 +15,17 @@ pub fn read(
     label: &str,
     tolerance: Option<f64>,
 ) -> PyResult<(MechanismFile, String)> {
-    let mut read = file::read(&text).map_err(|errors| wrong(errors.in_file(label)))?;
+    let read = file::read(&text).map_err(|errors| wrong(errors.in_file(label)))?;
+    within(py, (read, text), label, tolerance)
+}
+
+/// Snaps a mechanism that was read, with its text, within a tolerance (metres) if one is given.
+pub fn within(
+    py: Python<'_>,
+    (mut read, text): (MechanismFile, String),
+    label: &str,
+    tolerance: Option<f64>,
+) -> PyResult<(MechanismFile, String)> {
     let Some(tolerance) = tolerance else { return Ok((read, text)) };
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(wrong(format!(

@@ -127,7 +127,9 @@ pub struct VelocityArgs {
 /// mechanism's size). Otherwise, or with --near, Newton's method starts from a pose and finds one assembly,
 /// in the working mode of --mode or home. The assembly nearest to home comes first.
 ///
-/// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
+/// No assembly is an answer (exit status 0): it names what does not meet, and the least change of the joints
+/// with which the mechanism can be assembled, of all together (least sum of squares, lengths over the
+/// mechanism's size) and of each alone; in JSON `least_change`, null where none was found. Angles count
 /// modulo a revolution, except where a screw joint follows them: each revolution is then an assembly of its
 /// own, one advance of the screw away. `opm ik` does not count revolutions; the angles in --joints decide.
 ///

@@ -1,5 +1,6 @@
 //! `opm fk --poses`: a CSV file of actuated joints in, one of poses out, row by row.
 
+use super::least;
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
@@ -59,7 +60,15 @@ pub fn run(
     let request = Request { loaded, manipulator, seed, only, all: args.all };
     let streams = Streams { input, output: args.output.as_deref() };
     let solve = |stream: Stream<'_>| request.solve(stream);
-    let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
+    let Some((summary, unmet)) = stream::run(&streams, output, loaded, solve)? else {
+        return Ok(());
+    };
+    if let Some((line, joints)) = unmet
+        && let Ok(Some(change)) = manipulator.least_change(&joints)
+    {
+        let lines = least::lines(manipulator, &change, loaded.file.units).join("; ");
+        output.note(format_args!("line {line} is the first that has no assembly: {lines}"));
+    }
     let assemblies = match args.all {
         true => format!(", {} assemblies", count(summary.assemblies)),
         false => String::new(),
@@ -77,7 +86,8 @@ pub fn run(
 }
 
 impl Request<'_> {
-    fn solve(&self, mut stream: Stream<'_>) -> Result<Summary, Stop> {
+    /// Solves all rows. Also the line and the joints of the first one without an assembly.
+    fn solve(&self, mut stream: Stream<'_>) -> Result<(Summary, Option<(u64, Vec<f64>)>), Stop> {
         let start = Instant::now();
         let m = self.manipulator;
         let actuated: Vec<_> = m.actuated().iter().map(|&i| &m.coordinates()[i]).collect();
@@ -116,6 +126,7 @@ impl Request<'_> {
         let seed = m.platform_at(&seed.map_err(|error| Failure::flag("--near", error))?);
         let mut tracker = Tracker::new(m, &self.seed, mode);
         let (mut reachable, mut within_limits, mut assemblies) = (0, 0, 0);
+        let mut unmet = None;
         stream.each(&mut columns, &vec![0.0; joints.len()], |stream, line, time, joints| {
             let label = stream.label;
             let wrong = |error: &dyn std::error::Error| stream::at(label, line, error);
@@ -142,6 +153,7 @@ impl Request<'_> {
                 self.write(&mut stream.rows, (row, number + 1), (time, joints), Some(assembly))?;
             }
             if found.is_empty() {
+                unmet.get_or_insert_with(|| (line, joints.to_vec()));
                 self.write(&mut stream.rows, (row, 0), (time, joints), None)?;
             }
             Ok(())
@@ -149,7 +161,9 @@ impl Request<'_> {
         let seconds = start.elapsed().as_secs_f64().max(1e-9);
         let rows = stream.number.load(Ordering::Relaxed);
         let rows_per_second = rows as f64 / seconds;
-        Ok(Summary { rows, reachable, within_limits, assemblies, seconds, rows_per_second })
+        let summary =
+            Summary { rows, reachable, within_limits, assemblies, seconds, rows_per_second };
+        Ok((summary, unmet))
     }
 
     fn header<'n>(&'n self, timed: bool, joints: &[&'n str]) -> Vec<&'n str> {

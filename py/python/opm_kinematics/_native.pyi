@@ -470,6 +470,199 @@ class Manipulator:
             Lists every problem of the file with its line and column, or says why it has no closed-form inverse kinematics.
         """
     @staticmethod
+    @staticmethod
+    def parse(text: str, label: str | None = None, *, tolerance: float | None = None) -> Linkage:
+        """Read the text of a mechanism file.
+
+        Parameters
+        ----------
+        text : str
+            TOML.
+        label : str, optional
+            The name that messages use for the text.
+        tolerance : float, optional
+            Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+            count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+            much it was off; `text` is then the corrected mechanism.
+
+        Returns
+        -------
+        Linkage
+            Decomposed and compiled.
+
+        Raises
+        ------
+        OpmError
+            Lists every problem of the text with its line and column, or says why it is not a single loop of two sections.
+        """
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+    @property
+    def text(self) -> str:
+        """The mechanism file."""
+    @property
+    def joint_names(self) -> list[str]:
+        """Names of all joint coordinates: the columns of joint values."""
+    @property
+    def imaginary_name(self) -> str:
+        """Name of the imaginary joint."""
+    @property
+    def home(self) -> list[float]:
+        """(k,): every joint at home, radians and metres."""
+    def home_branch(self, input: str | None = None) -> str:
+        """The branch in which the linkage is assembled, if one of its joints moves it.
+
+        Parameters
+        ----------
+        input : str, optional
+            Name of the joint; the actuated one if not given.
+
+        Returns
+        -------
+        str
+            Two signs: the first for the loop with the input, the second for the other one. A loop without a choice has +.
+
+        Raises
+        ------
+        OpmError
+            There is no joint of this name.
+        """
+    def to_urdf(self, *, density: float | None = None) -> str:
+        """The mechanism as a tree of links (URDF): the text of an XML file.
+
+        URDF has no loops; :meth:`to_closures` closes them. Joints have the names and the values of `joints`, but a ball is
+        three revolute joints ``NAME.1``, ``NAME.2`` and ``NAME.3``. A helical joint has a slide that follows it, which
+        Pinocchio reads with ``mimic=True``. The platform is the link ``platform``. It is the file that ``opm export urdf``
+        writes.
+
+        Parameters
+        ----------
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
+
+        Returns
+        -------
+        str
+            For ``pinocchio.buildModelFromXML``, or a file.
+
+        Raises
+        ------
+        OpmError
+            The density is not positive.
+        """
+    def to_closures(self) -> str:
+        """What closes the loops of the tree of :meth:`to_urdf`: the text of a YAML file.
+
+        It is what the loader of Gepetto's example-parallel-robots for Pinocchio reads: ``closed_loop`` has pairs of links
+        that coincide, ``type`` their type, and ``name_mot`` the actuated joints.
+        """
+    def to_mjcf(self, *, density: float | None = None, time_step: float = 0.001) -> str:
+        """The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.
+
+        Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
+        position servo of its name, and each branch with the input at home a keyframe, named by its
+        signs: ``p_m`` is ``+ -``. It is the file that ``opm export mjcf`` writes.
+
+        Parameters
+        ----------
+        density : float, optional
+            Density of all bodies without a mass in the mechanism file, kilograms per cubic metre; that in the file, or else
+            2700, if not given.
+        time_step : float
+            Time step of the simulation, seconds; the loops are held as stiffly as it allows.
+
+        Returns
+        -------
+        str
+            For ``mujoco.MjModel.from_xml_string``, or a file.
+
+        Raises
+        ------
+        OpmError
+            A number is not positive.
+        """
+    def range(self, input: str | None = None) -> NDArray[np.float64]:
+        """The range of one joint in which the loop closes, joint limits not considered.
+
+        Parameters
+        ----------
+        input : str, optional
+            Name of the joint; the actuated one if not given.
+
+        Returns
+        -------
+        (r, 2) array
+            Lowest and highest value of every interval, radians or metres; infinite where a slider has no end. A full revolution
+            is given as the interval around home.
+
+        Raises
+        ------
+        OpmError
+            There is no joint of this name.
+        """
+    def positions(
+        self, values: ArrayLike, *, input: str | None = None, threads: int | None = None
+    ) -> Solutions:
+        """Every position for many values of one joint, in all four branches.
+
+        Parameters
+        ----------
+        values : float or (n,) array_like
+            Values of the joint that moves the linkage, radians or metres. One value gives arrays without the first axis. Where
+            a value is NaN, so is the position.
+        input : str, optional
+            Name of that joint; the actuated one if not given.
+        threads : int, optional
+            1 to 1024; the result does not depend on it. One for each processor if not given.
+
+        Returns
+        -------
+        Solutions
+            The arrays have the shapes ``(n, 4, k)``, ``(n, 4, 1)`` and ``(n, 4)``, with the four branches as modes. NaN where the
+            loop does not close. Angles are within π of their home values, unless the joint limits allow another revolution;
+            ``np.unwrap`` along the first axis makes angles over full revolutions continuous.
+
+        Raises
+        ------
+        OpmError
+            There is no joint of this name, or a value is infinite; the message gives its index, counted from zero.
+        """
+
+@final
+class Manipulator:
+    """A mechanism, decomposed and compiled for closed-form inverse kinematics.
+
+    Immutable; it can be pickled, and shared between threads.
+    """
+
+    @staticmethod
+    def load(path: str | PathLike[str], *, tolerance: float | None = None) -> Manipulator:
+        """Read a mechanism file.
+
+        Parameters
+        ----------
+        path : path
+            TOML. Shipped mechanisms are read by :func:`examples.load`.
+        tolerance : float, optional
+            Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+            count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+            much it was off; `text` is then the corrected mechanism.
+
+        Returns
+        -------
+        Manipulator
+            Decomposed and compiled.
+
+        Raises
+        ------
+        OSError
+            The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
+        OpmError
+            Lists every problem of the file with its line and column, or says why it has no closed-form inverse kinematics.
+        """
+    @staticmethod
     def from_screws(
         legs: Mapping[str, ArrayLike] | Sequence[ArrayLike],
         actuated: Sequence[Sequence[bool]] | Sequence[NDArray[np.bool_]] | NDArray[np.bool_],
@@ -1351,6 +1544,37 @@ class Manipulator:
         >>> found = m.forward(m.inverse(m.home, joints="actuated").joints)
         >>> int(found.counts), found.poses.shape, bool(abs(found.poses[0] - m.home).max() < 1e-9)
         (2, (2, 3), True)
+        """
+    def least_change(self, joints: _Rows) -> dict[str, NDArray[np.float64]] | None:
+        """The least change of the actuated joints with which the mechanism can be assembled, where it cannot with given values.
+
+        The joints then have no pose, and :meth:`forward` finds no assembly. They reach the nearest values that have one where
+        the platform is at a parallel singularity.
+
+        Parameters
+        ----------
+        joints : (a,) array_like, or mapping
+            Values of the actuated joints, in the order of `actuated`, or by name; metres and radians.
+
+        Returns
+        -------
+        dict, or None
+            ``"together"``, (a,): the changes of all joints whose sum of squares is least, with a length over the mechanism's size.
+            ``"alone"``, (a,): the least change of each joint, with the others as they are given; NaN where none was found. None
+            where there is an assembly, or where no answer was found that holds.
+
+        Raises
+        ------
+        OpmError
+            The mechanism's forward kinematics have no closed form, or a value is not a number.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("planar-3rpr")
+        >>> change = m.least_change([0.01, 0.01, 0.5])
+        >>> bool(change["alone"][2] < change["together"][2] < 0), m.least_change([0.01, 0.01, 0.01]) is None
+        (True, True)
         """
     def forward_track(
         self, joints: _Rows, *, near: _Rows | None = None, mode: str = "home"

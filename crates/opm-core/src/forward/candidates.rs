@@ -224,7 +224,7 @@ impl Search<'_> {
         let mut found: Vec<f64> =
             solved.map(|solution| own - m.task().rise_of_leg(0.0, solution.tau)).collect();
         if found.is_empty() {
-            self.memory.outcome.reject(f64::INFINITY);
+            self.memory.outcome.reject();
         }
         found.sort_by(f64::total_cmp);
         found.dedup_by(|a, b| (*a - *b).abs() < MATCH * m.closure.size);
@@ -239,8 +239,8 @@ impl Search<'_> {
         let mut matches = std::mem::take(&mut self.memory.matches);
         m.task().write_poses(v, bs, self.rise, m.arch, &mut all);
         for (b, all) in bs.iter().zip(all.chunks_mut(m.task().coordinates.len())) {
-            if let Err(least) = self.match_legs([v, b], &mut matches) {
-                self.memory.outcome.reject(least);
+            if !self.match_legs([v, b], &mut matches) {
+                self.memory.outcome.reject();
                 continue;
             }
             m.write_independent(None, all, &mut pose);
@@ -254,19 +254,15 @@ impl Search<'_> {
         (self.memory.poses, self.memory.matches) = ([all, pose], matches);
     }
 
-    /// Finds the choices with which each leg closes at a candidate; the smallest error of one that does not.
-    fn match_legs(
-        &mut self,
-        candidate: [&Displacement; 2],
-        matches: &mut [Matches],
-    ) -> Result<(), f64> {
+    /// Finds the choices with which each leg closes at a candidate. Returns `false` if one does not.
+    fn match_legs(&mut self, candidate: [&Displacement; 2], matches: &mut [Matches]) -> bool {
         for (leg, found) in matches.iter_mut().enumerate() {
             self.match_leg(leg, candidate, self.rise, found);
             if found.list.is_empty() {
-                return Err(found.least);
+                return false;
             }
         }
-        Ok(())
+        true
     }
 
     /// Notes every combination of the legs' choices at a place.
@@ -300,7 +296,7 @@ impl Search<'_> {
         let errors = completed.map(|(mode, all)| (off(&all), mode));
         let Some((error, mode)) = errors.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
         if error > APART {
-            self.memory.outcome.reject(error);
+            self.memory.outcome.reject();
             return;
         }
         self.memory.candidates.note(Place { mode, target, ..place });
@@ -319,7 +315,7 @@ impl Search<'_> {
         for row in 0..candidates.modes.len() {
             let error = candidates.errors[row];
             if error > most {
-                outcome.reject(error);
+                outcome.reject();
             } else if !candidates.has_better(m, row) {
                 let (place, solved) = candidates.row(m, row);
                 outcome.accept(held, place, solved, candidates.residuals[row]);
