@@ -158,6 +158,14 @@ impl Search<'_> {
                 let share = if self.manipulator.is_redundant() { 1.0 } else { 1.0 + MARGIN };
                 let beyond: Vec<f64> = changes.iter().map(|change| share * change).collect();
                 self.closed(&beyond)?;
+                let changes = match self.manipulator.is_redundant() {
+                    true => changes,
+                    // To the last digit.
+                    false => {
+                        let share = self.edge(&changes, [0.0, share]);
+                        changes.iter().map(|change| share * change).collect()
+                    }
+                };
                 ends.sort_by(|a, b| a.0.total_cmp(&b.0));
                 let ends = ends.into_iter().take(BEST).map(|(_, pose, mode)| (pose, mode));
                 return Some((changes, ends.collect()));
@@ -277,7 +285,7 @@ impl Search<'_> {
                 false => {
                     let beyond = change * (1.0 + MARGIN);
                     if self.closes_alone(joint, beyond) {
-                        best = Some(self.edge(joint, [0.0, beyond]));
+                        best = Some(self.edge(&self.one(joint), [0.0, beyond]));
                     }
                 }
                 true => {}
@@ -313,7 +321,7 @@ impl Search<'_> {
             let mut found: Option<f64> = None;
             for sign in [1.0, -1.0] {
                 if self.closes_alone(joint, sign * change) {
-                    let edge = self.edge(joint, [sign * before, sign * change]);
+                    let edge = self.edge(&self.one(joint), [sign * before, sign * change]);
                     found =
                         Some(found.map_or(edge, |f| if edge.abs() < f.abs() { edge } else { f }));
                 }
@@ -326,17 +334,23 @@ impl Search<'_> {
         None
     }
 
-    /// Between a change of one joint that does not close and one that does, the least that does.
-    fn edge(&mut self, joint: usize, [mut open, mut closed]: [f64; 2]) -> f64 {
+    /// Between a share of some changes that does not close and one that does, the least that does.
+    fn edge(&mut self, changes: &[f64], [mut open, mut closed]: [f64; 2]) -> f64 {
         loop {
             let middle = 0.5 * (open + closed);
             if middle == open || middle == closed {
                 return closed;
             }
-            match self.closes_alone(joint, middle) {
+            let tried: Vec<f64> = changes.iter().map(|change| middle * change).collect();
+            match self.closed(&tried).is_some() {
                 true => closed = middle,
                 false => open = middle,
             }
         }
+    }
+
+    /// A unit change of one joint alone.
+    fn one(&self, joint: usize) -> Vec<f64> {
+        (0..self.given.len()).map(|other| if other == joint { 1.0 } else { 0.0 }).collect()
     }
 }

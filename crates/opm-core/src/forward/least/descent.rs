@@ -6,8 +6,9 @@ use crate::numeric::Quantity;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};
 
-/// Half the difference between poses, radians and shares of the size.
-const DIFFERENCE: f64 = 1e-4;
+/// Half the differences between poses, radians and shares of the size. The first one tells curvatures best, the last one
+/// slopes, also where coordinates are nearly singular.
+const DIFFERENCES: [f64; 3] = [1e-4, 1e-5, 1e-6];
 /// The longest step, in the same units, and the one that ends the search.
 const LONGEST: f64 = 0.5;
 const SHORTEST: f64 = 1e-11;
@@ -94,24 +95,26 @@ impl<'a> Descent<'a> {
     /// The pose to which steps lead, and the sum there; `None` if the start is out of reach.
     pub fn minimise(&mut self, mut pose: Vec<f64>, mode: Mode) -> Option<(f64, Vec<f64>)> {
         let mut sum = self.sum(&pose, mode)?;
-        let mut radius = LONGEST;
-        for _ in 0..STEPS {
-            let Some(step) = self.newton(&pose, mode) else { break };
-            let length = step.norm();
-            let mut share = (radius / length).min(1.0);
-            let taken = loop {
-                if share * length < SHORTEST || !length.is_finite() {
-                    break None;
-                }
-                let moved = self.moved(&pose, |i| share * step[i]);
-                match self.sum(&moved, mode) {
-                    Some(after) if after < sum => break Some((after, moved)),
-                    _ => share *= 0.25,
-                }
-            };
-            let Some((after, moved)) = taken else { break };
-            radius = (2.0 * share * length).min(LONGEST);
-            (sum, pose) = (after, moved);
+        for difference in DIFFERENCES {
+            let mut radius = LONGEST;
+            for _ in 0..STEPS {
+                let Some(step) = self.newton(&pose, mode, difference) else { break };
+                let length = step.norm();
+                let mut share = (radius / length).min(1.0);
+                let taken = loop {
+                    if share * length < SHORTEST || !length.is_finite() {
+                        break None;
+                    }
+                    let moved = self.moved(&pose, |i| share * step[i]);
+                    match self.sum(&moved, mode) {
+                        Some(after) if after < sum => break Some((after, moved)),
+                        _ => share *= 0.25,
+                    }
+                };
+                let Some((after, moved)) = taken else { break };
+                radius = (2.0 * share * length).min(LONGEST);
+                (sum, pose) = (after, moved);
+            }
         }
         Some((sum, pose))
     }
@@ -123,32 +126,32 @@ impl<'a> Descent<'a> {
 
     /// The step of Newton's method, in units of the coordinates, downhill in every direction; `None` at the boundary of
     /// reach.
-    fn newton(&mut self, pose: &[f64], mode: Mode) -> Option<DVector<f64>> {
+    fn newton(&mut self, pose: &[f64], mode: Mode, difference: f64) -> Option<DVector<f64>> {
         let n = pose.len();
         let at = self.weighed(pose, mode)?;
         let mut beside = Vec::with_capacity(n);
         for i in 0..n {
             let mut side = |sign: f64| {
-                let there = self.moved(pose, |k| if k == i { sign * DIFFERENCE } else { 0.0 });
+                let there = self.moved(pose, |k| if k == i { sign * difference } else { 0.0 });
                 self.weighed(&there, mode)
             };
             beside.push([side(1.0)?, side(-1.0)?]);
         }
         let jacobian = DMatrix::from_fn(at.len(), n, |k, i| {
-            (beside[i][0][k] - beside[i][1][k]) / (2.0 * DIFFERENCE)
+            (beside[i][0][k] - beside[i][1][k]) / (2.0 * difference)
         });
         let gradient = jacobian.tr_mul(&at);
         // Of the second derivatives of the half sum, J' J is known; the rest are those of the joints, times the changes.
         let mut curvature = jacobian.tr_mul(&jacobian);
         for i in 0..n {
             let [plus, minus] = &beside[i];
-            let second = (plus + minus - &at * 2.0) / (DIFFERENCE * DIFFERENCE);
+            let second = (plus + minus - &at * 2.0) / (difference * difference);
             curvature[(i, i)] += second.dot(&at);
             for k in 0..i {
                 let corner = |me: &mut Self, [a, b]: [f64; 2]| {
                     let by = |number: usize| match number {
-                        number if number == i => a * DIFFERENCE,
-                        number if number == k => b * DIFFERENCE,
+                        number if number == i => a * difference,
+                        number if number == k => b * difference,
                         _ => 0.0,
                     };
                     let there = me.moved(pose, by);
@@ -156,7 +159,7 @@ impl<'a> Descent<'a> {
                 };
                 let same = corner(self, [1.0, 1.0])? + corner(self, [-1.0, -1.0])?;
                 let opposite = corner(self, [1.0, -1.0])? + corner(self, [-1.0, 1.0])?;
-                let mixed = (same - opposite).dot(&at) / (4.0 * DIFFERENCE * DIFFERENCE);
+                let mixed = (same - opposite).dot(&at) / (4.0 * difference * difference);
                 curvature[(i, k)] += mixed;
                 curvature[(k, i)] += mixed;
             }
