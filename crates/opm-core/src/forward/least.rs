@@ -89,7 +89,10 @@ impl Manipulator {
         let descent = Descent::new(self, actuated);
         let mut search = Search { manipulator: self, given: actuated, buffer, descent };
         Ok(search.together().map(|(together, starts)| {
-            let alone = (0..actuated.len()).map(|joint| search.alone(joint, &starts)).collect();
+            let alone = match together[..] {
+                [single] => vec![Some(single)],
+                _ => (0..actuated.len()).map(|joint| search.alone(joint, &starts)).collect(),
+            };
             LeastChange { together, alone }
         }))
     }
@@ -260,10 +263,6 @@ impl Search<'_> {
 
     /// The least change of one joint with which the mechanism can be assembled, all others as they are given.
     fn alone(&mut self, joint: usize, starts: &[Start]) -> Option<f64> {
-        if self.given.len() == 1 {
-            let (pose, mode) = starts.first()?;
-            return self.descent.changes(pose, *mode).map(|changes| changes[joint]);
-        }
         let stepped = if self.manipulator.is_redundant() { None } else { self.stepped(joint) };
         let mut best = stepped;
         self.descent.weigh(|other| if other == joint { 1.0 } else { HELD });
