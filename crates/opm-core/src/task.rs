@@ -36,7 +36,9 @@
 //!   x positive x ([`UP`](crate::group::subspace::UP) is what decides).
 //! * `x` is the base's x projected into the plane, or its y where x is within 6 degrees of the normal; of
 //!   a sphere likewise, projected into the plane perpendicular to `d`. `y` is `x` rotated by a right angle
-//!   about the third direction.
+//!   about the third direction. Where the third direction is given by a rotation `I`, or by a translation `I` in a
+//!   translational space, and is level, that would make `y` point down along some of them: there `x` is reversed, so that
+//!   `y` points up. In between, the sum of `y` and the third direction points up.
 //! * The normal of a plane that holds a translation `I` points up where the plane is level; where it
 //!   is upright, `y` points up. In between, the sum of both does.
 //! * `w` points up in a plane.

@@ -99,9 +99,15 @@ pub(super) fn lay(
             let third = given.unwrap_or_else(|| standing(normal, beside(&normal)));
             triad(Unit::new_normalize(w.cross(&third)), third)
         } else {
-            let first = hints.perpendicular(TaskKey::X(section), normal)?;
-            let first = first.unwrap_or_else(|| beside(&normal));
             let free = flat && !rotation;
+            let hint = hints.perpendicular(TaskKey::X(section), normal)?;
+            // The third direction of a free plane is chosen with the first one; a cylinder has no coordinate along that.
+            let fixed = (rotation && kind != SubspaceKind::Cylindrical)
+                || kind == SubspaceKind::TranslationalSpace;
+            let first = hint.unwrap_or_else(|| match fixed {
+                true => beside_upright(&normal),
+                false => beside(&normal),
+            });
             let third = if free { standing(normal, first) } else { normal };
             triad(first, given.unwrap_or(third))
         };
@@ -121,6 +127,13 @@ fn beside(third: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
     const STEEP: f64 = 0.995;
     let base = if third.x.abs() > STEEP { Vector3::y() } else { Vector3::x() };
     Unit::new_normalize(base - third.into_inner() * third.dot(&base))
+}
+
+/// The same, in that of its two senses for which the sum of the third and the second direction points up: where the plane is
+/// upright, the second direction does. The third direction has its sense already.
+fn beside_upright(third: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+    let first = beside(third);
+    if points_up(&(third.into_inner() + third.cross(&first))) { first } else { -first }
 }
 
 /// The right-handed frame with this first and third direction, which must be perpendicular.
