@@ -3,7 +3,7 @@
 use super::{BodyMasses, Mechanism, Shapes, TaskHints};
 use crate::group::screw::Screw;
 use crate::mechanism::joint::{Joint, JointKind};
-use crate::mechanism::leg::Leg;
+use crate::mechanism::leg::{Leg, placed};
 use nalgebra::{Point3, Unit, Vector3};
 
 /// A joint with one freedom, given by its screw at home.
@@ -81,7 +81,8 @@ impl Mechanism {
     /// Builds a mechanism from named legs, each a list of joints of one freedom from base to platform.
     ///
     /// A screw does not say where on its axis the joint is: it is put at the axis's point nearest to
-    /// the origin. A prismatic joint is put at the platform's reference point.
+    /// the origin. A prismatic joint is put where the next joint of its leg is that is none, or else where the one before is;
+    /// in a leg of prismatic joints alone, at the platform's reference point.
     ///
     /// # Errors
     /// The index of the leg, the index of the joint in it, and why its screw is not one of a joint.
@@ -102,7 +103,8 @@ impl Mechanism {
         }
         let build = |joint: ScrewJoint| {
             let ScrewJoint { name, screw, actuated, home, limits } = joint;
-            let (axis, kind, point) = if screw.angular == Vector3::zeros() {
+            let slides = screw.angular == Vector3::zeros();
+            let (axis, kind, point) = if slides {
                 (screw.linear, JointKind::Prismatic, platform)
             } else {
                 let pitch = screw.pitch();
@@ -114,11 +116,11 @@ impl Mechanism {
             };
             let built = Joint::new(name, kind, Unit::new_unchecked(axis), point);
             let built = built.at(home).within(limits);
-            if actuated { built.actuated() } else { built }
+            (if actuated { built.actuated() } else { built }, !slides)
         };
         let legs = legs
             .into_iter()
-            .map(|(name, joints)| Leg::new(name, joints.into_iter().map(build).collect()))
+            .map(|(name, joints)| Leg::new(name, placed(joints.into_iter().map(build).collect())))
             .collect();
         let (task, bodies) = (TaskHints::default(), BodyMasses::default());
         let shapes = Shapes::default();
