@@ -1,13 +1,8 @@
-/* The determinant of a part of the equations of a step. */
-static real determinant(const real a[], const int rows[], const int columns[], int count)
+/* The determinant of a matrix, which is changed. */
+static real determinant(real b[], int count)
 {
-    real b[MOST * MOST], product = 1;
+    real product = 1;
     int i, j, k;
-    for (i = 0; i < count; ++i) {
-        for (j = 0; j < count; ++j) {
-            b[i * count + j] = a[rows[i] * WIDTH + columns[j]];
-        }
-    }
     for (k = 0; k < count; ++k) {
         int row = k;
         for (i = k + 1; i < count; ++i) {
@@ -30,5 +25,12 @@ static real determinant(const real a[], const int rows[], const int columns[], i
         }
     }
     return product;
+}
+
+/* The sign of a determinant; 0 where it vanishes. */
+static int sign_of(real b[], int count)
+{
+    const real value = determinant(b, count);
+    return value > NAME_VANISHED ? 1 : value < -NAME_VANISHED ? -1 : 0;
 }
 

@@ -67,12 +67,12 @@ static void remember(const NAME_place *place)
 }
 
 DETERMINANT
-/* The signs of the determinants at a pose. It returns what NAME_jacobian returns. */
+/* The signs of the determinants at a pose. It returns 0 if they are known. */
 static int signs_at(const NAME_real pose[], int found[])
 {
     const real zero[NAME_ACTUATED] = { 0 };
     real STATE a[ROWS * WIDTH];
-    const int status = NAME_linearise(&NAME_default, pose, (unsigned)mode, zero, QUERIED a);
+    int status = NAME_linearise(&NAME_default, pose, (unsigned)mode, zero, QUERIED a);
     if (status == 0) {
         PARTS
     }
@@ -127,30 +127,39 @@ static int start(void)
     return status;
 }
 
-/* How far actuated joints are from those of a place, radians or sizes. */
+/* How far actuated joints are from those of a place, radians or sizes. Revolutions count: so do the angles of the pose. */
 static real away(const NAME_place *place, const NAME_real actuated[])
 {
     real most = 0;
     int i;
     for (i = 0; i < NAME_ACTUATED; ++i) {
         const real off = actuated[i] - place->joints[driven[i]];
-        most = NAME_max(most, NAME_abs(angle[driven[i]] ? NAME_near(off, 0) : off) / NAME_default.joint[driven[i]].size);
+        most = NAME_max(most, NAME_abs(off) / NAME_default.joint[driven[i]].size);
     }
     return most;
 }
 
-/* The pose of actuated joints in home's assembly, from a place, in a number of steps. It returns 0 if there is one. */
-static int approach(const NAME_place *from, const NAME_real actuated[], int strides, NAME_real pose[])
+/* The pose of actuated joints in home's assembly, from a place, in as many steps as needed, up to a number. It returns 0 if
+   there is one. */
+static int approach(const NAME_place *from, const NAME_real actuated[], int most, NAME_real pose[])
 {
-    NAME_real between[NAME_ACTUATED], residual;
-    int i, stride;
+    NAME_real way[NAME_ACTUATED], between[NAME_ACTUATED], residual;
+    int i, stride, strides = 1;
     for (i = 0; i < NAME_COORDINATES; ++i) {
         pose[i] = from->pose[i];
     }
+    for (i = 0; i < NAME_ACTUATED; ++i) {
+        const real off = actuated[i] - from->joints[driven[i]];
+        real needed;
+        way[i] = angle[driven[i]] ? NAME_near(off, 0) : off;
+        needed = 1 + NAME_abs(way[i]) / NAME_default.joint[driven[i]].size / NAME_STRIDE;
+        if (needed > (real)strides) {
+            strides = needed < (real)most ? (int)needed : most;
+        }
+    }
     for (stride = 1; stride <= strides; ++stride) {
         for (i = 0; i < NAME_ACTUATED; ++i) {
-            const real off = actuated[i] - from->joints[driven[i]], way = angle[driven[i]] ? NAME_near(off, 0) : off;
-            between[i] = actuated[i] - way * (real)(strides - stride) / (real)strides;
+            between[i] = actuated[i] - way[i] * (real)(strides - stride) / (real)strides;
         }
         if (NAME_forward(&NAME_default, between, (unsigned)mode, pose, &residual) != 0 || !is_home_assembly(pose)) {
             return -1;
@@ -213,9 +222,8 @@ int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATI
         }
     }
     for (i = 0; i < 3 && status != 0; ++i) {
-        const real strides = 1 + away(from[i], actuated) / NAME_STRIDE;
-        status = approach(from[i], actuated, strides < NAME_STRIDES ? (int)strides : NAME_STRIDES, at.pose);
-        if (status != 0 && strides >= 2) {
+        status = approach(from[i], actuated, NAME_STRIDES, at.pose);
+        if (status != 0) {
             status = approach(from[i], actuated, 1, at.pose);
         }
     }

@@ -203,6 +203,8 @@ fn linuxcnc_keeps_to_the_assembly_of_home() {
         let name = &m.mechanism().name;
         let home = m.home_pose();
         let of_home = parallel(&m, &home).unwrap();
+        let intersection = m.task().intersection.as_ref();
+        let shares_rotation = intersection.is_none_or(|axis| axis.point.is_some());
         let count = if name == "planar-3rrr" { 10_000 } else { 1_000 };
         let mut here = home.clone();
         let mut poses = Vec::new();
@@ -222,9 +224,12 @@ fn linuxcnc_keeps_to_the_assembly_of_home() {
         for (pose, moved) in poses.iter().zip(&answers) {
             let now = parallel(&m, pose);
             let other = now.filter(|_| is_square(&m)).is_some_and(|now| {
-                now.iter().zip(of_home).any(|(now, home)| now * home < 0.0 && home.abs() > 1e-6)
+                // Where the sections share a translation, the module knows the determinant of the whole alone.
+                let first = if shares_rotation { 0 } else { 2 };
+                let pairs = now.iter().zip(of_home).skip(first);
+                pairs.into_iter().any(|(now, home)| now * home < 0.0 && home.abs() > 1e-6)
             });
-            let near = now.is_none_or(|now| now[2].abs() < 1e-6);
+            let near = now.is_none_or(|now| now.iter().any(|now| now.abs() < 1e-5));
             if now.is_none() || (other && !near) {
                 refused += 1;
                 assert_eq!(moved.inverse, -1.0, "{name}: {pose:?} {now:?} {of_home:?}");
@@ -263,8 +268,7 @@ fn linuxcnc_keeps_to_the_assembly_of_home() {
 /// While the platform turns around twice and back, no joint jumps: coaxial motors turn around, too.
 #[test]
 fn linuxcnc_follows_full_turns() {
-    for (name, yaw) in [("orbita", "psi"), ("planar-3rrr", "theta"), ("schoenflies-4dof", "theta")]
-    {
+    for (name, yaw) in [("orbita", "psi"), ("planar-3rrr", "theta"), ("schoenflies-4dof", "phi")] {
         let m = Manipulator::example(name).unwrap();
         let Some(module) = Module::new(&m) else { return };
         let place = m.task_coordinates().iter().position(|c| c.name == yaw);
