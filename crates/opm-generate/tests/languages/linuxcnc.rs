@@ -40,7 +40,7 @@ const LINUXCNC: [(&str, &str); 4] = [
 ];
 
 /// For each pose in LinuxCNC's order of axes, asks for the joints, and then, from a world of zeros, for the pose of these
-/// joints. A pose that is no number asks for the pose of the last joints again.
+/// joints. With an argument, it is given joints, and asks for their poses alone.
 const ASK: &str = "
 #include <stdio.h>
 #include <string.h>
@@ -52,12 +52,24 @@ int hal_init(const char *name) { return name[0] ? 7 : -1; }
 int hal_ready(int id) { return id - 7; }
 int hal_exit(int id) { return id - 7; }
 void rtapi_print_msg(int level, const char *fmt, ...) { (void)level; (void)fmt; }
-int main(void)
+int main(int argc, char **argv)
 {
     double p[9], joints[16] = { 0 };
+    (void)argv;
     KINEMATICS_FORWARD_FLAGS forward = 0;
     KINEMATICS_INVERSE_FLAGS inverse = 0;
     if (rtapi_app_main() != 0 || kinematicsType() != KINEMATICS_BOTH) return 2;
+    /* Joints alone. */
+    while (argc > 1 && fread(joints, sizeof joints, 1, stdin) == 1) {
+        struct EmcPose world;
+        double answer[2 + 16 + 9] = { 0 };
+        memset(&world, 0, sizeof world);
+        answer[17] = kinematicsForward(joints, &world, &forward, &inverse);
+        answer[18] = world.tran.x; answer[19] = world.tran.y; answer[20] = world.tran.z;
+        answer[21] = world.a; answer[22] = world.b; answer[23] = world.c;
+        answer[24] = world.u; answer[25] = world.v; answer[26] = world.w;
+        fwrite(answer, sizeof answer, 1, stdout);
+    }
     while (fread(p, sizeof p, 1, stdin) == 1) {
         struct EmcPose world;
         double answer[2 + 16 + 9] = { 0 };
@@ -137,19 +149,36 @@ impl Module {
     }
 
     fn ask(&self, poses: &[Vec<f64>]) -> Vec<Moved> {
-        let mut child = Command::new(self.folder.path().join("ask"))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("it runs");
-        let mut input = Vec::new();
-        for pose in poses {
+        let axes = poses.iter().map(|pose| {
             let mut axes = [0.0; 9];
             for ((axis, unit), value) in self.axes.iter().zip(pose) {
                 axes[*axis] = value * unit;
             }
-            input.extend(axes.iter().flat_map(|value| value.to_ne_bytes()));
-        }
+            axes
+        });
+        self.run(&[], axes.flatten().collect())
+    }
+
+    /// The poses of joints, radians and metres.
+    fn ask_for_poses(&self, joints: &[Vec<f64>]) -> Vec<Moved> {
+        let all = joints.iter().map(|joints| {
+            let mut all = [0.0; 16];
+            for ((to, unit), value) in all.iter_mut().zip(&self.units).zip(joints) {
+                *to = value * unit;
+            }
+            all
+        });
+        self.run(&["joints"], all.flatten().collect())
+    }
+
+    fn run(&self, arguments: &[&str], input: Vec<f64>) -> Vec<Moved> {
+        let mut child = Command::new(self.folder.path().join("ask"))
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("it runs");
+        let input: Vec<u8> = input.iter().flat_map(|value| value.to_ne_bytes()).collect();
         let mut stdin = child.stdin.take().expect("a pipe");
         let writer = std::thread::spawn(move || stdin.write_all(&input));
         let done = child.wait_with_output().expect("it ends");
@@ -164,9 +193,7 @@ impl Module {
             forward: row[17],
             axes: row[18..].try_into().unwrap(),
         });
-        let answers: Vec<Moved> = answers.collect();
-        assert_eq!(answers.len(), poses.len());
-        answers
+        answers.collect()
     }
 
     /// The pose of an answer, radians and metres.
@@ -224,6 +251,7 @@ fn linuxcnc_keeps_to_the_assembly_of_home() {
             poses.push(here.clone());
         }
         let answers = module.ask(&poses);
+        assert_eq!(answers.len(), poses.len());
         let mut at = m.solution();
         let (mut reached, mut refused, mut missed) = (0, 0, 0);
         for (pose, moved) in poses.iter().zip(&answers) {
@@ -304,6 +332,52 @@ fn linuxcnc_follows_full_turns() {
             assert_eq!(followed, answers.len());
             let turned = answers[1440].joints[0] - answers[0].joints[0];
             assert!((turned.abs() - 720.0).abs() < 1e-6, "{turned}");
+        }
+    }
+}
+
+/// From measured joints alone, along a walk in home's assembly that starts there, every pose is found, though the world is always
+/// zero.
+#[test]
+fn linuxcnc_finds_the_poses_of_joints() {
+    let mut rng = Rng::with_seed(62);
+    for name in ["planar-3rrr", "plano-spherical-5dof", "orbita", "agile-eye", "planar-planar-5dof"]
+    {
+        let m = Manipulator::example(name).unwrap();
+        let Some(module) = Module::new(&m) else { return };
+        let (home, mode) = (m.home_pose(), m.home_mode());
+        let (of_home, _) = measures(&m, &home).unwrap();
+        let (mut here, mut at) = (home.clone(), m.solution());
+        let (mut poses, mut joints) = (Vec::new(), Vec::new());
+        while poses.len() < 2_000 {
+            let next: Vec<f64> = (here.iter().zip(&home).zip(m.task_coordinates()))
+                .map(|((q, home), c)| {
+                    let span = unit(&m, c.quantity);
+                    let goal = home + 0.5 * span * (2.0 * rng.f64() - 1.0);
+                    q + (goal - q).clamp(-0.01 * span, 0.01 * span)
+                })
+                .collect();
+            // Joints move much faster than the platform near singularities.
+            let same = measures(&m, &next).is_some_and(|(now, serial)| {
+                let far =
+                    now.iter().zip(of_home).all(|(now, home)| now / home > 0.05 || home == 0.0);
+                far && serial.iter().all(|serial| serial.abs() > 0.02)
+            });
+            if same {
+                let solved = m.inverse(&next, mode, &mut at).unwrap().unwrap();
+                joints.push(m.actuated().iter().map(|&i| solved.joints()[i]).collect());
+                poses.push(next.clone());
+                here = next;
+            }
+        }
+        let answers = module.ask_for_poses(&joints);
+        assert_eq!(answers.len(), poses.len());
+        for (pose, moved) in poses.iter().zip(&answers) {
+            assert_eq!(moved.forward, 0.0, "{name}: {pose:?}");
+            let [found, wanted] = [&module.pose(moved), pose]
+                .map(|pose| m.platform_at(&m.displacement_in(pose, mode).unwrap()));
+            let off = m.platform_distance(&found, &wanted);
+            assert!(off < 1e-6, "{name}: {pose:?} {off:e}");
         }
     }
 }
