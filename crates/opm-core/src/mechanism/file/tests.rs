@@ -1,5 +1,6 @@
 use super::*;
 use crate::chain::Branch;
+use nalgebra::Point3;
 
 mod fuzz;
 mod problems;
