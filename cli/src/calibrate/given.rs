@@ -2,8 +2,9 @@
 
 use crate::analyze::load::numbers;
 use crate::pose::{Misread, Number, assignment};
-use opm_calibrate::{BasePoint, Sigma};
+use opm_calibrate::{BasePoint, SIGMAS, Sigma};
 use opm_core::Quantity;
+use opm_core::numeric::number::readable;
 use std::str::FromStr;
 
 /// Standard deviations: `20um,20urad`.
@@ -22,11 +23,12 @@ impl FromStr for Sigmas {
         let of = |name: &str, number: Number| {
             let quantity = if name == "LENGTH" { Quantity::Length } else { Quantity::Angle };
             let value = number.value_of(name, quantity)?;
-            match value > 0.0 {
+            match SIGMAS.contains(&value) {
                 true => Ok(value),
-                false => {
-                    Err(Misread::new(format!("{name} is {value}, expected a positive number")))
-                }
+                false => Err(Misread::new(format!(
+                    "{name} is {}, expected a positive number, 1e-75 to 1e75",
+                    readable(value)
+                ))),
             }
         };
         let [length, angle] = numbers(text, ["LENGTH", "ANGLE"], of)?;
@@ -60,7 +62,9 @@ mod tests {
         assert_eq!("0.02mm,0.001deg".parse::<Sigmas>().unwrap().sigma.length, 2e-5);
         for (text, expected) in [
             ("20e-6", "1 number in \"20e-6\", expected 2: LENGTH,ANGLE"),
-            ("0,1", "LENGTH is 0, expected a positive number"),
+            ("0,1", "LENGTH is 0, expected a positive number, 1e-75 to 1e75"),
+            ("5e-324,1", "LENGTH is 5e-324, expected"),
+            ("1,1e300", "ANGLE is 1e300, expected"),
             ("1deg,1", "LENGTH is a length"),
         ] {
             let message = text.parse::<Sigmas>().expect_err(text).to_string();
