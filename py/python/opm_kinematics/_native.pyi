@@ -1496,8 +1496,8 @@ class Accuracy:
         joint that it reaches. None without `clearance`."""
     @property
     def permitted_uniform(self) -> NDArray[np.float64] | None:
-        """(n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. None without
-        `clearance`."""
+        """(n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. Infinite
+        where no error needs play. None without `clearance`."""
     @property
     def samples(self) -> AccuracySamples | None:
         """Mechanisms with errors that are drawn at random. None without `samples`."""
@@ -2331,8 +2331,9 @@ class Sweep:
     ) -> Inscribed | None:
         """The largest disc, ball or box in the set of points.
 
-        Each point stands for a cell of the grid, and what lies beyond the grid is outside. The disc in the kind
-        ``"dexterous"`` is the regular dexterous workspace.
+        Each point stands for a cell of the grid, and what lies beyond the grid is outside. A disc or ball is the largest in
+        these cells, to 1e-9 of its radius; a box is inside the boundary, with sides at points or half-way between them. The disc
+        in the kind ``"dexterous"`` is the regular dexterous workspace.
 
         Parameters
         ----------
