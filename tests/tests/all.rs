@@ -7,6 +7,7 @@ mod condition;
 mod constraining_legs;
 mod default_grid;
 mod errata;
+mod five_bar;
 mod forward;
 mod fuzzed;
 mod gallery;

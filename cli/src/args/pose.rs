@@ -86,7 +86,7 @@ pub struct IkArgs {
 /// can move although the inputs are locked; null if there are too few inputs to hold the section at all.
 ///
 /// The condition number relates the actuated joints to the platform's twist, with lengths divided by
-/// --length. It is null if it is infinite: at a singularity, or with fewer actuators than freedoms.
+/// --length; of a five-bar to the velocity of the hand. It is null if it is infinite: at a singularity, or with fewer actuators than freedoms.
 /// Singularities of the Euler angles (xi = 0) are not counted; `coordinates` is 0 there. A pose out of
 /// reach is an answer (exit status 0).
 ///
