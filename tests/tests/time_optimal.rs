@@ -285,7 +285,7 @@ fn limits_are_kept_along_noisy_paths() {
         let given = noisy(&plotter, (81, 1e-5 * seed as f64, seed), &corners);
         assert_kept(&given, &fastest(&given, &plotter), &plotter);
     }
-    let spatial = limited("plano-spherical-5dof", Some(0.5), 2.0);
+    let spatial = limited("plano-spherical-5dof-joints", Some(0.5), 2.0);
     let helix = |share: f64| {
         let (sin, cos) = (2.0 * TAU * share).sin_cos();
         vec![0.02 * cos, 0.02 * sin, 0.1 * share, 0.15 + 0.05 * sin, 0.1 * cos]

@@ -164,8 +164,7 @@ pub enum NoTransmission {
     },
 }
 
-/// Transmission indices at poses. The buffer is filled by [`Transmissions::update`], which allocates nothing unless legs are
-/// taken whole.
+/// Transmission indices at poses. The buffer is filled by [`Transmissions::update`], which allocates nothing.
 ///
 /// ```
 /// use opm_analysis::Transmissions;
@@ -219,7 +218,7 @@ impl<'a> Transmissions<'a> {
             whole,
             length: manipulator.characteristic_length(),
             screws: Screws::new(manipulator),
-            found: Vec::with_capacity(sections.iter().map(|section| section.inputs).sum()),
+            found: Vec::with_capacity(manipulator.actuated().len() + manipulator.imaginary().len()),
             constraints: vec![f64::NAN; sections.len()],
             sections,
         })
