@@ -4,7 +4,6 @@ use crate::analyze::load::numbers;
 use crate::pose::{Misread, Number, assignment};
 use opm_calibrate::{BasePoint, SIGMAS, Sigma};
 use opm_core::Quantity;
-use opm_core::numeric::number::readable;
 use std::str::FromStr;
 
 /// Standard deviations: `20um,20urad`.
@@ -23,13 +22,14 @@ impl FromStr for Sigmas {
         let of = |name: &str, number: Number| {
             let quantity = if name == "LENGTH" { Quantity::Length } else { Quantity::Angle };
             let value = number.value_of(name, quantity)?;
-            match SIGMAS.contains(&value) {
-                true => Ok(value),
-                false => Err(Misread::new(format!(
-                    "{name} is {}, expected a positive number, 1e-75 to 1e75",
-                    readable(value)
-                ))),
+            if SIGMAS.contains(&value) {
+                return Ok(value);
             }
+            let shown = format!("{value:?}");
+            let shown = shown.trim_end_matches(".0");
+            Err(Misread::new(format!(
+                "{name} is {shown}, expected a positive number, 1e-75 to 1e75"
+            )))
         };
         let [length, angle] = numbers(text, ["LENGTH", "ANGLE"], of)?;
         let (first, second) = text.split_once(',').expect("two numbers were read");
