@@ -54,7 +54,7 @@ pub fn run(args: &CalibrateArgs, output: &Output) -> Result<(), Failure> {
         return planned::run(args, output, (&loaded, &manipulator), &points, (&options, count));
     }
     let Some(path) = &args.measurements else { return Ok(()) };
-    let table = table::read(path, &manipulator, &points)?;
+    let table = table::read(path, (&loaded, &manipulator), &points, output)?;
     let target = match &args.output {
         Some(target) if is_stdout(target) => {
             let problem = "the report goes to standard output, expected a file";

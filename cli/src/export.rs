@@ -3,7 +3,7 @@
 use crate::args::{ExportArgs, ExportFormat, MjcfArgs, Output, UrdfArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::motion::{self, LoadedMotion};
+use crate::motion::{self, LoadedMotion, Reading};
 use crate::output::{is_stdout, print_with};
 use crate::target::Target;
 use crate::text::plural;
@@ -29,6 +29,9 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
     path.map_or(Ok(()), |path| ends_in(path, "xml"))?;
     let loaded = load::open(&args.mechanism, output)?;
     let Some(motion) = &args.trajectory else {
+        if let Some(flag) = args.table.given() {
+            return Err(Failure::flag(flag, "nothing uses it; --trajectory does"));
+        }
         let keyframes = Keyframes::of(&loaded.file.mechanism);
         note_source(&loaded, &keyframes, output);
         let note = plural(keyframes.reached().len() as u64, "keyframe");
@@ -40,7 +43,9 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
         return Err(Failure::flag("--trajectory", problem));
     };
     let manipulator = loaded.compile()?;
-    let motion = motion::open(motion, None, &manipulator)?;
+    let reading = Reading { ends: None, table: &args.table };
+    let motion = motion::open(motion, &reading, (&loaded, &manipulator))?;
+    motion.note_doubts(output);
     let request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);
     let trajectory = request.rate(options.time_step().recip()).trajectory()?;
     let reference = MjcfReference::new(&manipulator, trajectory)

@@ -12,6 +12,7 @@ use crate::pose::Checks;
 use crate::text::{self, Table, reason};
 use crate::transform::{self, Located};
 use crate::unitless;
+use nalgebra::Point3;
 use opm_core::chain::limits::Limits;
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreachable};
@@ -237,7 +238,10 @@ impl<'a> Answer<'a> {
         let units = self.loaded.file.units;
         let name = &self.manipulator.mechanism().name;
         let mut text = match &self.outside {
-            Some(outside) => format!("{name}: {}\nnearest pose: ", outside_text(outside, units)),
+            Some(outside) => format!(
+                "{name}: {}\nnearest pose: ",
+                outside_text(outside, self.manipulator.mechanism().platform, units)
+            ),
             None => format!("{name} at "),
         };
         let shown = |coordinates: &[TaskCoordinate], values: &[f64]| {
@@ -408,8 +412,8 @@ impl Of<'_> {
     }
 }
 
-/// The distance and the direction of a transform from the motion.
-fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
+/// The distance and the direction of a transform from the motion, and what it places.
+fn outside_text(outside: &OutsideMotion, platform: Point3<f64>, units: FileUnits) -> String {
     let parts = outside.parts().map(|(quantity, v)| {
         let way = match quantity {
             Quantity::Length => "along",
@@ -419,5 +423,13 @@ fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
         format!("{} {way} ({x}, {y}, {z})", units.show(v.norm(), quantity))
     });
     let parts: Vec<String> = parts.collect();
-    format!("the transform is outside the manipulator's motion by {}", parts.join(" and "))
+    let reference = platform.coords / units.length.factor();
+    // Adding zero turns a rounded -0 into 0.
+    let [x, y, z] = <[f64; 3]>::from(reference).map(|c| (c * 1e6).round() / 1e6 + 0.0);
+    let unit = units.length.symbol();
+    format!(
+        "the transform is outside the manipulator's motion by {}; it places the reference point, which is at \
+         ({x}, {y}, {z}) {unit} at home",
+        parts.join(" and ")
+    )
 }

@@ -6,7 +6,10 @@ use crate::pose::Number;
 use crate::text::chain;
 use crate::unitless;
 use opm_core::Quantity;
-use opm_core::decomposition::{DecomposeError, JointMiss, NearMiss, Snapped, nearly, snap};
+use opm_core::decomposition::{
+    DecomposeError, JointMiss, NearMiss, Snapped, nearly, slightly_off, snap,
+};
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
@@ -40,10 +43,11 @@ pub struct Loaded {
     pub snapped: Option<Vec<JointMiss>>,
 }
 
-/// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped.
+/// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped or is off.
 pub fn open(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
     let loaded = read(given, output)?;
     loaded.note_snapped(output);
+    loaded.note_misses(output);
     Ok(loaded)
 }
 
@@ -167,6 +171,28 @@ impl Loaded {
         for miss in self.snapped.iter().flatten() {
             output.note(format_args!("{}: snapped {miss}", self.label));
         }
+    }
+
+    /// Notes which joints of a mechanism that decomposes are off, and by how much.
+    fn note_misses(&self, output: &Output) {
+        // The joints of a family are exact by construction.
+        if output.quiet || self.file.family.is_some() {
+            return;
+        }
+        if let Some(near) = slightly_off(&self.file.mechanism) {
+            output.note(format_args!("{}: {}", self.label, self.misses(&near)));
+        }
+    }
+
+    /// Which joints of a mechanism that decomposes are off, and what to do about it.
+    pub fn misses(&self, near: &NearMiss) -> String {
+        let (lower, upper) = (near.lower.name(), near.upper.name());
+        let sections = match near.upper {
+            SubspaceClass::Identity => lower.to_owned(),
+            _ => format!("{lower} and {upper}"),
+        };
+        let hint = self.tolerance_hint(near);
+        format!("joints are slightly off their subspaces ({sections}): {near}{hint}")
     }
 
     /// What to do about a mechanism that nearly decomposes.

@@ -1,9 +1,12 @@
 //! Motions, by path or by the name of a shipped example.
 
+use crate::args::{MotionTableArgs, Output};
 use crate::failure::Failure;
-use crate::load;
+use crate::load::{self, Loaded};
+use crate::stream::columns_flag;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::hint::expected_one_of;
+use opm_core::motion::table::{Advice, TableOptions};
 use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
 use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
@@ -23,6 +26,8 @@ pub struct LoadedMotion {
     pub text: String,
     /// The motion.
     pub motion: PlatformMotion,
+    /// What its numbers may have been meant to be.
+    doubts: Vec<(u64, String)>,
 }
 
 impl LoadedMotion {
@@ -30,14 +35,29 @@ impl LoadedMotion {
     pub fn attachment(&self) -> Attachment<'_> {
         Attachment { name: &self.file_name, text: &self.text }
     }
+
+    /// Notes numbers that look misread.
+    pub fn note_doubts(&self, output: &Output) {
+        for (line, doubt) in &self.doubts {
+            output.note(format_args!("{}:{line}: {doubt}", self.label));
+        }
+    }
+}
+
+/// How a table of poses is read.
+pub struct Reading<'a> {
+    /// How the motion starts and ends.
+    pub ends: Option<Ends>,
+    /// Its columns and times.
+    pub table: &'a MotionTableArgs,
 }
 
 /// Reads a motion: a table of poses if the name ends in `.csv`, a motion file otherwise, which says itself how it
 /// starts and ends. An existing path has priority over an example of the same name.
 pub fn open(
     given: &Path,
-    ends: Option<Ends>,
-    manipulator: &Manipulator,
+    Reading { ends, table: of }: &Reading<'_>,
+    (loaded, manipulator): (&Loaded, &Manipulator),
 ) -> Result<LoadedMotion, Failure> {
     let label = given.display().to_string();
     let source = match load::text(given, LONGEST, "motion file")? {
@@ -53,19 +73,36 @@ pub fn open(
     let (text, file_name, path) = source;
     let stem = given.file_stem().map_or_else(|| label.clone(), |stem| stem.display().to_string());
     let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let motion = match ends {
-        _ if table => table::read(&text, &stem, manipulator, ends.unwrap_or_default()),
-        Some(ends) => {
+    let options = TableOptions {
+        ends: ends.unwrap_or_default(),
+        columns: of.columns.as_ref(),
+        relative_time: of.relative_time,
+        units: loaded.file.units,
+        advice: Advice { columns: columns_flag, relative_time: "--relative-time" },
+    };
+    let mut doubts = Vec::new();
+    let motion = match (ends, of.given()) {
+        _ if table => table::read(&text, &stem, manipulator, &options).map(|read| {
+            doubts = read.doubts;
+            read.motion
+        }),
+        (None, Some(flag)) => {
+            return Err(Failure::flag(
+                flag,
+                "a motion file has its own names and times, expected a CSV file",
+            ));
+        }
+        (Some(ends), _) => {
             let problem = format!(
                 "a motion file says it itself: write `ends = \"{}\"` beside its points",
                 ends.name()
             );
             return Err(Failure::flag("--ends", problem));
         }
-        None => file::read(&text, manipulator),
+        (None, None) => file::read(&text, manipulator),
     };
     let motion = motion.map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
-    Ok(LoadedMotion { label, file_name, path, text, motion })
+    Ok(LoadedMotion { label, file_name, path, text, motion, doubts })
 }
 
 fn unknown(given: &Path, label: &str) -> Failure {

@@ -6,7 +6,7 @@ use crate::load::Loaded;
 use crate::pose::{Checks, find};
 use crate::stream::{Columns, MODE, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
-use crate::unitless::Plausible;
+use crate::unitless::plausible;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
 use opm_mcap::csv::Rows;
@@ -90,7 +90,7 @@ pub fn columns_beside<'m>(
         move |c: &'m TaskCoordinate| Wanted {
             name: c.name,
             quantity: c.quantity,
-            plausible: Plausible::new(c.quantity, c.home, (loaded, manipulator)),
+            plausible: plausible(c.quantity, c.home, (loaded, manipulator)),
             optional,
         }
     };

@@ -6,13 +6,15 @@ use crate::load::{DASH, Loaded, STANDARD_INPUT};
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::plural;
-use crate::unitless::Plausible;
 use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
+use opm_core::table::{
+    ColumnNames, Line, Lines, Place, Plausible, Suggestion, hint, hint_of_row, not_commas, shown,
+};
 use opm_mcap::PartialFile;
-use opm_mcap::csv::{Line, Lines, Place, Rows};
+use opm_mcap::csv::Rows;
 use opm_study::effort_names;
 use opm_workspace::Progress;
 use std::fmt::Display;
@@ -43,14 +45,17 @@ impl From<io::Error> for Stop {
 pub struct Streams<'a> {
     pub input: &'a Path,
     pub output: Option<&'a Path>,
+    /// The columns that --columns names.
+    pub columns: Option<&'a ColumnNames>,
 }
 
 /// Input and output of a command while it runs.
 pub struct Stream<'a> {
     /// The name of the input in messages.
     pub label: &'a str,
-    pub lines: Lines,
+    pub lines: Lines<'static>,
     pub rows: Rows<'a>,
+    names: Option<&'a ColumnNames>,
     output: &'a Output,
     /// The number of rows that were read.
     pub number: &'a AtomicU64,
@@ -77,8 +82,9 @@ impl Stream<'_> {
                 return Err(Failure::interrupted("interrupted").into());
             }
             let number = line.number;
-            let usual =
-                columns.read(line, &places, &mut row, |problem| at(label, number, problem))?;
+            let usual = columns.read(line, &places, &mut row, |field, problem| {
+                at_column(label, line, field, problem)
+            })?;
             let [values @ .., time] = &*row else { unreachable!("the row has a place for a time") };
             if !usual {
                 columns.note(values, |problem| {
@@ -105,24 +111,56 @@ impl Stream<'_> {
     ) -> Result<Columns<'n>, Failure> {
         let label = self.label;
         let header = self.lines.next().map_err(|error| Failure::at(label, error))?;
-        let number = header.map_or(1, |line| line.number);
-        let given: Vec<_> =
-            header.iter().flat_map(|h| h.fields()).map(String::from_utf8_lossy).collect();
+        let names = || values.iter().map(|value| value.name);
+        let Some(header) = header else {
+            let names = names().collect::<Vec<_>>().join(",");
+            return Err(at(label, 1, format!("the file is empty, expected a header: {names}")));
+        };
+        let number = header.number;
+        if let Some(problem) = not_commas(header) {
+            return Err(at_column(label, header, 0, problem));
+        }
+        let given: Vec<_> = header.fields().map(String::from_utf8_lossy).collect();
+        let given: Vec<&str> = given.iter().map(|text| &**text).collect();
         if given.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let names = values.iter().map(|value| value.name).collect::<Vec<_>>().join(",");
+            let names = names().collect::<Vec<_>>().join(",");
             return Err(at(label, number, format!("no header, expected one of names: {names}")));
         }
+        if let Some((name, heading)) = self.names.and_then(|n| n.missing(given.iter().copied())) {
+            let headings = given.iter().map(|text| shown(text)).collect::<Vec<_>>().join(", ");
+            let problem = format!("no column {heading:?} for {name}, the table has {headings}");
+            return Err(at(label, number, format!("{problem} (--columns)")));
+        }
         let mut columns = Vec::new();
-        for text in &given {
-            let wrong =
-                |error: &dyn Display| at(label, number, format!("column {text:?}: {error}"));
-            let heading = Heading::parse(text);
+        for (field, text) in given.iter().enumerate() {
+            let wrong = |error: &dyn Display| {
+                at_column(label, header, field, format!("column {}: {error}", shown(text)))
+            };
+            let mut heading = Heading::parse(text);
+            if let Some(names) = self.names {
+                let Some(name) = names.name_of(heading, text) else {
+                    columns.push((Column::Other, None));
+                    continue;
+                };
+                heading.name = name;
+            }
             let column = match (heading.name, heading.unit) {
                 ("t", None | Some("s")) => Column::Time,
                 ("t", Some(_)) => return Err(wrong(&"expected t or t [s]")),
-                (name, _) => match find(name).map_err(|error| wrong(&error))? {
-                    Some(number) => Column::Value(number),
-                    None => Column::Other,
+                (name, _) => match find(name) {
+                    Ok(Some(number)) => Column::Value(number),
+                    Ok(None) => Column::Other,
+                    Err(error) => {
+                        // What the others may be called; the time is not needed.
+                        let known = names().collect::<Vec<_>>();
+                        let mut meant = Suggestion::new(std::iter::once("t").chain(known), &given);
+                        meant.0.retain(|(_, heading)| {
+                            given.iter().any(|g| Heading::parse(g).name == heading)
+                        });
+                        let advice =
+                            if meant.0.is_empty() { String::new() } else { columns_flag(&meant) };
+                        return Err(wrong(&format!("{error}{advice}")));
+                    }
                 },
             };
             let units = match column {
@@ -172,7 +210,8 @@ pub fn run<T>(
     };
     let progress = interruptible()?;
     let rows = AtomicU64::new(0);
-    let source = Source { label: &label, reader, output, number: &rows, progress: &progress };
+    let (label, names) = (&*label, streams.columns);
+    let source = Source { label, reader, names, output, number: &rows, progress: &progress };
     let Some(path) = target else {
         // There is no progress bar, since the rows may go to the terminal.
         return match solve(source.to(&mut io::stdout())) {
@@ -213,6 +252,7 @@ pub const MODE: &str = "mode";
 struct Source<'a> {
     label: &'a str,
     reader: Box<dyn Read>,
+    names: Option<&'a ColumnNames>,
     output: &'a Output,
     number: &'a AtomicU64,
     progress: &'a Progress,
@@ -220,8 +260,9 @@ struct Source<'a> {
 
 impl<'a> Source<'a> {
     fn to(self, sink: &'a mut (dyn Write + Send)) -> Stream<'a> {
-        let Self { label, reader, output, number, progress } = self;
-        Stream { label, lines: Lines::new(reader), rows: Rows::new(sink), output, number, progress }
+        let Self { label, reader, names, output, number, progress } = self;
+        let (lines, rows) = (Lines::new(reader), Rows::new(sink));
+        Stream { label, lines, rows, names, output, number, progress }
     }
 }
 
@@ -307,7 +348,7 @@ impl Columns<'_> {
         line: Line<'_>,
         places: &[Option<Place>],
         row: &mut [f64],
-        at: impl Fn(String) -> Failure,
+        at: impl Fn(usize, String) -> Failure,
     ) -> Result<bool, Failure> {
         let name = |column: Column| match column {
             Column::Time => "t",
@@ -319,11 +360,13 @@ impl Columns<'_> {
             let names: Vec<_> = self.columns.iter().map(|&(column, _)| name(column)).collect();
             let given = plural(given as u64, "column");
             let (expected, names) = (self.columns.len(), names.join(","));
-            return Err(at(format!("{given}, expected {expected}: {names}")));
+            let hint = hint_of_row(line, expected);
+            return Err(at(0, format!("{given}, expected {expected}: {names}{hint}")));
         }
         let usual = line.numbers(places, row).map_err(|(number, problem)| {
             let field = line.fields().nth(number).map(String::from_utf8_lossy).unwrap_or_default();
-            at(format!("column {}: {field:?} {problem}", name(self.columns[number].0)))
+            let (name, hint) = (name(self.columns[number].0), hint(&field));
+            at(number, format!("column {name}: {} {problem}{hint}", shown(&field)))
         })?;
         for &(number, units) in &self.converted {
             row[number] = units.si(row[number], self.values[number].quantity);
@@ -345,6 +388,19 @@ pub fn other_columns(manipulator: &Manipulator) -> Vec<String> {
     let known = known.into_iter().chain(Index::ALL.map(Index::name)).map(str::to_owned);
     let efforts = effort_names(manipulator);
     names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).chain(efforts).collect()
+}
+
+/// How --columns names columns, as the end of a message.
+pub fn columns_flag(suggestion: &Suggestion) -> String {
+    let names = suggestion.to_string();
+    let plain = |c: char| c.is_alphanumeric() || "=,._-".contains(c);
+    let quote = if names.chars().all(plain) { "" } else { "'" };
+    format!("; --columns {quote}{names}{quote} says which columns to read")
+}
+
+/// The failure for a problem at a field of the input.
+fn at_column(label: &str, line: Line<'_>, field: usize, problem: impl Display) -> Failure {
+    Failure::work(format!("{label}:{}:{}: {problem}", line.number, line.column(field)))
 }
 
 /// The failure for a problem in a line of the input.

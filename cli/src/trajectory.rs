@@ -7,8 +7,8 @@ use crate::args::{Format, Output, TableUnits, TrajectoryArgs};
 use crate::failure::Failure;
 use crate::interference;
 use crate::layout;
-use crate::load;
-use crate::motion::{self, LoadedMotion};
+use crate::load::{self, Loaded};
+use crate::motion::{self, LoadedMotion, Reading};
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch};
 use crate::text::count;
@@ -94,9 +94,10 @@ fn given_setup(setup: &SetupOptions) -> &'static str {
 /// The motion of the flags, and the duration that it was given with if it got another timing.
 fn motion(
     args: &TrajectoryArgs,
-    manipulator: &Manipulator,
+    (loaded, manipulator): (&Loaded, &Manipulator),
 ) -> Result<(LoadedMotion, Option<f64>), Failure> {
-    let mut motion = motion::open(&args.motion, args.ends.map(Into::into), manipulator)?;
+    let reading = Reading { ends: args.ends.map(Into::into), table: &args.table };
+    let mut motion = motion::open(&args.motion, &reading, (loaded, manipulator))?;
     if let Some(mode) = &args.mode {
         motion.motion.mode = Some(load::mode(manipulator, mode)?);
     }
@@ -136,7 +137,8 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         return table::run(args, &loaded, vary, output);
     }
     let manipulator = loaded.compile()?;
-    let (motion, given_duration) = motion(args, &manipulator)?;
+    let (motion, given_duration) = motion(args, (&loaded, &manipulator))?;
+    motion.note_doubts(output);
     let setup = args.setup.options(None)?;
     if setup != SetupOptions::default() && !args.indices {
         let problem = "nothing uses it; --indices does";

@@ -3,6 +3,7 @@
 use super::{MechanismArgs, SetupArgs};
 use crate::pose::{GridAxis, Number, Pose};
 use clap::ValueHint;
+use opm_core::table::ColumnNames;
 use std::path::PathBuf;
 
 /// Forces and transmission at a pose: efforts of the actuators, payload, transmission indices
@@ -49,6 +50,9 @@ pub struct AnalyzeArgs {
     /// A CSV file of poses; - reads standard input. Its column `mode` is not read
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
+    /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses")]
+    pub columns: Option<ColumnNames>,
     /// What acts on the mechanism, and how much it gives way.
     #[command(flatten)]
     pub setup: SetupArgs,

@@ -4,6 +4,7 @@ use super::MechanismArgs;
 use crate::pose::{GridAxis, Number, Pose};
 use crate::transform::Transform;
 use clap::ValueHint;
+use opm_core::table::ColumnNames;
 use std::path::PathBuf;
 
 /// Inverse kinematics: the joint values at a pose, or at every pose of a CSV file
@@ -54,6 +55,9 @@ pub struct IkArgs {
     /// A CSV file of poses; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
+    /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses")]
+    pub columns: Option<ColumnNames>,
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
     pub all_modes: bool,
@@ -159,6 +163,9 @@ pub struct FkArgs {
     /// A CSV file of actuated joints, from which poses are found; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
+    /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses")]
+    pub columns: Option<ColumnNames>,
     /// Every assembly of each row of --poses, not just the one near the row before
     #[arg(long, requires = "poses", conflicts_with = "joints")]
     pub all: bool,

@@ -37,7 +37,7 @@ pub fn run(
         None => None,
     };
     let given = match &args.poses {
-        Some(path) => Some(poses(path, manipulator)?),
+        Some(path) => Some(poses(path, (loaded, manipulator), output)?),
         None => None,
     };
     let progress = interruptible()?;
@@ -93,8 +93,12 @@ pub fn run(
 }
 
 /// The poses of a CSV file; coordinates that it does not have stay at home.
-fn poses(path: &std::path::Path, manipulator: &Manipulator) -> Result<Vec<Vec<f64>>, Failure> {
-    let table = table::read(path, manipulator, &[])?;
+fn poses(
+    path: &std::path::Path,
+    (loaded, manipulator): (&Loaded, &Manipulator),
+    output: &Output,
+) -> Result<Vec<Vec<f64>>, Failure> {
+    let table = table::read(path, (loaded, manipulator), &[], output)?;
     let names: Vec<&str> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
     let pose = |row: &Vec<Option<f64>>| {
         let mut pose = manipulator.home_pose();

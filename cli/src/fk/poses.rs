@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
-use crate::unitless::Plausible;
+use crate::unitless::plausible;
 use opm_core::forward::{Assembly, NearError};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_mcap::csv::Rows;
@@ -57,7 +57,8 @@ pub fn run(
         return Err(Failure::flag("--all", problem));
     }
     let request = Request { loaded, manipulator, seed, only, all: args.all };
-    let streams = Streams { input, output: args.output.as_deref() };
+    let (target, columns) = (args.output.as_deref(), args.columns.as_ref());
+    let streams = Streams { input, output: target, columns };
     let solve = |stream: Stream<'_>| request.solve(stream);
     let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
     let assemblies = match args.all {
@@ -88,7 +89,7 @@ impl Request<'_> {
         let values = actuated.iter().map(|c| Wanted {
             name: &c.name,
             quantity: c.quantity,
-            plausible: Plausible::new(c.quantity, c.home, (self.loaded, m)),
+            plausible: plausible(c.quantity, c.home, (self.loaded, m)),
             optional: false,
         });
         let tasks = m.task_coordinates().iter().chain(m.dependent_coordinates());

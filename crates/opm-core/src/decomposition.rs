@@ -22,6 +22,7 @@ pub mod mobility;
 mod near;
 mod odd;
 mod order;
+mod reorder;
 mod search;
 mod survey;
 
@@ -29,7 +30,8 @@ mod survey;
 pub(crate) mod samples;
 
 pub use height::{HeightMiss, HeightReason};
-pub use near::{JointMiss, NearMiss, Snapped, nearly, snap};
+pub use near::{JointMiss, NearMiss, Snapped, nearly, slightly_off, snap};
+pub use reorder::{OrderChange, Reordered};
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
 
 use crate::decomposition::mobility::{HomeSingularity, Mobility, MobilityError, frame, mobility};
@@ -144,13 +146,16 @@ pub enum DecomposeError {
     },
     /// The home pose is singular, so that it does not represent other poses.
     #[error(
-        "the home pose is singular ({}); expected a regular home pose{}",
+        "the home pose is singular ({}); expected a regular home pose{}{}",
         list(singularities),
+        reordered_text(order.as_deref()),
         nearly_text(near.as_deref())
     )]
     SingularHome {
         /// Every respect in which home is singular.
         singularities: Vec<HomeSingularity>,
+        /// An order of the joints in which the mechanism decomposes.
+        order: Option<Box<Reordered>>,
         /// What the mechanism misses, if it is nearly one that decomposes.
         near: Option<Box<NearMiss>>,
     },
@@ -191,9 +196,10 @@ pub enum DecomposeError {
                  a one-parameter motion"
             ),
         },
-        match (near, height, odd) {
-            (Some(near), ..) => nearly_text(Some(near)),
-            (None, None, Some(odd)) => format!(
+        match (order, near, height, odd) {
+            (Some(order), ..) => reordered_text(Some(order)),
+            (None, Some(near), ..) => nearly_text(Some(near)),
+            (None, None, None, Some(odd)) => format!(
                 "; only joint {} of leg {} does not fit such a split: {}",
                 odd.joint,
                 odd.leg,
@@ -207,6 +213,8 @@ pub enum DecomposeError {
         lambda: usize,
         /// Mobility of the mechanism, `N`.
         mobility: usize,
+        /// An order of the joints in which the mechanism decomposes.
+        order: Option<Box<Reordered>>,
         /// What the mechanism misses, if it is nearly one that decomposes.
         near: Option<Box<NearMiss>>,
         /// Otherwise, the joint without which there would be such a split, if there is exactly one.
@@ -227,11 +235,16 @@ fn one_group(group: &SubspaceClass) -> String {
     }
 }
 
+/// A better order of the joints, as a part of a message.
+fn reordered_text(order: Option<&Reordered>) -> String {
+    order.map_or_else(String::new, |order| format!("; {order}"))
+}
+
 /// What a mechanism misses, as a part of a message.
 fn nearly_text(near: Option<&NearMiss>) -> String {
     near.map_or_else(String::new, |near| {
-        let millimetres = near.tolerance * 1e3;
-        format!("; it would decompose within a tolerance of {millimetres:.2} mm: {near}")
+        let millimetres = near::number(near.tolerance * 1e3);
+        format!("; it would decompose within a tolerance of {millimetres} mm: {near}")
     })
 }
 
@@ -280,7 +293,7 @@ fn regular_home(report: &Mobility) -> Result<(), DecomposeError> {
     }
     if !report.singular.is_empty() {
         let singularities = report.singular.clone();
-        return Err(DecomposeError::SingularHome { singularities, near: None });
+        return Err(DecomposeError::SingularHome { singularities, order: None, near: None });
     }
     Ok(())
 }
@@ -313,6 +326,7 @@ fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>
         return Err(DecomposeError::NoPartialSubspaces {
             lambda,
             mobility,
+            order: None,
             near: None,
             odd: None,
             height: height.map(Box::new),
@@ -323,7 +337,7 @@ fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>
     Ok(found)
 }
 
-/// Adds to an error what the mechanism misses, if it nearly decomposes.
+/// Adds to an error an order of the joints in which the mechanism decomposes, or what it misses, if it nearly does.
 fn found_or_near<T>(
     mechanism: &Mechanism,
     found: Result<T, DecomposeError>,
@@ -334,12 +348,23 @@ fn found_or_near<T>(
     };
     let near_miss = |mechanism| near::near_miss(mechanism, near::MOST_DIMENSIONS);
     match &mut error {
-        DecomposeError::NoFreedom { near, .. } | DecomposeError::SingularHome { near, .. } => {
-            *near = near_miss(mechanism).map(Box::new);
+        DecomposeError::NoFreedom { near, .. } => *near = near_miss(mechanism).map(Box::new),
+        DecomposeError::SingularHome { near, order, singularities } => {
+            // A parallel singularity is none of the order.
+            let parallel = |s: &HomeSingularity| matches!(s, HomeSingularity::Parallel { .. });
+            if !singularities.iter().all(parallel) {
+                *order = reorder::better_order(mechanism).map(Box::new);
+            }
+            if order.is_none() {
+                *near = near_miss(mechanism).map(Box::new);
+            }
         }
-        DecomposeError::NoPartialSubspaces { near, odd, mobility, .. } => {
-            *near = near_miss(mechanism).map(Box::new);
-            if near.is_none() {
+        DecomposeError::NoPartialSubspaces { order, near, odd, mobility, .. } => {
+            *order = reorder::better_order(mechanism).map(Box::new);
+            if order.is_none() {
+                *near = near_miss(mechanism).map(Box::new);
+            }
+            if order.is_none() && near.is_none() {
                 *odd = odd::odd_joint(mechanism, *mobility).map(Box::new);
             }
         }

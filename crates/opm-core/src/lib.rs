@@ -87,6 +87,7 @@ pub mod mechanism;
 pub mod motion;
 pub mod numeric;
 pub mod skeleton;
+pub mod table;
 pub mod task;
 pub mod trajectory;
 pub mod velocity;

@@ -2999,6 +2999,8 @@ def trajectory(
     rate: float | None = None,
     mode: str | None = None,
     ends: str | None = None,
+    columns: Mapping[str, str] | None = None,
+    relative_time: bool = False,
     time_optimal: bool = False,
     clearance: float | None = None,
 ) -> Trajectory:
@@ -3021,6 +3023,11 @@ def trajectory(
     ends : str, optional
         How a spline through waypoints or the poses of a table starts and ends: ``"rest"`` (no speed; if not given),
         ``"natural"`` (no acceleration), or ``"periodic"`` (as it ends, so it starts). A motion file says it itself.
+    columns : dict of str, optional
+        The columns of a table of poses (``.csv``) that are read: for ``t`` and each task coordinate the heading of its column,
+        such as ``{"t": "stamp", "x": "pos_x"}``. Others are passed over.
+    relative_time : bool, optional
+        Count the times of a table of poses (``.csv``) from that of its first row, such as seconds since 1970.
     time_optimal : bool, optional
         The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
         joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.

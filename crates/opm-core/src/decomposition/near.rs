@@ -17,7 +17,7 @@ mod search;
 mod snapped;
 
 pub use miss::JointMiss;
-pub(super) use miss::misses_of;
+pub(super) use miss::{misses_of, number};
 pub(super) use search::{MOST_DIMENSIONS, elements};
 
 use super::{DecomposeError, Decomposition, passive};
@@ -107,6 +107,19 @@ pub fn nearly(mechanism: &Mechanism) -> Result<Option<NearMiss>, MobilityError> 
         Ok(found) => near_smaller(mechanism, &found),
         Err(_) => near_miss(mechanism, MOST_DIMENSIONS),
     })
+}
+
+/// A joint screw farther than this from its subspace (the sine of an angle, with lengths divided by the mechanism's size) is
+/// told. Files with seven digits stay below.
+const TOLD: f64 = 1e-6;
+
+/// What joints miss of a mechanism that decomposes as it is: the subspaces of their sections, by more than rounding, or
+/// those of smaller sections. `None` for a mechanism that does not decompose: [`nearly`] is about these.
+pub fn slightly_off(mechanism: &Mechanism) -> Option<NearMiss> {
+    let found = plain(mechanism).ok()?;
+    let rounded =
+        || near_miss(mechanism, dimensions(found.first().filter(|d| d.deviation > TOLD)?));
+    near_smaller(mechanism, &found).or_else(rounded)
 }
 
 /// What a mechanism misses of smaller sections, if it has a section that is large or has a pitch.

@@ -143,6 +143,7 @@ fn a_gough_platform_has_no_partial_subspaces() {
     let expected = DecomposeError::NoPartialSubspaces {
         lambda: 6,
         mobility: 6,
+        order: None,
         near: None,
         odd: None,
         height: None,

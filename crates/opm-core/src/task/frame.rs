@@ -20,8 +20,8 @@ impl Meeting {
         self.intersection.as_ref().map(IntersectionAxis::motion_type)
     }
 
-    /// The reference point: on the axis of the intersection motion where that is a line, else the platform's own.
-    fn reference(&self) -> Point3<f64> {
+    /// The platform's reference point, moved onto the axis of the intersection motion where that is a line.
+    fn centre(&self) -> Point3<f64> {
         match &self.intersection {
             Some(IntersectionAxis { direction, point: Some(p) }) => {
                 p + direction.into_inner() * direction.dot(&(self.platform - p))
@@ -43,22 +43,20 @@ pub(super) fn lay(
     meeting: &Meeting,
     hints: &FrameHints,
 ) -> Result<Subspace, TaskError> {
-    let (reference, shared) = (meeting.reference(), meeting.shared());
+    let (centre, shared) = (meeting.centre(), meeting.shared());
     let rotation = shared == Some(MotionType::Rotation);
     let (kind, at_home, normal) = match class {
-        SubspaceClass::Identity => (SubspaceKind::Identity, reference, Vector3::z_axis()),
+        SubspaceClass::Identity => (SubspaceKind::Identity, centre, Vector3::z_axis()),
         // A Schoenflies section is a planar one at a height.
-        SubspaceClass::Planar { normal } | SubspaceClass::Schoenflies { axis: normal } => (
-            SubspaceKind::Planar,
-            reference,
-            if rotation { meeting.third(*normal) } else { *normal },
-        ),
-        SubspaceClass::Spherical { centre } => {
+        SubspaceClass::Planar { normal } | SubspaceClass::Schoenflies { axis: normal } => {
+            (SubspaceKind::Planar, centre, if rotation { meeting.third(*normal) } else { *normal })
+        }
+        SubspaceClass::Spherical { centre: middle } => {
             let pole = hints.axis.map_or(Vector3::z_axis(), Unit::new_normalize);
-            (SubspaceKind::Spherical, *centre, meeting.third(pole))
+            (SubspaceKind::Spherical, *middle, meeting.third(pole))
         }
         SubspaceClass::Cylindrical { axis: line, point } => {
-            let on_axis = point + line.into_inner() * line.dot(&(reference - point));
+            let on_axis = point + line.into_inner() * line.dot(&(centre - point));
             let hinted = match hints.axis {
                 Some(hint) if hint.dot(line) < 0.0 => -*line,
                 Some(_) => *line,
@@ -67,11 +65,11 @@ pub(super) fn lay(
             (SubspaceKind::Cylindrical, on_axis, meeting.third(hinted))
         }
         SubspaceClass::TranslationalPlane { normal } => {
-            (SubspaceKind::TranslationalPlane, reference, *normal)
+            (SubspaceKind::TranslationalPlane, centre, *normal)
         }
         SubspaceClass::TranslationalSpace => {
             let third = hints.axis.map_or(Vector3::z_axis(), Unit::new_normalize);
-            (SubspaceKind::TranslationalSpace, reference, meeting.third(third))
+            (SubspaceKind::TranslationalSpace, centre, meeting.third(third))
         }
         SubspaceClass::Rotation { .. }
         | SubspaceClass::Translation { .. }

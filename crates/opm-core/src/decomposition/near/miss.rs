@@ -75,6 +75,9 @@ impl JointMiss {
         if !self.angle.is_finite() {
             return other();
         }
+        if let Some(reason) = self.pitch_reason() {
+            return reason;
+        }
         match (self.element, &self.subspace) {
             (Some(Element::Ball { .. }), _) => {
                 format!("its centre is {} from the centre of the others", distance())
@@ -119,15 +122,45 @@ impl JointMiss {
     }
 }
 
+impl JointMiss {
+    /// What is wrong with a helical joint, if it is the pitch more than the place of its axis.
+    fn pitch_reason(&self) -> Option<String> {
+        use SubspaceClass as Class;
+        let Some(Element::Helix { pitch, .. }) = self.element else { return None };
+        let (Class::Helical { pitch: common, .. } | Class::PlanarHelical { pitch: common, .. }) =
+            self.subspace
+        else {
+            return None;
+        };
+        let off = (pitch - common).abs();
+        (off > UNTOLD_DISTANCE && off >= self.distance).then(|| {
+            let tilted = match self.angle > UNTOLD_ANGLE {
+                true => format!(", and its axis is {} deg off", number(self.angle.to_degrees())),
+                false => String::new(),
+            };
+            let off = number(off * 1e3);
+            format!("its pitch differs from that of the others by {off} mm/rad{tilted}")
+        })
+    }
+}
+
 impl fmt::Display for JointMiss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {} of leg {}: {}", self.joint, self.leg, self.reason())
     }
 }
 
-/// A number with two decimals, or with an exponent if it is too small for that.
+/// A number with two decimals and at least two significant digits; with an exponent if it is very small.
 pub(in crate::decomposition) fn number(value: f64) -> String {
-    if value == 0.0 || value >= 0.01 { format!("{value:.2}") } else { format!("{value:.1e}") }
+    /// From here on down, zeros are hard to count.
+    const SMALL: f64 = 1e-4;
+    match value {
+        0.0 => "0.00".to_owned(),
+        v if v < SMALL => format!("{v:.1e}"),
+        // A hundredth of what is below 0.095 has one digit.
+        v if v < 0.095 => format!("{v:.*}", (1.0 - v.log10().floor()) as usize),
+        v => format!("{v:.2}"),
+    }
 }
 
 /// The misses of the joints of a leg that have freedoms in a section.
