@@ -27,7 +27,7 @@ pub struct LoadedMotion {
     /// The motion.
     pub motion: PlatformMotion,
     /// What its numbers may have been meant to be.
-    doubts: Vec<(u64, String)>,
+    doubts: Vec<String>,
 }
 
 impl LoadedMotion {
@@ -38,8 +38,8 @@ impl LoadedMotion {
 
     /// Notes numbers that look misread.
     pub fn note_doubts(&self, output: &Output) {
-        for (line, doubt) in &self.doubts {
-            output.note(format_args!("{}:{line}: {doubt}", self.label));
+        for doubt in &self.doubts {
+            output.note(doubt);
         }
     }
 }
@@ -83,7 +83,8 @@ pub fn open(
     let mut doubts = Vec::new();
     let motion = match (ends, of.given()) {
         _ if table => table::read(&text, &stem, manipulator, &options).map(|read| {
-            doubts = read.doubts;
+            let doubt = |(line, doubt)| format!("{label}:{line}: {doubt}");
+            doubts = read.doubts.into_iter().map(doubt).collect();
             read.motion
         }),
         (None, Some(flag)) => {
@@ -99,10 +100,20 @@ pub fn open(
             );
             return Err(Failure::flag("--ends", problem));
         }
-        (None, None) => file::read(&text, manipulator),
+        (None, None) => file::read(&text, manipulator).inspect(|motion| {
+            if !names_units(&text) {
+                let found = motion.doubts(manipulator, loaded.file.units);
+                doubts = found.into_iter().map(|doubt| format!("{label}: {doubt}")).collect();
+            }
+        }),
     };
     let motion = motion.map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
     Ok(LoadedMotion { label, file_name, path, text, motion, doubts })
+}
+
+/// Whether a motion file has the key `units`.
+fn names_units(text: &str) -> bool {
+    text.lines().any(|line| line.trim_start().starts_with("units"))
 }
 
 fn unknown(given: &Path, label: &str) -> Failure {

@@ -82,9 +82,8 @@ impl Stream<'_> {
                 return Err(Failure::interrupted("interrupted").into());
             }
             let number = line.number;
-            let usual = columns.read(line, &places, &mut row, |field, problem| {
-                at_column(label, line, field, problem)
-            })?;
+            let usual =
+                columns.read(line, &places, &mut row, |problem| at(label, number, problem))?;
             let [values @ .., time] = &*row else { unreachable!("the row has a place for a time") };
             if !usual {
                 columns.note(values, |problem| {
@@ -112,19 +111,19 @@ impl Stream<'_> {
         let label = self.label;
         let header = self.lines.next().map_err(|error| Failure::at(label, error))?;
         let names = || values.iter().map(|value| value.name);
-        let Some(header) = header else {
+        let no_header = |number| {
             let names = names().collect::<Vec<_>>().join(",");
-            return Err(at(label, 1, format!("the file is empty, expected a header: {names}")));
+            at(label, number, format!("no header, expected one of names: {names}"))
         };
+        let Some(header) = header else { return Err(no_header(1)) };
         let number = header.number;
         if let Some(problem) = not_commas(header) {
-            return Err(at_column(label, header, 0, problem));
+            return Err(at(label, number, problem));
         }
         let given: Vec<_> = header.fields().map(String::from_utf8_lossy).collect();
         let given: Vec<&str> = given.iter().map(|text| &**text).collect();
         if given.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let names = names().collect::<Vec<_>>().join(",");
-            return Err(at(label, number, format!("no header, expected one of names: {names}")));
+            return Err(no_header(number));
         }
         if let Some((name, heading)) = self.names.and_then(|n| n.missing(given.iter().copied())) {
             let headings = given.iter().map(|text| shown(text)).collect::<Vec<_>>().join(", ");
@@ -132,13 +131,12 @@ impl Stream<'_> {
             return Err(at(label, number, format!("{problem} (--columns)")));
         }
         let mut columns = Vec::new();
-        for (field, text) in given.iter().enumerate() {
-            let wrong = |error: &dyn Display| {
-                at_column(label, header, field, format!("column {}: {error}", shown(text)))
-            };
+        for text in &given {
+            let wrong =
+                |error: &dyn Display| at(label, number, format!("column {}: {error}", shown(text)));
             let mut heading = Heading::parse(text);
             if let Some(names) = self.names {
-                let Some(name) = names.name_of(heading, text) else {
+                let Some(name) = names.name_of(heading, text).map_err(|e| wrong(&e))? else {
                     columns.push((Column::Other, None));
                     continue;
                 };
@@ -348,7 +346,7 @@ impl Columns<'_> {
         line: Line<'_>,
         places: &[Option<Place>],
         row: &mut [f64],
-        at: impl Fn(usize, String) -> Failure,
+        at: impl Fn(String) -> Failure,
     ) -> Result<bool, Failure> {
         let name = |column: Column| match column {
             Column::Time => "t",
@@ -361,12 +359,12 @@ impl Columns<'_> {
             let given = plural(given as u64, "column");
             let (expected, names) = (self.columns.len(), names.join(","));
             let hint = hint_of_row(line, expected);
-            return Err(at(0, format!("{given}, expected {expected}: {names}{hint}")));
+            return Err(at(format!("{given}, expected {expected}: {names}{hint}")));
         }
         let usual = line.numbers(places, row).map_err(|(number, problem)| {
             let field = line.fields().nth(number).map(String::from_utf8_lossy).unwrap_or_default();
             let (name, hint) = (name(self.columns[number].0), hint(&field));
-            at(number, format!("column {name}: {} {problem}{hint}", shown(&field)))
+            at(format!("column {name}: {} {problem}{hint}", shown(&field)))
         })?;
         for &(number, units) in &self.converted {
             row[number] = units.si(row[number], self.values[number].quantity);
@@ -396,11 +394,6 @@ pub fn columns_flag(suggestion: &Suggestion) -> String {
     let plain = |c: char| c.is_alphanumeric() || "=,._-".contains(c);
     let quote = if names.chars().all(plain) { "" } else { "'" };
     format!("; --columns {quote}{names}{quote} says which columns to read")
-}
-
-/// The failure for a problem at a field of the input.
-fn at_column(label: &str, line: Line<'_>, field: usize, problem: impl Display) -> Failure {
-    Failure::work(format!("{label}:{}:{}: {problem}", line.number, line.column(field)))
 }
 
 /// The failure for a problem in a line of the input.

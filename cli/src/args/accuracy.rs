@@ -63,7 +63,7 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses")]
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "grid", "over"])]
     pub columns: Option<ColumnNames>,
     /// Values of one task coordinate, for the largest errors over a grid; other coordinates stay at home
     #[arg(

@@ -51,7 +51,7 @@ pub struct AnalyzeArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses")]
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "pose")]
     pub columns: Option<ColumnNames>,
     /// What acts on the mechanism, and how much it gives way.
     #[command(flatten)]

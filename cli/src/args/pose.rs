@@ -56,7 +56,7 @@ pub struct IkArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses")]
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "transform"])]
     pub columns: Option<ColumnNames>,
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
@@ -164,7 +164,7 @@ pub struct FkArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses")]
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "joints")]
     pub columns: Option<ColumnNames>,
     /// Every assembly of each row of --poses, not just the one near the row before
     #[arg(long, requires = "poses", conflicts_with = "joints")]

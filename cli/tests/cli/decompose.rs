@@ -222,7 +222,7 @@ fn frames_are_printed_and_can_be_set() {
     assert!(near(&frames["upper"]["axes"], [[0., 1., 0.], [0., 0., -1.], [-1., 0., 0.]]));
     assert_eq!(frames["lower"]["origin"], json!([0.1, 0.0, 0.0]));
     assert_eq!(frames["upper"]["origin"], json!([0.0, 0.0, 0.05]));
-    assert_eq!(frames["lower"]["reference"], json!([0.0, 0.0, 0.3]));
+    assert_eq!(frames["lower"]["centre"], json!([0.0, 0.0, 0.3]));
     let home: Vec<f64> = found["task_coordinates"]
         .as_array()
         .unwrap()

@@ -41,6 +41,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::Leg;
 use nalgebra::Vector6;
+use reorder::Exchanges;
 use search::SplitCandidate;
 use std::cmp::Reverse;
 use thiserror::Error;
@@ -353,14 +354,17 @@ fn found_or_near<T>(
             // A parallel singularity is none of the order.
             let parallel = |s: &HomeSingularity| matches!(s, HomeSingularity::Parallel { .. });
             if !singularities.iter().all(parallel) {
-                *order = reorder::better_order(mechanism).map(Box::new);
+                *order = reorder::better_order(mechanism, Exchanges::Any).map(Box::new);
             }
             if order.is_none() {
                 *near = near_miss(mechanism).map(Box::new);
             }
         }
-        DecomposeError::NoPartialSubspaces { order, near, odd, mobility, .. } => {
-            *order = reorder::better_order(mechanism).map(Box::new);
+        DecomposeError::NoPartialSubspaces { order, near, odd, mobility, height, .. } => {
+            // In one subgroup, the order of joints is not what is missing.
+            if height.is_none() {
+                *order = reorder::better_order(mechanism, Exchanges::Neighbours).map(Box::new);
+            }
             if order.is_none() {
                 *near = near_miss(mechanism).map(Box::new);
             }

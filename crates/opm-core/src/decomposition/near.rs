@@ -113,13 +113,12 @@ pub fn nearly(mechanism: &Mechanism) -> Result<Option<NearMiss>, MobilityError> 
 /// told. Files with seven digits stay below.
 const TOLD: f64 = 1e-6;
 
-/// What joints miss of a mechanism that decomposes as it is: the subspaces of their sections, by more than rounding, or
-/// those of smaller sections. `None` for a mechanism that does not decompose: [`nearly`] is about these.
+/// What joints miss of the subspaces of their sections in a mechanism that decomposes as it is, if it is more than rounding.
+/// `None` for one that does not decompose, or nearly decomposes into smaller sections: [`nearly`] is about these.
 pub fn slightly_off(mechanism: &Mechanism) -> Option<NearMiss> {
     let found = plain(mechanism).ok()?;
-    let rounded =
-        || near_miss(mechanism, dimensions(found.first().filter(|d| d.deviation > TOLD)?));
-    near_smaller(mechanism, &found).or_else(rounded)
+    let off = found.first().filter(|d| d.deviation > TOLD)?;
+    near_miss(mechanism, dimensions(off)).filter(|_| near_smaller(mechanism, &found).is_none())
 }
 
 /// What a mechanism misses of smaller sections, if it has a section that is large or has a pitch.

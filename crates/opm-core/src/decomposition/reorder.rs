@@ -116,9 +116,18 @@ impl Change {
 /// The changes of an order, each with the number of its leg.
 type Changes = Vec<(usize, Change)>;
 
+/// Which exchanges are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Exchanges {
+    /// Those of neighbours: the mechanism moves as it is, and may be meant so.
+    Neighbours,
+    /// Those of any two joints of a leg: it does not move as its screws at home say.
+    Any,
+}
+
 /// The first order, of those with the fewest and nearest changes, in which a mechanism decomposes; `None` if there is none
 /// among those that are tried.
-pub(super) fn better_order(mechanism: &Mechanism) -> Option<Reordered> {
+pub(super) fn better_order(mechanism: &Mechanism, exchanges: Exchanges) -> Option<Reordered> {
     let frame = frame(mechanism);
     let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
     let lambda = MotionSubspace::span(frame, &screws).dimension();
@@ -126,7 +135,7 @@ pub(super) fn better_order(mechanism: &Mechanism) -> Option<Reordered> {
         mechanism.legs.iter().map(|leg| candidates(leg, &frame)).collect();
     let mut search = Search { mechanism, frame, lambda, candidates: as_it_is, visited: 0 };
     let mut tested = 0;
-    for changes in orders(mechanism) {
+    for changes in orders(mechanism, exchanges) {
         if search.visited >= MOST_VISITED || tested >= MOST_TESTED {
             return None;
         }
@@ -155,11 +164,14 @@ fn decomposed(mechanism: &Mechanism, changes: &Changes) -> Option<Decomposition>
 
 /// The orders to try: exchanges of neighbours in one leg, the same in all legs with the same joints, exchanges of any two
 /// joints likewise, and legs reversed.
-fn orders(mechanism: &Mechanism) -> Vec<Changes> {
+fn orders(mechanism: &Mechanism, exchanges: Exchanges) -> Vec<Changes> {
     let legs = &mechanism.legs;
     let longest = legs.iter().map(|leg| leg.joints.len()).max().unwrap_or(0);
     let mut orders: Vec<Changes> = vec![];
     for neighbours in [true, false] {
+        if !neighbours && exchanges == Exchanges::Neighbours {
+            break;
+        }
         let pairs: Vec<(usize, usize)> = (0..longest)
             .flat_map(|b| (0..b).map(move |a| (a, b)))
             .filter(|(a, b)| (b - a == 1) == neighbours)

@@ -179,6 +179,57 @@ fn a_joint_that_misses_the_centre_is_named() {
     assert!(error.to_string().ends_with(told), "{error}");
 }
 
+/// Every exchange of two neighbours that matters is named, and so is a leg from platform to base: what is named makes the
+/// mechanism what it was.
+#[test]
+fn a_wrong_order_of_joints_is_named() {
+    let right = PlanoSpherical::default().mechanism();
+    let mut named = 0;
+    for leg in 0..right.legs.len() {
+        for joint in 1..right.legs[leg].joints.len() {
+            let mut wrong = right.clone();
+            wrong.legs[leg].joints.swap(joint - 1, joint);
+            let Err(error) = decompose(&wrong) else { continue };
+            let [a, b] = [joint - 1, joint].map(|i| wrong.legs[leg].joints[i].name.clone());
+            let told = format!(
+                "; leg {}: exchange {a} and {b}: then it decomposes into planar and spherical",
+                right.legs[leg].name
+            );
+            assert!(error.to_string().ends_with(&told), "{error}");
+            named += 1;
+        }
+        let mut wrong = right.clone();
+        wrong.legs[leg].joints.reverse();
+        let error = decompose(&wrong).unwrap_err().to_string();
+        assert!(error.contains(&format!("leg {}: ", right.legs[leg].name)), "{error}");
+        assert!(error.ends_with(": then it decomposes into planar and spherical"), "{error}");
+    }
+    // The planar joint and the spherical one that meet in each of three legs, and the ball in the fourth.
+    assert!(named >= 4, "{named}");
+
+    // The same slip in all legs of a kind.
+    let mut wrong = right.clone();
+    wrong.legs[..3].iter_mut().for_each(|leg| leg.joints.swap(2, 3));
+    let error = decompose(&wrong).unwrap_err();
+    let (DecomposeError::SingularHome { order: Some(order), .. }
+    | DecomposeError::NoPartialSubspaces { order: Some(order), .. }) = &error
+    else {
+        panic!("{error}")
+    };
+    let exchange = |leg: &str| OrderChange::Exchange {
+        leg: leg.to_owned(),
+        joints: [format!("{leg}.4"), format!("{leg}.3")],
+    };
+    assert_eq!(order.changes, ["leg1", "leg2", "leg3"].map(exchange));
+
+    // Two of four legs from platform to base: those, and not the other two.
+    let mut wrong = right.clone();
+    wrong.legs[..2].iter_mut().for_each(|leg| leg.joints.reverse());
+    let error = decompose(&wrong).unwrap_err().to_string();
+    let told = "leg leg1: reverse its joints, which run from base to platform; leg leg2: reverse its joints";
+    assert!(error.contains(told), "{error}");
+}
+
 /// A joint along the intersection motion may belong to either section.
 #[test]
 fn every_decomposition_is_listed_and_a_passive_upper_section_is_preferred() {

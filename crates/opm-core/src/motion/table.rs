@@ -261,7 +261,11 @@ impl Header<'_> {
         for (field, cell) in cells.iter().enumerate() {
             let at = line.column(field);
             let mut heading = Heading::parse(cell);
-            let named = options.columns.map(|columns| columns.name_of(heading, cell));
+            let named = options.columns.map(|columns| columns.name_of(heading, cell)).transpose();
+            let named = named.unwrap_or_else(|problem| {
+                problems.report(number, at, format!("{}: {problem}", shown(cell)));
+                None
+            });
             if let Some(Some(name)) = named {
                 heading.name = name;
             }
@@ -364,10 +368,19 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Reads a row. Returns whether it makes sense to read on.
+    /// Reads a row. Returns whether it makes sense to read on: a table that is none of plain numbers tells the same of every
+    /// row.
     fn take(&mut self, line: Line<'_>, problems: &mut Problems) -> bool {
         let number = line.number as usize;
-        let given = line.fields().len();
+        let first = problems.list.is_empty();
+        let (given, expected) = (line.fields().len(), self.columns.len());
+        if given != expected {
+            let cells = if given == 1 { "cell" } else { "cells" };
+            let hint = hint_of_row(line, expected);
+            let problem = format!("{given} {cells}, expected {expected} as in the header{hint}");
+            problems.report(number, 1, problem);
+            return hint.is_empty() || !first;
+        }
         for (field, (cell, column)) in line.fields().zip(self.columns).enumerate() {
             if column.holds == Holds::Other {
                 continue;
@@ -375,9 +388,14 @@ impl<'a> Rows<'a> {
             let at = line.column(field);
             let cell = String::from_utf8_lossy(cell);
             let value: f64 = cell.parse().unwrap_or(f64::NAN);
-            if value.is_nan() || value.abs() > LARGEST && column.holds != Holds::Time {
-                let expected = format!("expected a finite number of at most {LARGEST:e}");
-                problems.report(number, at, format!("{}, {expected}{}", shown(&cell), hint(&cell)));
+            let time = column.holds == Holds::Time;
+            if value.is_nan() || value.abs() > LARGEST && !time {
+                let hint = hint(&cell);
+                let expected = format!("expected a finite number of at most {LARGEST:e}{hint}");
+                problems.report(number, at, format!("{}, {expected}", shown(&cell)));
+                if time && first && !hint.is_empty() {
+                    return false;
+                }
                 continue;
             }
             match column.holds {
@@ -403,22 +421,12 @@ impl<'a> Rows<'a> {
                         }
                         self.times.push(time);
                     }
-                    // The same would be said of every row.
                     Err(problem) => {
                         problems.report(number, at, problem);
-                        return false;
+                        return !first;
                     }
                 },
             }
-        }
-        let expected = self.columns.len();
-        if given != expected {
-            let cells = if given == 1 { "cell" } else { "cells" };
-            let hint = hint_of_row(line, expected);
-            let problem = format!("{given} {cells}, expected {expected} as in the header{hint}");
-            problems.report(number, 1, problem);
-            // With decimal commas, so is every other row.
-            return hint.is_empty();
         }
         true
     }

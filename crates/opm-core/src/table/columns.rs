@@ -11,8 +11,8 @@ use std::str::FromStr;
 ///
 /// let names: ColumnNames = "t=stamp,x=pos_x,y".parse()?;
 /// let name = |text| names.name_of(Heading::parse(text), text);
-/// assert_eq!(name("pos_x [mm]"), Some("x"));
-/// assert_eq!((name("y"), name("x")), (Some("y"), None));
+/// assert_eq!(name("pos_x [mm]"), Ok(Some("x")));
+/// assert_eq!((name("y"), name("x")), (Ok(Some("y")), Ok(None)));
 /// assert_eq!(names.missing(["stamp", "y"]), Some(("x", "pos_x")));
 /// # Ok::<(), String>(())
 /// ```
@@ -43,10 +43,19 @@ impl ColumnNames {
     }
 
     /// The name of a column with this heading, whose text is all of it; `None` if it is not read.
-    pub fn name_of(&self, heading: Heading<'_>, text: &str) -> Option<&str> {
+    ///
+    /// # Errors
+    /// The heading ends in parentheses that may hold a unit, which is none that is known.
+    pub fn name_of(&self, heading: Heading<'_>, text: &str) -> Result<Option<&str>, String> {
         let whole = self.0.iter().find(|(_, given)| given == text.trim());
         let found = whole.or_else(|| self.0.iter().find(|(_, given)| given == heading.name));
-        found.map(|(name, _)| &**name)
+        match found {
+            Some(_) if heading.unit.is_none() && text.trim_end().ends_with(')') => {
+                Err("expected a unit that is known in the parentheses, such as mm or deg"
+                    .to_owned())
+            }
+            found => Ok(found.map(|(name, _)| &**name)),
+        }
     }
 
     /// The first name whose column is none of these headings, and its heading.
@@ -74,12 +83,16 @@ impl FromStr for ColumnNames {
     }
 }
 
+/// What stands for a heading in a suggestion that cannot tell it.
+const UNKNOWN: &str = "HEADING";
+
 /// Which columns of a table were probably meant, each name with a heading: an advice for whoever has other names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suggestion(pub Vec<(String, String)>);
 
 impl Suggestion {
-    /// For names that a table may have, and headings that it has. A time `t` is always among them, if it may be.
+    /// For names that a table may have, and headings that it has. A time `t` is always among them, if it may be; and if no
+    /// other is, all are.
     pub fn new<'n>(wanted: impl IntoIterator<Item = &'n str> + Clone, headings: &[&str]) -> Self {
         let names: Vec<&str> = headings.iter().map(|text| Heading::parse(text).name).collect();
         let known = |name: &str| names.contains(&name);
@@ -88,9 +101,10 @@ impl Suggestion {
             names.iter().copied().filter(|name| !taken.contains(name)).collect()
         };
         let meant = |wanted: &str| free.iter().copied().find(|name| means(name, wanted));
+        let heading = |wanted: &'n str| if known(wanted) { Some(wanted) } else { meant(wanted) };
+        let blind = wanted.clone().into_iter().all(|name| name == "t" || heading(name).is_none());
         let pair = |wanted: &'n str| {
-            let heading = if known(wanted) { Some(wanted) } else { meant(wanted) };
-            let heading = heading.or((wanted == "t").then_some("HEADING"))?;
+            let heading = heading(wanted).or((wanted == "t" || blind).then_some(UNKNOWN))?;
             Some((wanted.to_owned(), heading.to_owned()))
         };
         Self(wanted.into_iter().filter_map(pair).collect())
@@ -133,11 +147,22 @@ mod tests {
             (&["time", "x (mm)", "y (mm)"][..], "t=time,x,y"),
             (&["stamp", "pos_x", "pos_y", "quality"], "t=stamp,x=pos_x,y=pos_y"),
             (&["t", "X", "y.position", "x2"], "t,x=X,y=y.position"),
-            (&["a", "b"], "t=HEADING"),
+            (&["a", "b"], "t=HEADING,x=HEADING,y=HEADING"),
+            (&["time", "b"], "t=time,x=HEADING,y=HEADING"),
         ] {
             let found = Suggestion::new(["t", "x", "y"], headings).to_string();
             assert_eq!(found, expected, "{headings:?}");
         }
+    }
+
+    /// Feet would be read as metres.
+    #[test]
+    fn a_chosen_column_in_an_unknown_unit_is_refused() {
+        let names: ColumnNames = "y=y (ft),x=x (in)".parse().unwrap();
+        let name = |text| names.name_of(Heading::parse(text), text);
+        assert!(name("y (ft)").is_err_and(|error| error.contains("a unit that is known")));
+        assert_eq!(name("x (in)"), Ok(Some("x")));
+        assert_eq!(name("z (ft)"), Ok(None));
     }
 
     #[test]

@@ -154,12 +154,16 @@ impl fmt::Display for JointMiss {
 pub(in crate::decomposition) fn number(value: f64) -> String {
     /// From here on down, zeros are hard to count.
     const SMALL: f64 = 1e-4;
-    match value {
-        0.0 => "0.00".to_owned(),
-        v if v < SMALL => format!("{v:.1e}"),
-        // A hundredth of what is below 0.095 has one digit.
-        v if v < 0.095 => format!("{v:.*}", (1.0 - v.log10().floor()) as usize),
-        v => format!("{v:.2}"),
+    if value == 0.0 || value >= 1.0 {
+        return format!("{value:.2}");
+    }
+    let two_digits = format!("{value:.1e}");
+    match two_digits.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()) {
+        Some(exponent) if value >= SMALL => {
+            let decimals = usize::try_from(1 - exponent).unwrap_or(2);
+            format!("{value:.decimals$}")
+        }
+        _ => two_digits,
     }
 }
 
