@@ -238,10 +238,9 @@ impl<'a> Answer<'a> {
         let units = self.loaded.file.units;
         let name = &self.manipulator.mechanism().name;
         let mut text = match &self.outside {
-            Some(outside) => format!(
-                "{name}: {}\nnearest pose: ",
-                outside_text(outside, self.manipulator.mechanism().platform, units)
-            ),
+            Some(outside) => {
+                format!("{name}: {}\nnearest pose: ", outside_text(outside, self.tip(), units))
+            }
             None => format!("{name} at "),
         };
         let shown = |coordinates: &[TaskCoordinate], values: &[f64]| {
@@ -331,6 +330,15 @@ impl<'a> Answer<'a> {
         table
     }
 
+    /// The platform's reference point at home, where a frame has its centre elsewhere.
+    fn tip(&self) -> Option<Point3<f64>> {
+        /// Nearer points are the same but for rounding, metres.
+        const SAME: f64 = 1e-9;
+        let (task, platform) = (self.manipulator.task(), self.manipulator.mechanism().platform);
+        let apart = |centre: Point3<f64>| (centre - platform).norm() > SAME;
+        (apart(task.lower.origin) || apart(task.upper.origin)).then_some(platform)
+    }
+
     /// A table with a row for each mode: imaginary and actuated joints.
     fn mode_table(&self) -> Table {
         let units = self.loaded.file.units;
@@ -412,8 +420,12 @@ impl Of<'_> {
     }
 }
 
-/// The distance and the direction of a transform from the motion, and what it places.
-fn outside_text(outside: &OutsideMotion, platform: Point3<f64>, units: FileUnits) -> String {
+/// The distance and the direction of a transform from the motion, and the point that it places if coordinates place another.
+fn outside_text(
+    outside: &OutsideMotion,
+    platform: Option<Point3<f64>>,
+    units: FileUnits,
+) -> String {
     let parts = outside.parts().map(|(quantity, v)| {
         let way = match quantity {
             Quantity::Length => "along",
@@ -423,13 +435,12 @@ fn outside_text(outside: &OutsideMotion, platform: Point3<f64>, units: FileUnits
         format!("{} {way} ({x}, {y}, {z})", units.show(v.norm(), quantity))
     });
     let parts: Vec<String> = parts.collect();
+    let outside =
+        format!("the transform is outside the manipulator's motion by {}", parts.join(" and "));
+    let Some(platform) = platform else { return outside };
     let reference = platform.coords / units.length.factor();
     // Adding zero turns a rounded -0 into 0.
     let [x, y, z] = <[f64; 3]>::from(reference).map(|c| (c * 1e6).round() / 1e6 + 0.0);
     let unit = units.length.symbol();
-    format!(
-        "the transform is outside the manipulator's motion by {}; it places the reference point, which is at \
-         ({x}, {y}, {z}) {unit} at home",
-        parts.join(" and ")
-    )
+    format!("{outside}; it places the reference point, which is at ({x}, {y}, {z}) {unit} at home")
 }

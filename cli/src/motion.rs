@@ -100,20 +100,10 @@ pub fn open(
             );
             return Err(Failure::flag("--ends", problem));
         }
-        (None, None) => file::read(&text, manipulator).inspect(|motion| {
-            if !names_units(&text) {
-                let found = motion.doubts(manipulator, loaded.file.units);
-                doubts = found.into_iter().map(|doubt| format!("{label}: {doubt}")).collect();
-            }
-        }),
+        (None, None) => file::read(&text, manipulator),
     };
     let motion = motion.map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
     Ok(LoadedMotion { label, file_name, path, text, motion, doubts })
-}
-
-/// Whether a motion file has the key `units`.
-fn names_units(text: &str) -> bool {
-    text.lines().any(|line| line.trim_start().starts_with("units"))
 }
 
 fn unknown(given: &Path, label: &str) -> Failure {

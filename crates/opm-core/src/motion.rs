@@ -18,10 +18,7 @@ pub mod table;
 mod time_optimal;
 mod timing;
 
-use crate::manipulator::{Manipulator, Mode};
-use crate::mechanism::file::FileUnits;
-use crate::table::Plausible;
-use crate::task::TaskCoordinate;
+use crate::manipulator::Mode;
 pub use moves::{Move, MoveProblem, Moves, MovesError};
 pub use spline::{Ends, Spline, SplineError};
 use std::f64::consts::TAU;
@@ -180,30 +177,6 @@ impl PlatformMotion {
     /// number of coordinates; otherwise it is resized.
     pub fn at(&self, t: f64, out: &mut Instant) {
         self.path.at(t, out);
-    }
-
-    /// The coordinates of a motion in SI whose values look as if they were meant in another unit, for a motion file that names
-    /// none; `units` are those of the mechanism's file. Instants between are looked at, too.
-    pub fn doubts(&self, manipulator: &Manipulator, units: FileUnits) -> Vec<String> {
-        /// The number of instants.
-        const LOOKS: u32 = 256;
-        let coordinates = manipulator.task_coordinates();
-        let mut farthest: Vec<f64> = coordinates.iter().map(|c| c.home).collect();
-        let mut instant = Instant::new(coordinates.len());
-        for look in 0..=LOOKS {
-            self.at(self.start + self.duration * f64::from(look) / f64::from(LOOKS), &mut instant);
-            for ((far, &value), c) in farthest.iter_mut().zip(&instant.pose).zip(coordinates) {
-                if (value - c.home).abs() > (*far - c.home).abs() {
-                    *far = value;
-                }
-            }
-        }
-        let size = manipulator.characteristic_length();
-        let doubt = |(c, far): (&TaskCoordinate, f64)| {
-            let plausible = Plausible::new(c.quantity, c.home, size, units);
-            (!plausible.holds(far)).then(|| plausible.motion_file(c.name, far))
-        };
-        coordinates.iter().zip(farthest).filter_map(doubt).collect()
     }
 
     /// The number of task coordinates that the motion gives.

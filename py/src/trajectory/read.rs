@@ -4,7 +4,6 @@ use crate::arguments;
 use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::rows::Rows;
-use opm_core::mechanism::file::FileUnits;
 use opm_core::motion::table::{Advice, TableOptions};
 use opm_core::motion::{Ends, Instant, Path as MotionPath, PlatformMotion, examples, file, table};
 use opm_core::table::{ColumnNames, Suggestion};
@@ -161,12 +160,7 @@ pub(super) fn parse(
             let problem = "a motion file says it itself, beside its points:";
             return Err(wrong(format!("ends: {problem} ends = {:?}", ends.name())));
         }
-        None => file::read(text, inner).map(|motion| {
-            let named = text.lines().any(|line| line.trim_start().starts_with("units"));
-            let doubts = if named { Vec::new() } else { motion.doubts(inner, FileUnits::SI) };
-            let first_line = |doubt| (1, doubt);
-            (motion, doubts.into_iter().map(first_line).collect())
-        }),
+        None => file::read(text, inner).map(|motion| (motion, Vec::new())),
     };
     motion.map_err(|errors| wrong(errors.in_file(label)))
 }

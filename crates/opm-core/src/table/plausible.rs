@@ -69,18 +69,6 @@ impl Plausible {
         }
     }
 
-    /// The note on a value in a motion file without units.
-    pub fn motion_file(&self, name: &str, value: f64) -> String {
-        let (unit, reading) = (self.meant(), self.reading(value));
-        let key = match self.quantity {
-            Quantity::Length => "length",
-            Quantity::Angle => "angle",
-        };
-        format!(
-            "{name} has no unit and {reading}; if it is in {unit}, write units = {{ {key} = \"{unit}\" }} at the top"
-        )
-    }
-
     /// The note on a value of a column without a unit.
     pub fn column(&self, name: &str, value: f64) -> String {
         let unit = self.meant();
