@@ -262,10 +262,13 @@ impl Header<'_> {
             let at = line.column(field);
             let mut heading = Heading::parse(cell);
             let named = options.columns.map(|columns| columns.name_of(heading, cell)).transpose();
-            let named = named.unwrap_or_else(|problem| {
-                problems.report(number, at, format!("{}: {problem}", shown(cell)));
-                None
-            });
+            let named = match named {
+                Ok(named) => named,
+                Err(problem) => {
+                    problems.report(number, at, format!("{}: {problem}", shown(cell)));
+                    continue;
+                }
+            };
             if let Some(Some(name)) = named {
                 heading.name = name;
             }
