@@ -147,6 +147,23 @@ def seen(explorer, path, title):
     print(f"{title}: {path}")
 
 
+def test_the_page_runs_its_own_scripts_alone(explore):
+    """A script that a mechanism file smuggled in would neither run nor reach a network; the page itself breaks no rule."""
+    explorer = explore()
+    assert explorer.wrong == []
+    explorer.page.evaluate("""() => {
+        const script = document.createElement("script");
+        script.textContent = "window.smuggled = true";
+        document.body.append(script);
+        const image = new Image();
+        image.src = "https://example.org/told.png";
+    }""")
+    explorer.page.wait_for_timeout(500)
+    assert explorer.page.evaluate("window.smuggled") is None
+    assert len(explorer.wrong) == 2 and all("Content Security Policy" in said for said in explorer.wrong)
+    explorer.wrong.clear()
+
+
 def test_slices_have_the_counts_of_the_command_line(explore, workspace):
     explorer = explore()
     explorer.fill(slice_xmin=-150, slice_xmax=150, slice_ymin=-150, slice_ymax=150, slice_nx=61, slice_ny=61)
