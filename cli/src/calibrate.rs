@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch_steps};
-use crate::target::Target;
+use crate::target::{Target, ends_in};
 use crate::unitless;
 use opm_calibrate::{BasePoint, CalibrateError, Options, calibrate};
 use opm_core::Quantity;
@@ -62,6 +62,7 @@ pub fn run(args: &CalibrateArgs, output: &Output) -> Result<(), Failure> {
         }
         Some(target) => {
             loaded.refuse_as_output(target, &[path])?;
+            ends_in(target, &["toml"])?;
             Some(Target::create(target)?)
         }
         None => None,

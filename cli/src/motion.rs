@@ -2,14 +2,13 @@
 
 use crate::failure::Failure;
 use crate::load;
+use crate::output::Shown;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
+use opm_mcap::input::Expected;
 use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
-
-/// Largest size of a table of poses: some millions of lines.
-const LONGEST: u64 = 1 << 30;
 
 /// A motion that was read.
 pub struct LoadedMotion {
@@ -39,8 +38,10 @@ pub fn open(
     ends: Option<Ends>,
     manipulator: &Manipulator,
 ) -> Result<LoadedMotion, Failure> {
-    let label = given.display().to_string();
-    let source = match load::text(given, LONGEST, "motion file")? {
+    let label = given.shown();
+    let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let expected = if table { Expected::POSES } else { Expected::MOTION };
+    let source = match load::text(given, expected)? {
         Some(text) => {
             let name = given.file_name().map_or_else(|| label.clone(), |n| n.display().to_string());
             (text, name, Some(given.to_owned()))
@@ -51,8 +52,7 @@ pub fn open(
         }
     };
     let (text, file_name, path) = source;
-    let stem = given.file_stem().map_or_else(|| label.clone(), |stem| stem.display().to_string());
-    let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let stem = given.file_stem().map_or_else(|| label.clone(), |stem| Path::new(stem).shown());
     let motion = match ends {
         _ if table => table::read(&text, &stem, manipulator, ends.unwrap_or_default()),
         Some(ends) => {

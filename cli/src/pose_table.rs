@@ -3,6 +3,7 @@
 use crate::args::{Format, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
+use crate::output::Shown;
 use crate::pose::{Checks, find};
 use crate::stream::{Columns, MODE, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
@@ -60,7 +61,7 @@ impl Totals {
     ) -> Result<(), Failure> {
         output.note(format_args!(
             "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
-            streams.output.unwrap_or(streams.input).display(),
+            streams.output.unwrap_or(streams.input).shown(),
             count(self.poses),
             count(self.reachable),
             count(self.within_limits),

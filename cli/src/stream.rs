@@ -2,9 +2,10 @@
 
 use crate::args::{Format, Output};
 use crate::failure::Failure;
-use crate::load::{DASH, Loaded, STANDARD_INPUT};
-use crate::output::is_stdout;
+use crate::load::{self, DASH, Loaded};
+use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
+use crate::target::ends_in;
 use crate::text::plural;
 use crate::unitless::Plausible;
 use opm_analysis::Index;
@@ -13,10 +14,10 @@ use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
 use opm_mcap::PartialFile;
 use opm_mcap::csv::{Line, Lines, Place, Rows};
+use opm_mcap::input::Expected;
 use opm_study::effort_names;
 use opm_workspace::Progress;
 use std::fmt::Display;
-use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -159,30 +160,25 @@ pub fn run<T>(
         let problem = "the CSV takes standard output; give it a file with --output";
         return Err(Failure::flag("--format json", problem));
     }
-    let (label, reader): (_, Box<dyn Read>) = if input == Path::new(DASH) {
-        if loaded.is_standard_input() {
-            let problem = "standard input is the mechanism already, expected a file";
-            return Err(Failure::flag("--poses", problem));
-        }
-        (STANDARD_INPUT.to_owned(), Box::new(io::stdin()))
-    } else {
-        let label = input.display().to_string();
-        let file = File::open(input).map_err(|error| Failure::at(&label, error))?;
-        (label, Box::new(file))
-    };
+    if input == Path::new(DASH) && loaded.is_standard_input() {
+        let problem = "standard input is the mechanism already, expected a file";
+        return Err(Failure::flag("--poses", problem));
+    }
+    let (label, reader) = load::table(input, Expected::ROWS)?;
     let progress = interruptible()?;
     let rows = AtomicU64::new(0);
     let source = Source { label: &label, reader, output, number: &rows, progress: &progress };
     let Some(path) = target else {
         // There is no progress bar, since the rows may go to the terminal.
-        return match solve(source.to(&mut io::stdout())) {
+        return match solve(source.to(&mut stdout())) {
             Ok(_) => Ok(None),
             Err(Stop::Write(error)) => Err(Failure::stdout(error)),
             Err(Stop::Failure(failure)) => Err(failure),
         };
     };
     loaded.refuse_as_output(path, &[input])?;
-    let place = path.display();
+    ends_in(path, &["csv"])?;
+    let place = path.shown();
     let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, error))?;
     let work = || solve(source.to(&mut file));
     let summary =

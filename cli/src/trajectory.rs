@@ -9,7 +9,7 @@ use crate::interference;
 use crate::layout;
 use crate::load;
 use crate::motion::{self, LoadedMotion};
-use crate::output::is_stdout;
+use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
 use crate::text::count;
 use opm_core::manipulator::Manipulator;
@@ -49,10 +49,7 @@ impl<'a> Target<'a> {
             Some(path) => {
                 let problem =
                     "expected a name that ends in .mcap (a recording), .csv or .npy (NumPy)";
-                return Err(Failure::flag(
-                    "--output",
-                    format_args!("{}, {problem}", path.display()),
-                ));
+                return Err(Failure::flag("--output", format_args!("{}, {problem}", path.shown())));
             }
         };
         if let Self::Recording(_) = target {
@@ -110,7 +107,7 @@ fn motion(
             TimingError::NoLimits { .. } => &args.mechanism.file,
             _ => &args.motion,
         };
-        Failure::work(format!("{}: {error} (--time-optimal)", of.display()))
+        Failure::work(format!("{}: {error} (--time-optimal)", of.shown()))
     })?;
     Ok((motion, Some(given_duration)))
 }
@@ -153,6 +150,8 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     if let Some(path) = target.path() {
         loaded.refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;
     }
+    // Before there is a file that nobody would be told of.
+    let progress = interruptible()?;
     let recorder = match target {
         Target::Recording(path) => {
             let files = [loaded.attachment(), motion.attachment()];
@@ -165,7 +164,6 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         accelerations: args.accelerations,
         units: (args.units == TableUnits::File).then_some(loaded.file.units),
     };
-    let progress = interruptible()?;
     let samples = trajectory.samples();
     if samples > MANY {
         let (rate, samples) = (request.rate, count(samples));
@@ -182,7 +180,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
             write_motion_table(request, trajectory, options, path, go_on)
         }
         (None, Target::Printed) => {
-            let mut stdout = io::stdout();
+            let mut stdout = stdout();
             let printed = ("standard output", &mut stdout as &mut dyn io::Write);
             write_motion_csv(request, trajectory, options, printed, go_on)
         }
@@ -197,7 +195,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         StudyError::Cancelled => {
             let (done, samples) = (count(done.load(Ordering::Relaxed)), count(samples));
             let kept = target.path().map_or_else(String::new, |path| {
-                format!("; what was recorded is in {}", partial(path).display())
+                format!("; what was recorded is in {}", partial(path).shown())
             });
             let message = format!("interrupted; {done} of {samples} samples were followed{kept}");
             Failure::interrupted(message)
@@ -210,7 +208,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         other => other.into(),
     })?;
     if let Some(path) = target.path() {
-        output.note(format_args!("{}: {} samples", path.display(), count(summary.samples)));
+        output.note(format_args!("{}: {} samples", path.shown(), count(summary.samples)));
         layout::advise(path, output);
     }
     let violations = summary.violation_count;

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::{is_stdout, print_with};
 use crate::progress::{interruptible, watch_steps};
-use crate::target::Target;
+use crate::target::{Target, ends_in};
 use crate::text::{Table, plural, short};
 use opm_calibrate::{BasePoint, Column, Options, Plan, candidates, plan};
 use opm_core::Quantity;
@@ -32,6 +32,7 @@ pub fn run(
     let target = match file {
         Some(path) => {
             loaded.refuse_as_output(path, &args.poses.iter().map(|p| &**p).collect::<Vec<_>>())?;
+            ends_in(path, &["csv"])?;
             Some(Target::create(path)?)
         }
         None => None,

@@ -1,14 +1,13 @@
 //! Tables of measurements.
 
 use crate::failure::Failure;
-use crate::load::{DASH, STANDARD_INPUT};
+use crate::load;
 use crate::stream::{at, other_columns};
 use opm_calibrate::{BasePoint, Column, Measurements};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
 use opm_mcap::csv::{self, Lines};
-use std::fs::File;
-use std::io::{self, Read};
+use opm_mcap::input::{Expected, bounded};
 use std::path::Path;
 
 /// A table, and where its rows stand in the file.
@@ -25,15 +24,9 @@ pub fn read(
     manipulator: &Manipulator,
     points: &[BasePoint],
 ) -> Result<Table, Failure> {
-    let (label, source): (String, Box<dyn Read>) = if path == Path::new(DASH) {
-        (STANDARD_INPUT.to_owned(), Box::new(io::stdin().lock()))
-    } else {
-        let label = path.display().to_string();
-        let file = File::open(path).map_err(|error| Failure::at(&label, error))?;
-        (label, Box::new(file))
-    };
+    let (label, source) = load::table(path, Expected::MEASUREMENTS)?;
     let failed = |error| Failure::at(&label, error);
-    let mut input = Lines::new(source);
+    let mut input = Lines::new(Box::new(bounded(source, Expected::MEASUREMENTS)));
     // What other commands write beside poses and joints is not measured.
     let others = other_columns(manipulator);
     let mut columns = Vec::new();

@@ -3,6 +3,7 @@
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::output::Shown;
 use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
 use crate::unitless::Plausible;
@@ -66,7 +67,7 @@ pub fn run(
     };
     output.note(format_args!(
         "{}: {} rows, {} in reach, {} within limits{assemblies}; {} s, {} rows/s",
-        args.output.as_deref().unwrap_or(input).display(),
+        args.output.as_deref().unwrap_or(input).shown(),
         count(summary.rows),
         count(summary.reachable),
         count(summary.within_limits),
