@@ -177,12 +177,14 @@ class Explorer:
         Parameters
         ----------
         path : str or os.PathLike
-            Name of the file, which browsers want to end in ``.html``.
+            Name of the file, which ends in ``.html``.
 
         Raises
         ------
         OSError
             The file cannot be written.
+        OpmError
+            Its name does not end in ``.html``.
         """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...

@@ -5,6 +5,7 @@ use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::rows::Rows;
 use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
+use opm_mcap::input::Expected;
 use pyo3::prelude::*;
 use std::path::Path;
 
@@ -67,7 +68,9 @@ pub(super) fn read(
     let (text, name) = match examples::find(&label).filter(|_| !path.exists()) {
         Some(example) => (example.text.to_owned(), format!("{}.toml", example.name)),
         None => {
-            let text = arguments::text(motion.py(), &path, "a motion file", "")?;
+            let table = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+            let expected = if table { Expected::POSES } else { Expected::MOTION };
+            let text = arguments::text(motion.py(), &path, expected, "")?;
             (text, path.file_name().map_or(label.clone(), |n| n.display().to_string()))
         }
     };
