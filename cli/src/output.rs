@@ -3,7 +3,7 @@
 
 use crate::args::{Format, Output};
 use crate::failure::{Failure, Kind, talk};
-use opm_core::text::{is_unseen, visible, visible_lines};
+use opm_core::text::{is_unseen, visible};
 use serde::Serialize;
 use serde_json::ser::{CharEscape, CompactFormatter, Formatter, Serializer};
 use serde_json::{Map, Value};
@@ -25,7 +25,7 @@ impl Output {
                 json.serialize(&mut Serializer::with_formatter(&mut *out, Seen))?;
                 writeln!(out)
             }
-            Format::Text => out.write_all(visible_lines(&text.to_string()).as_bytes()),
+            Format::Text => out.write_all(escaped(&text.to_string()).as_bytes()),
         };
         match self.silent {
             true => write(&mut io::sink()).map_err(Failure::stdout),
@@ -140,7 +140,7 @@ impl Write for Stdout {
     }
 }
 
-/// A part of a file or a table for a terminal: lines and tabs stay.
+/// Text for people, or a part of a file or a table for a terminal: lines and tabs stay.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut characters = text.chars().peekable();

@@ -144,7 +144,7 @@ pub struct AccuracyArgs {
     /// Number of threads of --grid, --over and --samples, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
-    /// Output file for the CSV of --poses or --grid; standard output if it is -
+    /// Output file (.csv) for the table of --poses or --grid; standard output if it is -
     #[arg(
         short,
         long,

@@ -61,7 +61,7 @@ pub struct AnalyzeArgs {
     /// Analyze for each of these values of a number that --set takes, and print a table
     #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "link_stiffness"])]
     pub vary: Option<GridAxis>,
-    /// Output file for the CSV; standard output if it is - or not given
+    /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(
         short,
         long,

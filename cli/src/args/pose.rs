@@ -66,7 +66,7 @@ pub struct IkArgs {
     /// Solve for each of these values of a number that --set takes, and print a table
     #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "transform", "all_modes"])]
     pub vary: Option<GridAxis>,
-    /// Output file for the CSV; standard output if it is - or not given
+    /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(
         short,
         long,
@@ -162,7 +162,7 @@ pub struct FkArgs {
     /// Every assembly of each row of --poses, not just the one near the row before
     #[arg(long, requires = "poses", conflicts_with = "joints")]
     pub all: bool,
-    /// Output file for the CSV; standard output if it is - or not given
+    /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(
         short,
         long,
