@@ -2,6 +2,7 @@
 // sources give the same bytes.
 
 import { build } from "esbuild";
+import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname } from "node:path";
 import { gzipSync } from "node:zlib";
@@ -44,16 +45,31 @@ const licences = [
 const packed = (content) => gzipSync(content, { level: 9 }).toString("base64");
 // Nothing that is put into a script may look like the end of one.
 const harmless = (content) => content.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
+const looks = await style("src/style.css");
+const main = await script("src/main.ts");
+const start = harmless(await script("src/start.ts"));
+const hash = (content) => `'sha256-${createHash("sha256").update(content).digest("base64")}'`;
+// Whatever a mechanism file holds: the page runs its own scripts and styles alone, and asks no network for anything.
+const policy = [
+  "default-src 'none'",
+  `script-src ${hash(start)} ${hash(main)} 'wasm-unsafe-eval'`,
+  "worker-src blob:",
+  `style-src ${hash(looks)}`,
+  "img-src data: blob:",
+  "base-uri 'none'",
+  "form-action 'none'",
+].join("; ");
 const parts = {
-  "/*STYLE*/": await style("src/style.css"),
+  POLICY: policy,
+  "/*STYLE*/": looks,
   LIBRARY: packed(readFileSync(library)),
   WORKER: harmless(await script("src/worker.ts")),
   LICENCES: harmless(licences),
-  SCRIPT: packed(await script("src/main.ts")),
-  START: harmless(await script("src/start.ts")),
+  SCRIPT: packed(main),
+  START: start,
 };
 const template = text("src/index.html").replaceAll("VERSION", version);
-const page = template.replace(/\/\*STYLE\*\/|\b(?:LIBRARY|WORKER|LICENCES|SCRIPT|START)\b/g, (name) => parts[name]);
+const page = template.replace(/\/\*STYLE\*\/|\b(?:POLICY|LIBRARY|WORKER|LICENCES|SCRIPT|START)\b/g, (name) => parts[name]);
 if (Buffer.byteLength(page) > MOST) throw new Error(`the page has ${Buffer.byteLength(page)} bytes, expected at most ${MOST}`);
 
 mkdirSync(dirname(target), { recursive: true });

@@ -15,6 +15,7 @@ mod path;
 mod pose;
 mod recording;
 mod setup;
+mod table;
 mod workspace;
 
 pub use accuracy::AccuracyArgs;
@@ -32,6 +33,7 @@ pub use path::PathArgs;
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, LayoutArgs, PlotArgs, RecoverArgs};
 pub use setup::SetupArgs;
+pub use table::MotionTableArgs;
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
 use crate::change::Change;

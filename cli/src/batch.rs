@@ -36,7 +36,8 @@ pub fn run(
     modes: Modes,
 ) -> Result<(), Failure> {
     let input = args.poses.as_deref().unwrap_or(Path::new("-"));
-    let streams = Streams { input, output: args.output.as_deref() };
+    let (target, columns) = (args.output.as_deref(), args.columns.as_ref());
+    let streams = Streams { input, output: target, columns };
     let wanted = RowContent { modes, all_joints: args.all_joints };
     let solve = |stream: Stream<'_>| solve(stream, (loaded, manipulator), wanted);
     let Some(totals) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::output::is_stdout;
 use crate::progress::{interruptible, watch_steps};
-use crate::target::Target;
+use crate::target::{Target, ends_in};
 use crate::unitless;
 use opm_calibrate::{BasePoint, CalibrateError, Options, calibrate};
 use opm_core::Quantity;
@@ -54,7 +54,7 @@ pub fn run(args: &CalibrateArgs, output: &Output) -> Result<(), Failure> {
         return planned::run(args, output, (&loaded, &manipulator), &points, (&options, count));
     }
     let Some(path) = &args.measurements else { return Ok(()) };
-    let table = table::read(path, &manipulator, &points)?;
+    let table = table::read(path, (&loaded, &manipulator), &points, output)?;
     let target = match &args.output {
         Some(target) if is_stdout(target) => {
             let problem = "the report goes to standard output, expected a file";
@@ -62,6 +62,7 @@ pub fn run(args: &CalibrateArgs, output: &Output) -> Result<(), Failure> {
         }
         Some(target) => {
             loaded.refuse_as_output(target, &[path])?;
+            ends_in(target, &["toml"])?;
             Some(Target::create(target)?)
         }
         None => None,

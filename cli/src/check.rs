@@ -13,6 +13,9 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// A misfit up to this is rounding of exact numbers.
+const EXACT: f64 = 1e-12;
+
 pub fn run(args: &CheckArgs, output: &Output) -> Result<(), Failure> {
     let loaded = load::open(&args.mechanism, output)?;
     let progress = interruptible()?;
@@ -95,6 +98,7 @@ fn as_json(certificate: &Certificate) -> Value {
         "samples": certificate.options.samples,
         "seed": certificate.options.seed,
         "holds": certificate.holds(),
+        "misfit": certificate.misfit,
         "comparisons": certificate.comparisons.iter().map(comparison).collect::<Vec<_>>(),
     })
 }
@@ -129,6 +133,14 @@ fn text(certificate: &Certificate) -> String {
             let _ = write!(text, "; left out: {because}");
         }
         text.push('\n');
+    }
+    if certificate.misfit > EXACT {
+        let _ = writeln!(
+            text,
+            "the joints miss their subspaces by {:.1e} (radians, or shares of the mechanism's size): it holds within \
+             multiples of that",
+            certificate.misfit
+        );
     }
     text += "differences in radians, and lengths over the mechanism's size; derivatives over the largest one\n";
     text

@@ -2,7 +2,7 @@
 
 use crate::args::{Args, Completion, CompletionsArgs, Output};
 use crate::failure::Failure;
-use crate::output::print_with;
+use crate::output::{Shown, print_with};
 use clap::CommandFactory;
 use clap_complete::Shell;
 use clap_mangen::Man;
@@ -34,7 +34,7 @@ fn manual(directory: Option<&Path>, output: &Output) -> Result<(), Failure> {
     };
     let written = fs::create_dir_all(directory)
         .and_then(|()| clap_mangen::generate_to(Args::command(), directory));
-    written.map_err(|error| Failure::at(directory.display(), error))?;
-    output.note(format_args!("{}: manual pages of opm and its commands", directory.display()));
+    written.map_err(|error| Failure::at(directory.shown(), error))?;
+    output.note(format_args!("{}: manual pages of opm and its commands", directory.shown()));
     Ok(())
 }

@@ -4,7 +4,7 @@ use crate::args::{ConvertArgs, Output};
 use crate::failure::Failure;
 use crate::load;
 use crate::output::{is_stdout, print_with};
-use crate::target::Target;
+use crate::target::{Target, ends_in};
 use opm_core::mechanism::file::{self, Digits};
 use std::io::Write;
 
@@ -18,5 +18,6 @@ pub fn run(args: &ConvertArgs, output: &Output) -> Result<(), Failure> {
         return print_with(|out| out.write_all(text.as_bytes()));
     };
     loaded.refuse_as_output(path, &[])?;
+    ends_in(path, &["toml"])?;
     Target::create(path)?.commit(text.as_bytes())
 }

@@ -12,12 +12,14 @@ use crate::text::{self, Table, chain, plural, short};
 use answer::Answer;
 use nalgebra::{Point3, Vector3};
 use opm_core::Quantity;
-use opm_core::decomposition::mobility::{HomeSingularity, Mobility};
+use opm_core::decomposition::mobility::Mobility;
 use opm_core::decomposition::{
-    Applies, Decomposition, Freedom, JointMiss, MAX_DECOMPOSITIONS, check_actuators, survey,
+    Applies, Decomposition, Freedom, JointMiss, MAX_DECOMPOSITIONS, check_actuators, slightly_off,
+    survey,
 };
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{CompileError, Manipulator};
+use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::leg::Leg;
 use opm_core::task::{CoordinateKind, Subspace, Task, TaskCoordinate};
@@ -65,20 +67,20 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
     }
     let mut warnings = actuator_warnings(&found.mobility);
     let deviation = ways[0].decomposition.deviation;
-    if deviation > ROUNDING {
-        warnings.push(format!(
-            "the joints are off their subspaces by {} (the sine of an angle, lengths over the \
-             mechanism's size); are its numbers rounded? --tolerance LENGTH corrects them",
-            short(deviation)
-        ));
-    }
-    if let Some(near) = &found.near {
-        warnings.push(format!(
+    match (&found.near, slightly_off(mechanism)) {
+        (Some(near), _) => warnings.push(format!(
             "it nearly decomposes into smaller sections, {} and {}: {near}{}",
             near.lower.name(),
             near.upper.name(),
             loaded.tolerance_hint(near)
-        ));
+        )),
+        (None, Some(near)) => warnings.push(loaded.misses(&near)),
+        (None, None) if deviation > ROUNDING => warnings.push(format!(
+            "the joints are off their subspaces by {} (the sine of an angle, lengths over the \
+             mechanism's size); are its numbers rounded? --tolerance LENGTH corrects them",
+            short(deviation)
+        )),
+        (None, None) => {}
     }
     let report = Report { loaded: &loaded, mobility: &found.mobility, ways: &ways, manipulator };
     output.print(&report.json(&warnings), report.text())?;
@@ -131,10 +133,9 @@ fn actuator_warnings(report: &Mobility) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Err(error) = check_actuators(report) {
         warnings.push(error.to_string());
+        return warnings;
     }
-    let parallel = report.singular.iter().filter(|s| matches!(s, HomeSingularity::Parallel { .. }));
-    warnings
-        .extend(parallel.map(|singularity| format!("the home pose is singular: {singularity}")));
+    warnings.extend(report.parallel_home());
     if !report.redundant.is_empty() {
         warnings.push(format!(
             "the actuators are redundant: {} actuated freedoms for {} that they control; any one of \
@@ -389,6 +390,7 @@ impl Report<'_> {
                 line(&constraints);
             }
             line(&frame_table(task, way.is_one_subspace(), units));
+            line(&reference_point(mechanism, task, units));
             let has = |kind| task.coordinates.iter().any(|c| c.kind() == kind);
             if has(CoordinateKind::Zeta) {
                 line(&"Euler angles: R = Rz(zeta) Ry(xi) Rz(psi)\n");
@@ -439,7 +441,7 @@ fn actuation(loaded: &Loaded, report: &Mobility) -> String {
     let names: Vec<&str> = joints.map(|joint| &*joint.name).collect();
     let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
     let mut text = format!("actuated: {names}; ");
-    if report.redundant.is_empty() {
+    if report.redundant.is_empty() || check_actuators(report).is_err() {
         let _ = write!(text, "{} for mobility N = {}", report.actuators, report.mobility);
     } else {
         let _ = write!(
@@ -451,7 +453,8 @@ fn actuation(loaded: &Loaded, report: &Mobility) -> String {
         );
     }
     if report.idle > 0 {
-        let _ = write!(text, "; {} of N do not move the platform", report.idle);
+        let verb = if report.idle == 1 { "does" } else { "do" };
+        let _ = write!(text, "; {} of N {verb} not move the platform", report.idle);
     }
     text
 }
@@ -510,7 +513,7 @@ fn frame_json(frame: &Subspace) -> Value {
     let axis = |number: usize| triple_json(&frame.axes.column(number).into_owned());
     json!({
         "origin": triple_json(&frame.measured_from.coords),
-        "reference": triple_json(&frame.origin.coords),
+        "centre": triple_json(&frame.origin.coords),
         "axes": [axis(0), axis(1), axis(2)],
     })
 }
@@ -518,17 +521,32 @@ fn frame_json(frame: &Subspace) -> Value {
 /// The frames of the sections, in the file's units.
 fn frame_table(task: &Task, one_subspace: bool, units: FileUnits) -> Table {
     let unit = units.length.symbol();
-    let places = [format!("origin, {unit}"), format!("reference point, {unit}")];
+    let places = [format!("origin, {unit}"), format!("centre, {unit}")];
     let mut table =
         Table::new(["frame", &places[0], &places[1], "first axis", "second axis", "third axis"]);
     let both = [("lower", &task.lower), ("upper", &task.upper)];
     for (name, frame) in both.into_iter().take(if one_subspace { 1 } else { 2 }) {
         let place = |point: Point3<f64>| triple(&point.coords, units.length.factor());
         let axis = |number: usize| triple(&frame.axes.column(number).into_owned(), 1.0);
-        let (origin, reference) = (place(frame.measured_from), place(frame.origin));
-        table.row([name, &origin, &reference, &axis(0), &axis(1), &axis(2)]);
+        let (origin, centre) = (place(frame.measured_from), place(frame.origin));
+        table.row([name, &origin, &centre, &axis(0), &axis(1), &axis(2)]);
     }
     table
+}
+
+/// Where the platform's reference point is at home, and what it is where a frame has another centre.
+fn reference_point(mechanism: &Mechanism, task: &Task, units: FileUnits) -> String {
+    /// Nearer points are the same but for rounding, metres.
+    const SAME: f64 = 1e-9;
+    let platform = mechanism.platform;
+    let unit = units.length;
+    let place = triple(&platform.coords, unit.factor());
+    let apart = |frame: &Subspace| (frame.origin - platform).norm() > SAME;
+    let more = match apart(&task.lower) || apart(&task.upper) {
+        true => "; --transform and velocities are about it, coordinates about the centres",
+        false => "",
+    };
+    format!("reference point of the platform at home: {place} {}{more}\n", unit.symbol())
 }
 
 /// A vector in a unit, to six decimals.

@@ -7,6 +7,7 @@ mod report;
 use crate::args::{DesignArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::output::Shown;
 use crate::plot::ending::{EXPECTED, Ending};
 use crate::progress::{interruptible, watch_steps};
 use crate::target::Target;
@@ -14,24 +15,23 @@ use crate::workspace::threads;
 use files::Files;
 use opm_core::mechanism::file::MechanismFile;
 use opm_design::{DesignError, Draft, Problem, Variables, Watch, design};
+use opm_mcap::input::Expected;
 use report::Report;
 use std::path::{Path, PathBuf};
 
-/// Largest size of a file of a problem. A larger one is something else.
-const LONGEST: u64 = 1 << 20;
-
 pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
-    let label = args.problem.display().to_string();
-    let given = load::text(&args.problem, LONGEST, "problem of design")?;
-    let text = given.ok_or_else(|| Failure::work(format!("{label}: No such file or directory")))?;
+    let label = args.problem.shown();
+    let text = load::existing(&args.problem, Expected::DESIGN)?;
     let (problem, loaded) = read(&text, args)?;
+    loaded.warn_of_home(output);
     let picture = match &args.picture {
         None => None,
         Some(path) => {
             let Some(ending) = Ending::of(path) else {
-                let problem = format!("{}: {EXPECTED}", path.display());
+                let problem = format!("{}: {EXPECTED}", path.shown());
                 return Err(Failure::flag("--picture", problem));
             };
+            loaded.refuse_as_output(path, &[&args.problem])?;
             Some((ending, Target::create(path)?))
         }
     };
@@ -48,12 +48,12 @@ pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
         DesignError::Cancelled => {
             let evaluated = watch.evaluated();
             let kept = files.kept().map_or_else(String::new, |path| {
-                format!("; {} has them, and --resume goes on with it", path.display())
+                format!("; {} has them, and --resume goes on with it", path.shown())
             });
             Failure::interrupted(format!("interrupted after {evaluated} designs{kept}"))
         }
         DesignError::Log(error) => {
-            Failure::at(files.kept().unwrap_or(Path::new("log")).display(), error)
+            Failure::at(files.kept().unwrap_or(Path::new("log")).shown(), error)
         }
         error => Failure::at(&label, error),
     })?;
@@ -66,7 +66,7 @@ pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
     let names = files.commit(&found, args.designs)?;
     if let Some((ending, target)) = picture {
         let drawing = picture::draw(&problem, &loaded, &found, output)?;
-        let path = args.picture.as_deref().unwrap_or(Path::new("")).display();
+        let path = args.picture.as_deref().unwrap_or(Path::new("")).shown();
         let bytes = ending.bytes(&drawing).map_err(|error| Failure::at(path, error))?;
         target.commit(&bytes)?;
     }
@@ -77,7 +77,7 @@ pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
 
 /// The problem, and the mechanism that it names: a file beside it, or a shipped one.
 fn read(text: &str, args: &DesignArgs) -> Result<(Problem, Loaded), Failure> {
-    let label = args.problem.display().to_string();
+    let label = args.problem.shown();
     let wrong =
         |errors: opm_design::ProblemErrors| Failure::because(errors.in_file(&label), errors);
     let draft = Draft::read(text).map_err(wrong)?;

@@ -3,14 +3,14 @@
 use crate::args::{ExploreArgs, Output};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{is_stdout, print_with};
-use crate::target::Target;
+use crate::output::{Shown, is_stdout, print_with};
+use crate::target::{Target, ends_in};
 use std::io::Write;
-use std::path::Path;
 
 pub fn run(args: &ExploreArgs, output: &Output) -> Result<(), Failure> {
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
-    path.map_or(Ok(()), ends_in_html)?;
+    // Browsers take the kind of a file from its ending.
+    path.map_or(Ok(()), |path| ends_in(path, &["html", "htm"]))?;
     let loaded = load::open(&args.mechanism, output)?;
     if let Some(path) = path {
         loaded.refuse_as_output(path, &[])?;
@@ -24,15 +24,6 @@ pub fn run(args: &ExploreArgs, output: &Output) -> Result<(), Failure> {
         return print_with(|out| out.write_all(page.as_bytes()));
     };
     target.commit(page.as_bytes())?;
-    output.note(format_args!("{}: open it in a browser", path.display()));
+    output.note(format_args!("{}: open it in a browser", path.shown()));
     Ok(())
-}
-
-/// Browsers take the kind of a file from its ending.
-fn ends_in_html(path: &Path) -> Result<(), Failure> {
-    if path.extension().is_some_and(|ending| ending == "html" || ending == "htm") {
-        return Ok(());
-    }
-    let problem = format!("{}: expected a name that ends in .html", path.display());
-    Err(Failure::flag("--output", problem))
 }

@@ -3,9 +3,9 @@
 use crate::args::{ExportArgs, ExportFormat, MjcfArgs, Output, UrdfArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::motion::{self, LoadedMotion};
-use crate::output::{is_stdout, print_with};
-use crate::target::Target;
+use crate::motion::{self, LoadedMotion, Reading};
+use crate::output::{Shown, is_stdout, print_with};
+use crate::target::{Target, ends_in};
 use crate::text::plural;
 use opm_core::skeleton::{Density, OutOfRange};
 use opm_export::{Keyframes, MjcfOptions, MjcfReference, Source, mjcf, urdf};
@@ -26,9 +26,12 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
         .map_err(out_of_range)?;
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
     // MuJoCo takes the format of a file from its ending.
-    path.map_or(Ok(()), |path| ends_in(path, "xml"))?;
+    path.map_or(Ok(()), |path| ends_in(path, &["xml"]))?;
     let loaded = load::open(&args.mechanism, output)?;
     let Some(motion) = &args.trajectory else {
+        if let Some(flag) = args.table.given() {
+            return Err(Failure::flag(flag, "nothing uses it; --trajectory does"));
+        }
         let keyframes = Keyframes::of(&loaded.file.mechanism);
         note_source(&loaded, &keyframes, output);
         let note = plural(keyframes.reached().len() as u64, "keyframe");
@@ -40,7 +43,9 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
         return Err(Failure::flag("--trajectory", problem));
     };
     let manipulator = loaded.compile()?;
-    let motion = motion::open(motion, None, &manipulator)?;
+    let reading = Reading { ends: None, table: &args.table };
+    let motion = motion::open(motion, &reading, (&loaded, &manipulator))?;
+    motion.note_doubts(output);
     let request = MotionRequest::new(&manipulator, &motion.motion, &motion.label);
     let trajectory = request.rate(options.time_step().recip()).trajectory()?;
     let reference = MjcfReference::new(&manipulator, trajectory)
@@ -58,7 +63,7 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
 fn run_urdf(args: &UrdfArgs, output: &Output) -> Result<(), Failure> {
     let density = Density::new(args.density).map_err(out_of_range)?;
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
-    path.map_or(Ok(()), |path| ends_in(path, "urdf"))?;
+    path.map_or(Ok(()), |path| ends_in(path, &["urdf"]))?;
     let loaded = load::open(&args.mechanism, output)?;
     let model = urdf(&loaded.file.mechanism, density);
     let legs = loaded.file.mechanism.legs.len() as u64;
@@ -98,7 +103,7 @@ impl Files<'_> {
         {
             let problem = format!(
                 "{}, which goes beside it, is there already: expected another name",
-                beside.display()
+                beside.shown()
             );
             return Err(Failure::flag("--output", problem));
         }
@@ -106,7 +111,7 @@ impl Files<'_> {
             files.iter().map(|(path, _)| Target::create(path)).collect();
         let texts = files.iter().map(|(_, text)| text.as_bytes());
         Target::commit_all(targets?.into_iter().zip(texts))?;
-        let names: Vec<_> = files.iter().map(|(path, _)| path.display().to_string()).collect();
+        let names: Vec<_> = files.iter().map(|(path, _)| path.shown()).collect();
         output.note(format_args!("{}: {note}", names.join(", ")));
         Ok(())
     }
@@ -132,13 +137,4 @@ fn motion_path(motion: &LoadedMotion) -> impl Iterator<Item = &Path> {
 
 fn out_of_range(wrong: OutOfRange) -> Failure {
     Failure::flag(&format!("--{}", wrong.option.replace('_', "-")), wrong)
-}
-
-/// Checks the ending of a name.
-fn ends_in(path: &Path, ending: &str) -> Result<(), Failure> {
-    if path.extension().is_some_and(|found| found == ending) {
-        return Ok(());
-    }
-    let problem = format!("{}: expected a name that ends in .{ending}", path.display());
-    Err(Failure::flag("--output", problem))
 }

@@ -1,5 +1,6 @@
 //! Failures of commands, with their exit status.
 
+use crate::output::Shown;
 use opm_mcap::RecordError;
 use opm_study::recording::partial;
 use opm_study::text::located;
@@ -139,7 +140,7 @@ pub fn talk(kind: Kind, message: &str) {
         Kind::Error => "error",
     };
     let mut stderr = io::stderr().lock();
-    for line in message.lines() {
+    for line in opm_core::text::message(message).lines() {
         let _ = match line.starts_with(' ') {
             true => writeln!(stderr, "opm: {line}"),
             false => writeln!(stderr, "opm: {kind}: {line}"),
@@ -163,7 +164,7 @@ impl From<StudyError> for Failure {
                 if partial(Path::new(place)).is_file() =>
             {
                 let kept = partial(Path::new(place));
-                let text = format!("{error}; what was written so far is in {}", kept.display());
+                let text = format!("{error}; what was written so far is in {}", kept.shown());
                 Self::because(text, error)
             }
             _ => Self::because(error.to_string(), error),

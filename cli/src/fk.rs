@@ -1,6 +1,7 @@
 //! `opm fk`: forward kinematics.
 
 mod aspects;
+mod least;
 mod not_found;
 mod poses;
 mod table;
@@ -12,7 +13,7 @@ use crate::output::named;
 use crate::pose::Pose;
 use crate::text::{self, Table, reason};
 use crate::unitless;
-use opm_core::forward::{Assemblies, Assembly, NearError, Unmet};
+use opm_core::forward::{Assemblies, Assembly, LeastChange, NearError, Unmet};
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, Section};
 use opm_core::mechanism::file::FileUnits;
@@ -51,11 +52,16 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
         true => Some(aspects::of(args, &found.list, &loaded, output)?),
         false => None,
     };
+    let least = match found.unmet.is_empty() {
+        true => None,
+        false => manipulator.least_change(&actuated).ok().flatten(),
+    };
     let answer = Answer {
         loaded: &loaded,
         manipulator: &manipulator,
         actuated,
         found,
+        least,
         only,
         method,
         aspects,
@@ -86,7 +92,7 @@ fn solve(
         (None, Ok(())) => {
             let mut found = manipulator.forward(&actuated).map_err(|e| wrong(&e))?;
             if let Some(mode) = only {
-                found.list.retain(|assembly| assembly.mode == mode);
+                manipulator.keep_assemblies_in(&mut found.list, mode);
             }
             let home = manipulator.platform_pose(&manipulator.home_pose());
             let home = home.map_err(|error| Failure::at(&loaded.label, error))?;
@@ -184,6 +190,8 @@ struct Answer<'a> {
     manipulator: &'a Manipulator,
     actuated: Vec<f64>,
     found: Assemblies,
+    /// The least change of the joints that closes, where there is no assembly.
+    least: Option<LeastChange>,
     only: Option<Mode>,
     method: Method,
     /// The aspect of each assembly, if it was asked for.
@@ -196,6 +204,8 @@ struct Json {
     method: Method,
     assemblies: Vec<JsonAssembly>,
     unmet: Vec<String>,
+    /// The least change of the joints that closes, null if there is an assembly or if none was found.
+    least_change: Option<least::Json>,
     loose: Vec<String>,
 }
 
@@ -233,6 +243,7 @@ impl Answer<'_> {
             method: self.method,
             assemblies: self.found.list.iter().enumerate().map(assembly).collect(),
             unmet: self.unmet(FileUnits::SI),
+            least_change: self.least.as_ref().map(|least| least::Json::new(m, least)),
             loose: self.found.loose.iter().map(Section::to_string).collect(),
         }
     }
@@ -254,6 +265,9 @@ impl Answer<'_> {
             let _ = writeln!(text, "no {single}assembly{in_mode}");
             for unmet in self.unmet(units) {
                 let _ = writeln!(text, "  {unmet}");
+            }
+            for line in self.least.iter().flat_map(|least| least::lines(m, least, units)) {
+                let _ = writeln!(text, "  {line}");
             }
         } else {
             let (count, many) =
@@ -336,11 +350,12 @@ impl Answer<'_> {
             Unmet::Section(section) => {
                 format!("{section} section: no pose closes all of its legs at once")
             }
-            Unmet::Contradiction(off) if off.is_finite() => format!(
-                "the actuated joints contradict each other: where they do least, one is off by {off:.1e} \
-                 (radians or shares of the mechanism's size)"
+            Unmet::Together => "no pose of the platform closes all legs at once".to_owned(),
+            Unmet::Contradiction => format!(
+                "the actuated joints contradict each other: {} are given, and the mobility is N = {}",
+                self.actuated.len(),
+                self.manipulator.task_coordinates().len()
             ),
-            Unmet::Contradiction(_) => "the actuated joints contradict each other".to_owned(),
         };
         self.found.unmet.iter().map(line).collect()
     }

@@ -3,7 +3,7 @@
 use crate::args::{CodeArgs, GenerateArgs, Language, Output};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::is_stdout;
+use crate::output::{Shown, is_stdout};
 use crate::target::Target;
 use opm_core::Manipulator;
 use opm_generate::{GenerateError, Package};
@@ -27,7 +27,7 @@ fn write(
     output: &Output,
 ) -> Result<(), Failure> {
     if is_stdout(&args.output) {
-        let problem = format!("{}: expected a folder", args.output.display());
+        let problem = format!("{}: expected a folder", args.output.shown());
         return Err(Failure::flag("--output", problem));
     }
     let loaded = load::open(&args.mechanism, output)?;
@@ -45,15 +45,15 @@ fn write(
     let texts = files.iter().map(|(_, text)| text.as_bytes());
     Target::commit_all(targets?.into_iter().zip(texts))?;
     let names: Vec<&str> = code.files.iter().map(|(name, _)| &**name).collect();
-    output.note(format_args!("{}: {}", folder.display(), names.join(", ")));
+    output.note(format_args!("{}: {}", folder.shown(), names.join(", ")));
     Ok(())
 }
 
 /// Makes a folder, and those that it is in.
 fn make(folder: &Path) -> Result<(), Failure> {
     if folder.exists() && !folder.is_dir() {
-        let path = folder.display();
+        let path = folder.shown();
         return Err(Failure::work(format!("{path}: a file, expected a folder or a new name")));
     }
-    fs::create_dir_all(folder).map_err(|error| Failure::at(folder.display(), error))
+    fs::create_dir_all(folder).map_err(|error| Failure::at(folder.shown(), error))
 }

@@ -12,6 +12,7 @@ use crate::pose::Checks;
 use crate::text::{self, Table, reason};
 use crate::transform::{self, Located};
 use crate::unitless;
+use nalgebra::Point3;
 use opm_core::chain::limits::Limits;
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreachable};
@@ -41,7 +42,13 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
             checks = Some(given);
             Located::Pose(pose)
         }
-        (None, Some(transform)) => transform.locate(&manipulator),
+        (None, Some(transform)) => {
+            let mode = match modes {
+                Modes::One(mode) => mode,
+                Modes::All => manipulator.home_mode(),
+            };
+            transform.locate(&manipulator, mode)
+        }
         (None, None) => return batch::run(args, output, &loaded, &manipulator, modes),
     };
     let answer = match located {
@@ -237,7 +244,9 @@ impl<'a> Answer<'a> {
         let units = self.loaded.file.units;
         let name = &self.manipulator.mechanism().name;
         let mut text = match &self.outside {
-            Some(outside) => format!("{name}: {}\nnearest pose: ", outside_text(outside, units)),
+            Some(outside) => {
+                format!("{name}: {}\nnearest pose: ", outside_text(outside, self.tip(), units))
+            }
             None => format!("{name} at "),
         };
         let shown = |coordinates: &[TaskCoordinate], values: &[f64]| {
@@ -327,6 +336,15 @@ impl<'a> Answer<'a> {
         table
     }
 
+    /// The platform's reference point at home, where a frame has its centre elsewhere.
+    fn tip(&self) -> Option<Point3<f64>> {
+        /// Nearer points are the same but for rounding, metres.
+        const SAME: f64 = 1e-9;
+        let (task, platform) = (self.manipulator.task(), self.manipulator.mechanism().platform);
+        let apart = |centre: Point3<f64>| (centre - platform).norm() > SAME;
+        (apart(task.lower.origin) || apart(task.upper.origin)).then_some(platform)
+    }
+
     /// A table with a row for each mode: imaginary and actuated joints.
     fn mode_table(&self) -> Table {
         let units = self.loaded.file.units;
@@ -408,8 +426,12 @@ impl Of<'_> {
     }
 }
 
-/// The distance and the direction of a transform from the motion.
-fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
+/// The distance and the direction of a transform from the motion, and the point that it places if coordinates place another.
+fn outside_text(
+    outside: &OutsideMotion,
+    platform: Option<Point3<f64>>,
+    units: FileUnits,
+) -> String {
     let parts = outside.parts().map(|(quantity, v)| {
         let way = match quantity {
             Quantity::Length => "along",
@@ -419,5 +441,12 @@ fn outside_text(outside: &OutsideMotion, units: FileUnits) -> String {
         format!("{} {way} ({x}, {y}, {z})", units.show(v.norm(), quantity))
     });
     let parts: Vec<String> = parts.collect();
-    format!("the transform is outside the manipulator's motion by {}", parts.join(" and "))
+    let outside =
+        format!("the transform is outside the manipulator's motion by {}", parts.join(" and "));
+    let Some(platform) = platform else { return outside };
+    let reference = platform.coords / units.length.factor();
+    // Adding zero turns a rounded -0 into 0.
+    let [x, y, z] = <[f64; 3]>::from(reference).map(|c| (c * 1e6).round() / 1e6 + 0.0);
+    let unit = units.length.symbol();
+    format!("{outside}; it places the reference point, which is at ({x}, {y}, {z}) {unit} at home")
 }

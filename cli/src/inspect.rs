@@ -2,7 +2,9 @@
 
 use crate::args::{InspectArgs, Output};
 use crate::failure::Failure;
+use crate::output::Shown;
 use crate::text::{Table, count, short};
+use opm_core::text::cell;
 use opm_mcap::{Metadata, ReadError, Recording, read};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -11,7 +13,7 @@ use std::fmt::Write;
 const SECOND: f64 = 1e9;
 
 pub fn run(args: &InspectArgs, output: &Output) -> Result<(), Failure> {
-    let label = args.file.display().to_string();
+    let label = args.file.shown();
     let recording = read::<ReadError>(&args.file, |_| Ok(())).map_err(|error| match error {
         ReadError::Io { source, .. } => Failure::at(&label, source),
         ReadError::NotMcap { .. } => Failure::because(format!("{label}: not an MCAP file"), error),
@@ -78,8 +80,8 @@ fn text(label: &str, recording: &Recording) -> String {
         let _ = write!(text, "\n{table}");
     }
     for attachment in &recording.attachments {
-        let (name, size) = (&attachment.name, count(attachment.size));
-        let _ = writeln!(text, "\nattached: {name}, {}, {size} bytes", attachment.media_type);
+        let (name, kind) = (cell(&attachment.name), cell(&attachment.media_type));
+        let _ = writeln!(text, "\nattached: {name}, {kind}, {} bytes", count(attachment.size));
     }
     text
 }

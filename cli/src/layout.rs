@@ -2,8 +2,8 @@
 
 use crate::args::{LayoutArgs, Output};
 use crate::failure::Failure;
-use crate::output::{is_stdout, print_with};
-use crate::target::Target;
+use crate::output::{Shown, is_stdout, print_with};
+use crate::target::{Target, refuse_inputs};
 use opm_mcap::{Layout, LayoutError, ReadError};
 use std::io::Write;
 use std::path::Path;
@@ -23,12 +23,15 @@ pub fn run(args: &LayoutArgs, output: &Output) -> Result<(), Failure> {
         Some((path, _)) => {
             let problem = format!(
                 "{}: expected a name that ends in .json (Foxglove, Lichtblick) or .py (Rerun)",
-                path.display()
+                path.shown()
             );
             return Err(Failure::flag("--output", problem));
         }
     };
-    let label = args.file.display().to_string();
+    if let Some(path) = target {
+        refuse_inputs("--output", path, [&*args.file])?;
+    }
+    let label = args.file.shown();
     let layout = Layout::of(&args.file).map_err(|error| match error {
         LayoutError::Read(ReadError::Io { source, .. }) => Failure::at(&label, source),
         LayoutError::Read(error @ ReadError::NotMcap { .. }) => {
@@ -42,7 +45,7 @@ pub fn run(args: &LayoutArgs, output: &Output) -> Result<(), Failure> {
     };
     let Some(path) = target else { return print_with(|out| out.write_all(text.as_bytes())) };
     Target::create(path)?.commit(text.as_bytes())?;
-    let place = path.display();
+    let place = path.shown();
     match viewer {
         Viewer::Foxglove => output.note(format_args!(
             "{place}: open {label} in Foxglove or Lichtblick, then import this from the layout menu"
@@ -73,7 +76,7 @@ pub fn advise(recording: &Path, output: &Output) {
     if recording.extension().is_none_or(|ending| ending != "mcap") {
         return;
     }
-    let place = recording.display();
+    let place = recording.shown();
     output.note(format_args!(
         "`opm layout {place} -o layout.json` lays it out for Foxglove and Lichtblick, `-o show.py` for Rerun"
     ));

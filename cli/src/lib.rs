@@ -51,6 +51,9 @@ mod usage;
 mod velocity;
 mod workspace;
 
+#[doc(hidden)]
+pub use crate::output::look_at_stdout;
+
 use crate::args::{Args, Command};
 use crate::failure::Failure;
 use std::ffi::OsString;
@@ -63,14 +66,17 @@ use std::io::{self, Write as _};
 /// It handles Ctrl-C during long work, and the second Ctrl-C ends the process. Use it only in a
 /// process that does nothing else.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    look_at_stdout();
     let done = match usage::parse(arguments) {
         Ok(args) => run(&args),
-        // Help and the version come this way, too, and go to standard output.
-        Err(usage) if !usage.use_stderr() => {
-            usage.print().and_then(|()| io::stdout().flush()).map_err(Failure::stdout)
-        }
+        // Help and the version come this way, too, and go to standard output. Nothing in them is of others: clap prints
+        // them, with the styles of the terminal.
+        Err(usage) if !usage.use_stderr() => output::open()
+            .and_then(|()| usage.print())
+            .and_then(|()| io::stdout().flush())
+            .map_err(Failure::stdout),
         Err(usage) => {
-            let _ = usage::with_tips(usage).print();
+            usage::print(usage::with_tips(usage));
             return 2;
         }
     };

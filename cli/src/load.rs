@@ -2,23 +2,27 @@
 
 use crate::args::{MechanismArgs, Output};
 use crate::failure::Failure;
+use crate::output::Shown;
 use crate::pose::Number;
+use crate::progress::Waiting;
+use crate::target::refuse_inputs;
 use crate::text::chain;
 use crate::unitless;
 use opm_core::Quantity;
-use opm_core::decomposition::{DecomposeError, JointMiss, NearMiss, Snapped, nearly, snap};
+use opm_core::decomposition::mobility::mobility;
+use opm_core::decomposition::{
+    DecomposeError, JointMiss, NearMiss, Snapped, nearly, slightly_off, snap,
+};
+use opm_core::group::subspace::SubspaceClass;
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::mechanism::file::{self, Digits, MechanismFile};
+use opm_mcap::input::{self, Expected, InputError, Pipes};
 use opm_study::recording::Attachment;
-use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-
-/// Largest size of a mechanism file. A larger one is something else, for instance an endless device.
-const LONGEST: u64 = 16 << 20;
 
 /// The tolerance that messages offer, over the one that just accepts a mechanism.
 const MARGIN: f64 = 1.01;
@@ -40,10 +44,12 @@ pub struct Loaded {
     pub snapped: Option<Vec<JointMiss>>,
 }
 
-/// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped.
+/// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped or is off.
 pub fn open(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
     let loaded = read(given, output)?;
     loaded.note_snapped(output);
+    loaded.warn_of_home(output);
+    loaded.note_misses(output);
     Ok(loaded)
 }
 
@@ -69,14 +75,15 @@ pub const STANDARD_INPUT: &str = "standard input";
 pub fn read_as_it_is(given: &Path) -> Result<Loaded, Failure> {
     if given == Path::new(DASH) {
         let label = STANDARD_INPUT.to_owned();
-        let text = whole(io::stdin(), &label, LONGEST, "mechanism file")?;
+        let text = input::text_of(io::stdin(), Expected::MECHANISM);
+        let text = text.map_err(|error| refused(&label, error))?;
         let file =
             file::read(&text).map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
         let file_name = "mechanism.toml".to_owned();
         return Ok(Loaded { label, file_name, path: None, text, file, snapped: None });
     }
-    let label = given.display().to_string();
-    let (text, path, file_name) = match text(given, LONGEST, "mechanism file")? {
+    let label = given.shown();
+    let (text, path, file_name) = match text(given, Expected::MECHANISM)? {
         Some(text) => {
             let name = given.file_name().map_or_else(|| label.clone(), |n| n.display().to_string());
             (text, Some(given.to_owned()), name)
@@ -107,30 +114,39 @@ pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Fail
     Ok(Loaded { label, file_name, path: None, text: text.to_owned(), file, snapped: None })
 }
 
-/// The text of a file with at most this number of bytes; `None` if there is no such file.
-pub fn text(given: &Path, longest: u64, what: &str) -> Result<Option<String>, Failure> {
-    let label = given.display().to_string();
-    match File::open(given) {
-        Ok(source) => whole(source, &label, longest, what).map(Some),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(Failure::at(&label, error)),
+/// The text of a file; `None` if there is no such file.
+pub fn text(given: &Path, expected: Expected) -> Result<Option<String>, Failure> {
+    match input::text(given, expected, Pipes::Read) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) if error.is_missing() => Ok(None),
+        Err(error) => Err(refused(&given.shown(), error)),
     }
 }
 
-/// Everything that a source holds, which is at most this number of bytes.
-fn whole(source: impl Read, label: &str, longest: u64, what: &str) -> Result<String, Failure> {
-    let mut bytes = Vec::new();
-    let read = source.take(longest + 1).read_to_end(&mut bytes);
-    read.map_err(|error| Failure::at(label, error))?;
-    if bytes.len() as u64 > longest {
-        let most = longest >> 20;
-        return Err(Failure::work(format!("{label}: more than {most} MiB, expected a {what}")));
+/// The text of a file that has to be there.
+pub fn existing(given: &Path, expected: Expected) -> Result<String, Failure> {
+    let missing = || Failure::work(format!("{}: No such file or directory", given.shown()));
+    text(given, expected)?.ok_or_else(missing)
+}
+
+/// A table that is read row by row, and its name in messages: a file, or standard input if it is `-`.
+pub fn table(given: &Path, expected: Expected) -> Result<(String, Box<dyn Read>), Failure> {
+    if given == Path::new(DASH) {
+        return Ok((STANDARD_INPUT.to_owned(), Box::new(Waiting(io::stdin()))));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let place = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..place].iter().filter(|&&b| b == b'\n').count() + 1;
-        Failure::work(format!("{label}:{line}: not UTF-8, expected a {what}"))
-    })
+    let label = given.shown();
+    let file = input::open(given, expected, Pipes::Read);
+    let file = file.map_err(|error| refused(&label, error))?;
+    let is_file = file.metadata().is_ok_and(|found| found.is_file());
+    Ok((label, if is_file { Box::new(file) } else { Box::new(Waiting(file)) }))
+}
+
+/// The failure for an input that is not read.
+fn refused(label: &str, error: InputError) -> Failure {
+    match error {
+        InputError::Io(error) => Failure::at(label, error),
+        error => Failure::because(format!("{}: {error}", error.place(label)), error),
+    }
 }
 
 impl Loaded {
@@ -167,6 +183,35 @@ impl Loaded {
         for miss in self.snapped.iter().flatten() {
             output.note(format_args!("{}: snapped {miss}", self.label));
         }
+    }
+
+    /// Warns where the home pose is a parallel singularity.
+    pub fn warn_of_home(&self, output: &Output) {
+        if let Some(text) = mobility(&self.file.mechanism).ok().and_then(|m| m.parallel_home()) {
+            output.warn(format_args!("{}: {text}", self.label));
+        }
+    }
+
+    /// Notes which joints of a mechanism that decomposes are off, and by how much.
+    fn note_misses(&self, output: &Output) {
+        // The joints of a family are exact by construction.
+        if output.quiet || self.file.family.is_some() {
+            return;
+        }
+        if let Some(near) = slightly_off(&self.file.mechanism) {
+            output.note(format_args!("{}: {}", self.label, self.misses(&near)));
+        }
+    }
+
+    /// Which joints of a mechanism that decomposes are off, and what to do about it.
+    pub fn misses(&self, near: &NearMiss) -> String {
+        let (lower, upper) = (near.lower.name(), near.upper.name());
+        let sections = match near.upper {
+            SubspaceClass::Identity => lower.to_owned(),
+            _ => format!("{lower} and {upper}"),
+        };
+        let hint = self.tolerance_hint(near);
+        format!("joints are slightly off their subspaces ({sections}): {near}{hint}")
     }
 
     /// What to do about a mechanism that nearly decomposes.
@@ -237,15 +282,8 @@ impl Loaded {
 
     /// Refuses to write over the mechanism file or another input.
     pub fn refuse_as_output(&self, output: &Path, others: &[&Path]) -> Result<(), Failure> {
-        let target = output.canonicalize().ok();
         let inputs = self.path.as_deref().into_iter().chain(others.iter().copied());
-        for input in inputs {
-            if target.is_some() && input.canonicalize().ok() == target {
-                let problem = format!("{} is also the input", output.display());
-                return Err(Failure::flag("--output", problem));
-            }
-        }
-        Ok(())
+        refuse_inputs("--output", output, inputs)
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::args::{MergeArgs, Output};
 use crate::failure::Failure;
 use crate::load;
+use crate::output::Shown;
 use crate::progress::{interruptible, watch_reading};
 use crate::workspace::{Effort, Outcome, Work, advice, grid_flags, points, threads};
 use opm_core::mechanism::file::FileUnits;
@@ -22,7 +23,7 @@ pub fn run(args: &MergeArgs, output: &Output) -> Result<(), Failure> {
     let (Attachment { name, text }, label) = shards.mechanism()?;
     let loaded = load::attached(label, name, text).map_err(|failure| match failure {
         Failure::Work(problem) => Failure::Work(problem.reworded(|problem| {
-            format!("{}: attached file {problem}", shards.first().path().display())
+            format!("{}: attached file {problem}", shards.first().path().shown())
         })),
         other => other,
     })?;

@@ -1,15 +1,17 @@
 //! Motions, by path or by the name of a shipped example.
 
+use crate::args::{MotionTableArgs, Output};
 use crate::failure::Failure;
-use crate::load;
+use crate::load::{self, Loaded};
+use crate::output::Shown;
+use crate::stream::columns_flag;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::hint::expected_one_of;
+use opm_core::motion::table::{Advice, TableOptions};
 use opm_core::motion::{Ends, PlatformMotion, examples, file, table};
+use opm_mcap::input::Expected;
 use opm_study::recording::Attachment;
 use std::path::{Path, PathBuf};
-
-/// Largest size of a table of poses: some millions of lines.
-const LONGEST: u64 = 1 << 30;
 
 /// A motion that was read.
 pub struct LoadedMotion {
@@ -23,6 +25,8 @@ pub struct LoadedMotion {
     pub text: String,
     /// The motion.
     pub motion: PlatformMotion,
+    /// What its numbers may have been meant to be.
+    doubts: Vec<String>,
 }
 
 impl LoadedMotion {
@@ -30,17 +34,34 @@ impl LoadedMotion {
     pub fn attachment(&self) -> Attachment<'_> {
         Attachment { name: &self.file_name, text: &self.text }
     }
+
+    /// Notes numbers that look misread.
+    pub fn note_doubts(&self, output: &Output) {
+        for doubt in &self.doubts {
+            output.note(doubt);
+        }
+    }
+}
+
+/// How a table of poses is read.
+pub struct Reading<'a> {
+    /// How the motion starts and ends.
+    pub ends: Option<Ends>,
+    /// Its columns and times.
+    pub table: &'a MotionTableArgs,
 }
 
 /// Reads a motion: a table of poses if the name ends in `.csv`, a motion file otherwise, which says itself how it
 /// starts and ends. An existing path has priority over an example of the same name.
 pub fn open(
     given: &Path,
-    ends: Option<Ends>,
-    manipulator: &Manipulator,
+    Reading { ends, table: of }: &Reading<'_>,
+    (loaded, manipulator): (&Loaded, &Manipulator),
 ) -> Result<LoadedMotion, Failure> {
-    let label = given.display().to_string();
-    let source = match load::text(given, LONGEST, "motion file")? {
+    let label = given.shown();
+    let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let expected = if table { Expected::POSES } else { Expected::MOTION };
+    let source = match load::text(given, expected)? {
         Some(text) => {
             let name = given.file_name().map_or_else(|| label.clone(), |n| n.display().to_string());
             (text, name, Some(given.to_owned()))
@@ -51,21 +72,38 @@ pub fn open(
         }
     };
     let (text, file_name, path) = source;
-    let stem = given.file_stem().map_or_else(|| label.clone(), |stem| stem.display().to_string());
-    let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let motion = match ends {
-        _ if table => table::read(&text, &stem, manipulator, ends.unwrap_or_default()),
-        Some(ends) => {
+    let stem = given.file_stem().map_or_else(|| label.clone(), |stem| Path::new(stem).shown());
+    let options = TableOptions {
+        ends: ends.unwrap_or_default(),
+        columns: of.columns.as_ref(),
+        relative_time: of.relative_time,
+        units: loaded.file.units,
+        advice: Advice { columns: columns_flag, relative_time: "--relative-time" },
+    };
+    let mut doubts = Vec::new();
+    let motion = match (ends, of.given()) {
+        _ if table => table::read(&text, &stem, manipulator, &options).map(|read| {
+            let doubt = |(line, doubt)| format!("{label}:{line}: {doubt}");
+            doubts = read.doubts.into_iter().map(doubt).collect();
+            read.motion
+        }),
+        (None, Some(flag)) => {
+            return Err(Failure::flag(
+                flag,
+                "a motion file has its own names and times, expected a CSV file",
+            ));
+        }
+        (Some(ends), _) => {
             let problem = format!(
                 "a motion file says it itself: write `ends = \"{}\"` beside its points",
                 ends.name()
             );
             return Err(Failure::flag("--ends", problem));
         }
-        None => file::read(&text, manipulator),
+        (None, None) => file::read(&text, manipulator),
     };
     let motion = motion.map_err(|errors| Failure::because(errors.in_file(&label), errors))?;
-    Ok(LoadedMotion { label, file_name, path, text, motion })
+    Ok(LoadedMotion { label, file_name, path, text, motion, doubts })
 }
 
 fn unknown(given: &Path, label: &str) -> Failure {

@@ -5,10 +5,10 @@ mod table;
 use crate::args::{Format, Output, PathArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::output::{is_stdout, print_with};
+use crate::output::{Shown, is_stdout, print_with};
 use crate::pose::GridAxis;
 use crate::progress::{interruptible, watch};
-use crate::target::Target;
+use crate::target::{Target, ends_in};
 use crate::text::{self, Table, count, short};
 use crate::unitless;
 use crate::workspace::{Work, threads};
@@ -18,7 +18,6 @@ use opm_mcap::csv::Rows;
 use opm_workspace::{AspectPath, Aspects, BeyondLimits, NoPath, aspect_at, find_path};
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Number of poses of a path that are shown in text.
@@ -31,9 +30,8 @@ pub fn run(args: &PathArgs, output: &Output) -> Result<(), Failure> {
         return Err(Failure::flag("--format json", problem));
     }
     let file = args.output.as_deref().filter(|path| !is_stdout(path));
-    if let Some(path) = file {
-        ends_in_csv(path)?;
-    }
+    // `opm trajectory` takes the kind of a motion from its ending.
+    file.map_or(Ok(()), |path| ends_in(path, &["csv"]))?;
     let loaded = load::open(&args.mechanism, output)?;
     if let Some(vary) = &args.vary {
         return table::run(args, &loaded, vary, output);
@@ -65,8 +63,7 @@ pub fn run(args: &PathArgs, output: &Output) -> Result<(), Failure> {
     if let (Some(target), Some(file)) = (target, file) {
         target.commit(&table)?;
         let poses = count(path.poses.len() as u64);
-        output
-            .note(format_args!("{}: {poses} poses, for `opm trajectory --motion`", file.display()));
+        output.note(format_args!("{}: {poses} poses, for `opm trajectory --motion`", file.shown()));
     }
     output.print(&answer.json(), answer.text())
 }
@@ -85,15 +82,6 @@ fn of_an_end(none: &NoPath, units: FileUnits) -> Option<Failure> {
     };
     let flag = if *end == "the start" { "--from" } else { "--to" };
     Some(Failure::flag(flag, problem))
-}
-
-/// `opm trajectory` takes the kind of a motion from its ending.
-fn ends_in_csv(path: &Path) -> Result<(), Failure> {
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
-        return Ok(());
-    }
-    let problem = format!("{}: expected a name that ends in .csv, or -", path.display());
-    Err(Failure::flag("--output", problem))
 }
 
 /// What is asked of one mechanism.

@@ -20,9 +20,9 @@ mod workspace;
 
 use crate::args::{Format, Output, PlotArgs};
 use crate::failure::Failure;
-use crate::output::{is_stdout, print_with};
+use crate::output::{Shown, is_stdout, print_with};
 use crate::progress::interruptible;
-use crate::target::Target;
+use crate::target::{Target, refuse_inputs};
 use ending::Ending;
 use opm_plot::{Drawing, Size, png};
 use serde_json::json;
@@ -43,26 +43,24 @@ pub fn run(args: &PlotArgs, output: &Output) -> Result<(), Failure> {
     let ending = match printed {
         true => Ending::Svg,
         false => Ending::of(&args.output).ok_or_else(|| {
-            let place = args.output.display();
+            let place = args.output.shown();
             let problem = format!("{place}: {}, or - for SVG on standard output", ending::EXPECTED);
             Failure::flag("--output", problem)
         })?,
     };
-    if args.output.canonicalize().is_ok_and(|output| args.file.canonicalize().ok() == Some(output))
-    {
-        let problem = format!("{} is also the input", args.output.display());
-        return Err(Failure::flag("--output", problem));
+    if !printed {
+        refuse_inputs("--output", &args.output, [&*args.file])?;
     }
     let target = if printed { None } else { Some(Target::create(&args.output)?) };
     let Picture { drawing, complete } = picture(args, output)?;
-    let place = args.output.display();
+    let place = args.output.shown();
     let bytes = ending.bytes(&drawing).map_err(|error| Failure::at(&place, error))?;
     match target {
         Some(target) => target.commit(&bytes)?,
         None => print_with(|out| out.write_all(&bytes))?,
     }
     if !complete {
-        let label = args.file.display();
+        let label = args.file.shown();
         output.warn(format_args!("{label}: unfinished; what is in it was drawn"));
     }
     let Size { width, height } = drawing.size;
@@ -109,7 +107,7 @@ fn picture(args: &PlotArgs, output: &Output) -> Result<Picture, Failure> {
         ("--coordinates", args.change.coordinates.is_some()),
     ] {
         if given {
-            let problem = format!("{} is a recording, expected a mechanism", args.file.display());
+            let problem = format!("{} is a recording, expected a mechanism", args.file.shown());
             return Err(Failure::flag(flag, problem));
         }
     }

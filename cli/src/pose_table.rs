@@ -3,10 +3,11 @@
 use crate::args::{Format, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
+use crate::output::Shown;
 use crate::pose::{Checks, find};
 use crate::stream::{Columns, MODE, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
-use crate::unitless::Plausible;
+use crate::unitless::plausible;
 use opm_core::manipulator::Manipulator;
 use opm_core::task::TaskCoordinate;
 use opm_mcap::csv::Rows;
@@ -60,7 +61,7 @@ impl Totals {
     ) -> Result<(), Failure> {
         output.note(format_args!(
             "{}: {} poses, {} in reach, {} within limits; {} s, {} poses/s",
-            streams.output.unwrap_or(streams.input).display(),
+            streams.output.unwrap_or(streams.input).shown(),
             count(self.poses),
             count(self.reachable),
             count(self.within_limits),
@@ -90,7 +91,7 @@ pub fn columns_beside<'m>(
         move |c: &'m TaskCoordinate| Wanted {
             name: c.name,
             quantity: c.quantity,
-            plausible: Plausible::new(c.quantity, c.home, (loaded, manipulator)),
+            plausible: plausible(c.quantity, c.home, (loaded, manipulator)),
             optional,
         }
     };

@@ -2,12 +2,15 @@
 
 use crate::args::Output;
 use crate::failure::Failure;
+use crate::output::Shown;
 use crate::text::count;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use opm_workspace::Progress;
 use std::fmt::Write;
+use std::io::{self, Read};
 use std::process;
-use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread;
 use std::time::Duration;
 
@@ -17,21 +20,59 @@ const TICK: Duration = Duration::from_millis(100);
 /// The work that Ctrl-C cancels: the last that was begun. A process has one handler.
 static WORK: Mutex<Option<Arc<Progress>>> = Mutex::new(None);
 
+/// Whether a source is read that gives something only when somebody writes it: then the work does not hear of Ctrl-C.
+static WAITING: AtomicBool = AtomicBool::new(false);
+
 /// Progress that the first Ctrl-C cancels. The second one ends the process at once.
 pub fn interruptible() -> Result<Arc<Progress>, Failure> {
-    let work = || WORK.lock().unwrap_or_else(PoisonError::into_inner);
     let progress = Arc::new(Progress::default());
-    if work().replace(Arc::clone(&progress)).is_none() {
-        ctrlc::set_handler(move || {
-            let Some(heard) = work().clone() else { return };
-            if heard.is_cancelled() {
-                process::exit(130);
+    work().replace(Arc::clone(&progress));
+    clean_up_at_ctrl_c()?;
+    Ok(progress)
+}
+
+fn work() -> MutexGuard<'static, Option<Arc<Progress>>> {
+    WORK.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From here on Ctrl-C, where it does not cancel work, ends the process in order: files that nothing was written to are
+/// removed, and the others are named.
+pub fn clean_up_at_ctrl_c() -> Result<(), Failure> {
+    static HANDLED: Mutex<bool> = Mutex::new(false);
+    let mut handled = HANDLED.lock().unwrap_or_else(PoisonError::into_inner);
+    if !*handled {
+        ctrlc::set_handler(|| match work().as_ref() {
+            Some(heard) if !heard.is_cancelled() && !WAITING.load(Ordering::Relaxed) => {
+                heard.cancel();
             }
-            heard.cancel();
+            _ => end(),
         })
         .map_err(|error| Failure::at("Ctrl-C", error))?;
+        *handled = true;
     }
-    Ok(progress)
+    Ok(())
+}
+
+/// Ends the process.
+fn end() -> ! {
+    let left: Vec<_> = opm_mcap::unfinished().iter().map(|path| path.shown()).collect();
+    let left = match &*left {
+        [] => String::new(),
+        left => format!("; what was written so far is in {}", left.join(", ")),
+    };
+    process::exit(Failure::interrupted(format!("interrupted{left}")).report().into())
+}
+
+/// A source that may have to be waited for, during which Ctrl-C ends the process.
+pub struct Waiting<R>(pub R);
+
+impl<R: Read> Read for Waiting<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        WAITING.store(true, Ordering::Relaxed);
+        let count = self.0.read(buffer);
+        WAITING.store(false, Ordering::Relaxed);
+        count
+    }
 }
 
 /// Does some work while a bar shows its progress, `done` out of `total` poses. The bar is on

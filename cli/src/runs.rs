@@ -93,7 +93,7 @@ impl Runs {
         Ok(())
     }
 
-    /// Prints the table, under a title.
+    /// Prints the table, under a title. Where no run has succeeded, the work failed.
     pub fn print(&self, output: &Output, title: &str, more: Value) -> Result<(), Failure> {
         let rows: Vec<Value> = (self.runs.iter())
             .map(|run| {
@@ -127,7 +127,14 @@ impl Runs {
             }
         }
         let problems = if problems.is_empty() { problems } else { format!("\n{problems}") };
-        output.print(&json, format_args!("{title}\n\n{table}{problems}"))
+        output.print(&json, format_args!("{title}\n\n{table}{problems}"))?;
+        match (&*self.runs, first) {
+            ([one], None) => {
+                Err(Failure::work(format!("the only run failed: {} {}", self.key, one.text.trim())))
+            }
+            (runs @ [_, ..], None) => Err(Failure::work(format!("all {} runs failed", runs.len()))),
+            _ => Ok(()),
+        }
     }
 }
 

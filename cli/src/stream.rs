@@ -2,21 +2,25 @@
 
 use crate::args::{Format, Output};
 use crate::failure::Failure;
-use crate::load::{DASH, Loaded, STANDARD_INPUT};
-use crate::output::is_stdout;
+use crate::load::{self, DASH, Loaded};
+use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
+use crate::target::ends_in;
 use crate::text::plural;
-use crate::unitless::Plausible;
 use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
+use opm_core::table::{
+    ColumnNames, Line, Lines, Place, Plausible, Suggestion, hint, hint_of_row, not_commas,
+};
+use opm_core::text::quoted;
 use opm_mcap::PartialFile;
-use opm_mcap::csv::{Line, Lines, Place, Rows};
+use opm_mcap::csv::Rows;
+use opm_mcap::input::Expected;
 use opm_study::effort_names;
 use opm_workspace::Progress;
 use std::fmt::Display;
-use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -43,14 +47,17 @@ impl From<io::Error> for Stop {
 pub struct Streams<'a> {
     pub input: &'a Path,
     pub output: Option<&'a Path>,
+    /// The columns that --columns names.
+    pub columns: Option<&'a ColumnNames>,
 }
 
 /// Input and output of a command while it runs.
 pub struct Stream<'a> {
     /// The name of the input in messages.
     pub label: &'a str,
-    pub lines: Lines,
+    pub lines: Lines<'static>,
     pub rows: Rows<'a>,
+    names: Option<&'a ColumnNames>,
     output: &'a Output,
     /// The number of rows that were read.
     pub number: &'a AtomicU64,
@@ -105,24 +112,57 @@ impl Stream<'_> {
     ) -> Result<Columns<'n>, Failure> {
         let label = self.label;
         let header = self.lines.next().map_err(|error| Failure::at(label, error))?;
-        let number = header.map_or(1, |line| line.number);
-        let given: Vec<_> =
-            header.iter().flat_map(|h| h.fields()).map(String::from_utf8_lossy).collect();
+        let names = || values.iter().map(|value| value.name);
+        let no_header = |number| {
+            let names = names().collect::<Vec<_>>().join(",");
+            at(label, number, format!("no header, expected one of names: {names}"))
+        };
+        let Some(header) = header else { return Err(no_header(1)) };
+        let number = header.number;
+        if let Some(problem) = not_commas(header) {
+            return Err(at(label, number, problem));
+        }
+        let given: Vec<_> = header.fields().map(String::from_utf8_lossy).collect();
+        let given: Vec<&str> = given.iter().map(|text| &**text).collect();
         if given.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let names = values.iter().map(|value| value.name).collect::<Vec<_>>().join(",");
-            return Err(at(label, number, format!("no header, expected one of names: {names}")));
+            return Err(no_header(number));
+        }
+        if let Some((name, heading)) = self.names.and_then(|n| n.missing(&given)) {
+            let headings =
+                given.iter().map(|text| quoted(text).to_string()).collect::<Vec<_>>().join(", ");
+            let problem = format!("no column {heading:?} for {name}, the table has {headings}");
+            return Err(at(label, number, format!("{problem} (--columns)")));
         }
         let mut columns = Vec::new();
         for text in &given {
-            let wrong =
-                |error: &dyn Display| at(label, number, format!("column {text:?}: {error}"));
-            let heading = Heading::parse(text);
+            let wrong = |error: &dyn Display| {
+                at(label, number, format!("column {}: {error}", quoted(text)))
+            };
+            let mut heading = Heading::parse(text);
+            if let Some(names) = self.names {
+                let Some(name) = names.name_of(heading, text).map_err(|e| wrong(&e))? else {
+                    columns.push((Column::Other, None));
+                    continue;
+                };
+                heading.name = name;
+            }
             let column = match (heading.name, heading.unit) {
                 ("t", None | Some("s")) => Column::Time,
                 ("t", Some(_)) => return Err(wrong(&"expected t or t [s]")),
-                (name, _) => match find(name).map_err(|error| wrong(&error))? {
-                    Some(number) => Column::Value(number),
-                    None => Column::Other,
+                (name, _) => match find(name) {
+                    Ok(Some(number)) => Column::Value(number),
+                    Ok(None) => Column::Other,
+                    Err(error) => {
+                        // What the others may be called; the time is not needed.
+                        let known = names().collect::<Vec<_>>();
+                        let mut meant = Suggestion::new(std::iter::once("t").chain(known), &given);
+                        meant.0.retain(|(_, heading)| {
+                            given.iter().any(|g| Heading::parse(g).name == heading)
+                        });
+                        let advice =
+                            if meant.0.is_empty() { String::new() } else { columns_flag(&meant) };
+                        return Err(wrong(&format!("{error}{advice}")));
+                    }
                 },
             };
             let units = match column {
@@ -159,30 +199,26 @@ pub fn run<T>(
         let problem = "the CSV takes standard output; give it a file with --output";
         return Err(Failure::flag("--format json", problem));
     }
-    let (label, reader): (_, Box<dyn Read>) = if input == Path::new(DASH) {
-        if loaded.is_standard_input() {
-            let problem = "standard input is the mechanism already, expected a file";
-            return Err(Failure::flag("--poses", problem));
-        }
-        (STANDARD_INPUT.to_owned(), Box::new(io::stdin()))
-    } else {
-        let label = input.display().to_string();
-        let file = File::open(input).map_err(|error| Failure::at(&label, error))?;
-        (label, Box::new(file))
-    };
+    if input == Path::new(DASH) && loaded.is_standard_input() {
+        let problem = "standard input is the mechanism already, expected a file";
+        return Err(Failure::flag("--poses", problem));
+    }
+    let (label, reader) = load::table(input, Expected::ROWS)?;
     let progress = interruptible()?;
     let rows = AtomicU64::new(0);
-    let source = Source { label: &label, reader, output, number: &rows, progress: &progress };
+    let (label, names) = (&*label, streams.columns);
+    let source = Source { label, reader, names, output, number: &rows, progress: &progress };
     let Some(path) = target else {
         // There is no progress bar, since the rows may go to the terminal.
-        return match solve(source.to(&mut io::stdout())) {
+        return match solve(source.to(&mut stdout())) {
             Ok(_) => Ok(None),
             Err(Stop::Write(error)) => Err(Failure::stdout(error)),
             Err(Stop::Failure(failure)) => Err(failure),
         };
     };
     loaded.refuse_as_output(path, &[input])?;
-    let place = path.display();
+    ends_in(path, &["csv"])?;
+    let place = path.shown();
     let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, error))?;
     let work = || solve(source.to(&mut file));
     let summary =
@@ -213,6 +249,7 @@ pub const MODE: &str = "mode";
 struct Source<'a> {
     label: &'a str,
     reader: Box<dyn Read>,
+    names: Option<&'a ColumnNames>,
     output: &'a Output,
     number: &'a AtomicU64,
     progress: &'a Progress,
@@ -220,8 +257,9 @@ struct Source<'a> {
 
 impl<'a> Source<'a> {
     fn to(self, sink: &'a mut (dyn Write + Send)) -> Stream<'a> {
-        let Self { label, reader, output, number, progress } = self;
-        Stream { label, lines: Lines::new(reader), rows: Rows::new(sink), output, number, progress }
+        let Self { label, reader, names, output, number, progress } = self;
+        let (lines, rows) = (Lines::new(reader), Rows::new(sink));
+        Stream { label, lines, rows, names, output, number, progress }
     }
 }
 
@@ -319,11 +357,13 @@ impl Columns<'_> {
             let names: Vec<_> = self.columns.iter().map(|&(column, _)| name(column)).collect();
             let given = plural(given as u64, "column");
             let (expected, names) = (self.columns.len(), names.join(","));
-            return Err(at(format!("{given}, expected {expected}: {names}")));
+            let hint = hint_of_row(line, expected);
+            return Err(at(format!("{given}, expected {expected}: {names}{hint}")));
         }
         let usual = line.numbers(places, row).map_err(|(number, problem)| {
             let field = line.fields().nth(number).map(String::from_utf8_lossy).unwrap_or_default();
-            at(format!("column {}: {field:?} {problem}", name(self.columns[number].0)))
+            let (name, hint) = (name(self.columns[number].0), hint(&field));
+            at(format!("column {name}: {} {problem}{hint}", quoted(&field)))
         })?;
         for &(number, units) in &self.converted {
             row[number] = units.si(row[number], self.values[number].quantity);
@@ -345,6 +385,14 @@ pub fn other_columns(manipulator: &Manipulator) -> Vec<String> {
     let known = known.into_iter().chain(Index::ALL.map(Index::name)).map(str::to_owned);
     let efforts = effort_names(manipulator);
     names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).chain(efforts).collect()
+}
+
+/// How --columns names columns, as the end of a message.
+pub fn columns_flag(suggestion: &Suggestion) -> String {
+    let names = suggestion.to_string();
+    let plain = |c: char| c.is_alphanumeric() || "=,._-".contains(c);
+    let quote = if names.chars().all(plain) { "" } else { "'" };
+    format!("; --columns {quote}{names}{quote} says which columns to read")
 }
 
 /// The failure for a problem in a line of the input.

@@ -1,7 +1,11 @@
 //! Files that are written at once, under a temporary name until they are whole.
 
 use crate::failure::Failure;
+use crate::output::Shown;
+use crate::progress::clean_up_at_ctrl_c;
 use opm_mcap::PartialFile;
+use opm_mcap::input::is_same_file;
+use opm_study::recording::partial;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +18,8 @@ pub struct Target {
 impl Target {
     /// Opens it under a temporary name.
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        let file = PartialFile::create(path).map_err(|e| Failure::at(path.display(), e))?;
+        clean_up_at_ctrl_c()?;
+        let file = PartialFile::create(path).map_err(|e| Failure::at(path.shown(), e))?;
         Ok(Self { path: path.to_owned(), file: Some(file) })
     }
 
@@ -36,12 +41,12 @@ impl Target {
         let Some(file) = &mut self.file else { return Ok(()) };
         // A small file is on the disk only once it is flushed.
         let written = file.write_all(bytes).and_then(|()| file.flush());
-        written.map_err(|error| Failure::at(self.path.display(), error))
+        written.map_err(|error| Failure::at(self.path.shown(), error))
     }
 
     fn place(mut self) -> Result<(), Failure> {
         let Some(file) = self.file.take() else { return Ok(()) };
-        file.commit().map_err(|error| Failure::at(self.path.display(), error))
+        file.commit().map_err(|error| Failure::at(self.path.shown(), error))
     }
 }
 
@@ -52,4 +57,37 @@ impl Drop for Target {
             file.discard();
         }
     }
+}
+
+/// Checks the ending of the name of an output, in capitals or not.
+pub fn ends_in(path: &Path, endings: &[&str]) -> Result<(), Failure> {
+    let found = path.extension();
+    if endings.iter().any(|ending| found.is_some_and(|found| found.eq_ignore_ascii_case(ending))) {
+        return Ok(());
+    }
+    let expected = endings.iter().map(|ending| format!(".{ending}")).collect::<Vec<_>>();
+    let expected = expected.join(" or ");
+    let problem = format!("{}: expected a name that ends in {expected}", path.shown());
+    Err(Failure::flag("--output", problem))
+}
+
+/// Refuses an output that would replace an input, also while it is written under its temporary name.
+pub fn refuse_inputs<'a>(
+    flag: &str,
+    output: &Path,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Failure> {
+    let unfinished = partial(output);
+    for input in inputs {
+        if is_same_file(output, input) {
+            return Err(Failure::flag(flag, format!("{} is also the input", output.shown())));
+        }
+        if is_same_file(&unfinished, input) {
+            let (output, unfinished) = (output.shown(), unfinished.shown());
+            let problem =
+                format!("{unfinished}, as {output} is called until it is whole, is also the input");
+            return Err(Failure::flag(flag, problem));
+        }
+    }
+    Ok(())
 }

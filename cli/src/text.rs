@@ -5,6 +5,7 @@ pub use opm_study::text::{chain, count, length_text, nearest_text, reason, set_a
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
+use opm_core::text;
 use std::fmt;
 
 /// A table whose columns are two spaces apart.
@@ -22,15 +23,16 @@ impl Table {
         for header in headers {
             let header = header.as_ref();
             table.right.push(header.starts_with('>'));
-            row.push(header.trim_start_matches('>').to_owned());
+            row.push(text::cell(header.trim_start_matches('>')).into_owned());
         }
         table.rows.push(row);
         table
     }
 
-    /// Adds a row.
+    /// Adds a row. Each cell is on one line, and not endless.
     pub fn row<T: Into<String>>(&mut self, cells: impl IntoIterator<Item = T>) {
-        self.rows.push(cells.into_iter().map(Into::into).collect());
+        let shown = |cell: T| text::cell(&cell.into()).into_owned();
+        self.rows.push(cells.into_iter().map(shown).collect());
     }
 }
 

@@ -7,9 +7,9 @@ use crate::args::{Format, Output, TableUnits, TrajectoryArgs};
 use crate::failure::Failure;
 use crate::interference;
 use crate::layout;
-use crate::load;
-use crate::motion::{self, LoadedMotion};
-use crate::output::is_stdout;
+use crate::load::{self, Loaded};
+use crate::motion::{self, LoadedMotion, Reading};
+use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
 use crate::text::count;
 use opm_core::manipulator::Manipulator;
@@ -49,10 +49,7 @@ impl<'a> Target<'a> {
             Some(path) => {
                 let problem =
                     "expected a name that ends in .mcap (a recording), .csv or .npy (NumPy)";
-                return Err(Failure::flag(
-                    "--output",
-                    format_args!("{}, {problem}", path.display()),
-                ));
+                return Err(Failure::flag("--output", format_args!("{}, {problem}", path.shown())));
             }
         };
         if let Self::Recording(_) = target {
@@ -94,9 +91,10 @@ fn given_setup(setup: &SetupOptions) -> &'static str {
 /// The motion of the flags, and the duration that it was given with if it got another timing.
 fn motion(
     args: &TrajectoryArgs,
-    manipulator: &Manipulator,
+    (loaded, manipulator): (&Loaded, &Manipulator),
 ) -> Result<(LoadedMotion, Option<f64>), Failure> {
-    let mut motion = motion::open(&args.motion, args.ends.map(Into::into), manipulator)?;
+    let reading = Reading { ends: args.ends.map(Into::into), table: &args.table };
+    let mut motion = motion::open(&args.motion, &reading, (loaded, manipulator))?;
     if let Some(mode) = &args.mode {
         motion.motion.mode = Some(load::mode(manipulator, mode)?);
     }
@@ -110,7 +108,7 @@ fn motion(
             TimingError::NoLimits { .. } => &args.mechanism.file,
             _ => &args.motion,
         };
-        Failure::work(format!("{}: {error} (--time-optimal)", of.display()))
+        Failure::work(format!("{}: {error} (--time-optimal)", of.shown()))
     })?;
     Ok((motion, Some(given_duration)))
 }
@@ -136,7 +134,8 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         return table::run(args, &loaded, vary, output);
     }
     let manipulator = loaded.compile()?;
-    let (motion, given_duration) = motion(args, &manipulator)?;
+    let (motion, given_duration) = motion(args, (&loaded, &manipulator))?;
+    motion.note_doubts(output);
     let setup = args.setup.options(None)?;
     if setup != SetupOptions::default() && !args.indices {
         let problem = "nothing uses it; --indices does";
@@ -153,6 +152,8 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     if let Some(path) = target.path() {
         loaded.refuse_as_output(path, &motion.path.as_deref().into_iter().collect::<Vec<_>>())?;
     }
+    // Before there is a file that nobody would be told of.
+    let progress = interruptible()?;
     let recorder = match target {
         Target::Recording(path) => {
             let files = [loaded.attachment(), motion.attachment()];
@@ -165,7 +166,6 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         accelerations: args.accelerations,
         units: (args.units == TableUnits::File).then_some(loaded.file.units),
     };
-    let progress = interruptible()?;
     let samples = trajectory.samples();
     if samples > MANY {
         let (rate, samples) = (request.rate, count(samples));
@@ -182,7 +182,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
             write_motion_table(request, trajectory, options, path, go_on)
         }
         (None, Target::Printed) => {
-            let mut stdout = io::stdout();
+            let mut stdout = stdout();
             let printed = ("standard output", &mut stdout as &mut dyn io::Write);
             write_motion_csv(request, trajectory, options, printed, go_on)
         }
@@ -197,7 +197,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         StudyError::Cancelled => {
             let (done, samples) = (count(done.load(Ordering::Relaxed)), count(samples));
             let kept = target.path().map_or_else(String::new, |path| {
-                format!("; what was recorded is in {}", partial(path).display())
+                format!("; what was recorded is in {}", partial(path).shown())
             });
             let message = format!("interrupted; {done} of {samples} samples were followed{kept}");
             Failure::interrupted(message)
@@ -210,7 +210,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         other => other.into(),
     })?;
     if let Some(path) = target.path() {
-        output.note(format_args!("{}: {} samples", path.display(), count(summary.samples)));
+        output.note(format_args!("{}: {} samples", path.shown(), count(summary.samples)));
         layout::advise(path, output);
     }
     let violations = summary.violation_count;

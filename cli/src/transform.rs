@@ -5,7 +5,7 @@ use crate::pose::{Misread, Number};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use opm_core::Quantity;
 use opm_core::decomposition::mobility::frame;
-use opm_core::manipulator::{Manipulator, OutsideMotion, Solution};
+use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution};
 use serde_json::{Value, json};
 use std::str::FromStr;
 
@@ -73,8 +73,9 @@ pub enum Located {
 }
 
 impl Transform {
-    pub fn locate(&self, manipulator: &Manipulator) -> Located {
-        match manipulator.locate_platform(&self.0) {
+    /// The pose at which the platform is there, in a working mode if that is possible.
+    pub fn locate(&self, manipulator: &Manipulator, mode: Mode) -> Located {
+        match manipulator.locate_platform_in(&self.0, mode) {
             Ok(pose) => Located::Pose(pose),
             Err(outside) => {
                 let size = frame(manipulator.mechanism()).length;

@@ -6,100 +6,35 @@ use crate::load::Loaded;
 use crate::pose::{Number, Pose};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
-use opm_core::mechanism::file::FileUnits;
-use std::f64::consts::TAU;
+use opm_core::table::Plausible;
 
-/// A length so many times as large as the mechanism was probably meant in another unit.
-const FAR: f64 = 10.0;
-/// The same for the ends of ranges, which may be wide on purpose.
+/// The end of a range so many times as large as the mechanism was probably meant in another unit; it may be wide on
+/// purpose.
 const WIDE: f64 = 100.0;
-/// Numbers from here on are refused by name.
-const ABSURD: f64 = 1e15;
 
-/// What a value that is not misread looks like: near home in the size of the mechanism, and within a turn.
-#[derive(Clone, Copy)]
-pub struct Plausible {
+/// What a value of a quantity with this home looks like, of a mechanism.
+pub fn plausible(
     quantity: Quantity,
     home: f64,
-    size: f64,
-    /// How many times that large a length may be.
-    far: f64,
-    units: FileUnits,
+    (loaded, manipulator): (&Loaded, &Manipulator),
+) -> Plausible {
+    Plausible::new(quantity, home, manipulator.characteristic_length(), loaded.file.units)
 }
 
-impl Plausible {
-    /// For values of a quantity whose home is this, in SI.
-    pub fn new(
-        quantity: Quantity,
-        home: f64,
-        (loaded, manipulator): (&Loaded, &Manipulator),
-    ) -> Self {
-        Self {
-            quantity,
-            home,
-            size: manipulator.characteristic_length(),
-            far: FAR,
-            units: loaded.file.units,
-        }
+/// The note on a number of a flag; `None` if it has a unit or looks right. `shown` is the number with its name as the flag
+/// has it.
+fn suspicion(
+    plausible: &Plausible,
+    number: Number,
+    shown: impl Fn(&str) -> String,
+) -> Option<String> {
+    let value = number.without_unit()?;
+    if plausible.holds(value) {
+        return None;
     }
-
-    /// The least and the largest value in SI that looks right.
-    pub fn usual(&self) -> [f64; 2] {
-        let (middle, most) = match self.quantity {
-            Quantity::Length => (self.home, self.far * self.size),
-            Quantity::Angle => (0.0, TAU),
-        };
-        [middle - most, middle + most]
-    }
-
-    /// Whether a value in SI looks right. What is refused anyway is not judged.
-    pub fn holds(&self, value: f64) -> bool {
-        let [low, high] = self.usual();
-        (low..=high).contains(&value) || value.abs() >= ABSURD
-    }
-
-    /// How a number in SI was read, and how large that is.
-    fn reading(&self, value: f64) -> String {
-        let read = self.quantity.unit();
-        let large = match self.quantity {
-            Quantity::Length => {
-                let times = (value - self.home).abs() / self.size;
-                format!("{times:.0} times the size of the mechanism")
-            }
-            Quantity::Angle => format!("{:.0} degrees", value.to_degrees()),
-        };
-        format!("was read as {value} {read}, {large}")
-    }
-
-    /// The unit that was probably meant: that of the file, if it is not the one that was assumed.
-    fn meant(&self) -> &'static str {
-        match (self.units.symbol(self.quantity), self.quantity) {
-            ("m", _) => "mm",
-            ("rad", _) => "deg",
-            (own, _) => own,
-        }
-    }
-
-    /// The note on a value of a column without a unit.
-    pub fn column(&self, name: &str, value: f64) -> String {
-        let unit = self.meant();
-        let reading = self.reading(value);
-        format!(
-            "{name} has no unit and {reading}; if it is in {unit}, head the column {name} [{unit}]"
-        )
-    }
-
-    /// The note on a number of a flag; `None` if it has a unit or looks right. `shown` is the number with its name as
-    /// the flag has it.
-    fn suspicion(&self, number: Number, shown: impl Fn(&str) -> String) -> Option<String> {
-        let value = number.without_unit()?;
-        if self.holds(value) {
-            return None;
-        }
-        let (unit, reading) = (self.meant(), self.reading(value));
-        let [given, better] = [shown(&value.to_string()), shown(&format!("{value}{unit}"))];
-        Some(format!("{given} has no unit and {reading}; if it is in {unit}, write {better}"))
-    }
+    let (unit, reading) = (plausible.meant(), plausible.reading(value));
+    let [given, better] = [shown(&value.to_string()), shown(&format!("{value}{unit}"))];
+    Some(format!("{given} has no unit and {reading}; if it is in {unit}, write {better}"))
 }
 
 /// Notes which task coordinates of a pose look misread.
@@ -154,8 +89,8 @@ pub fn note_values(
     values: impl IntoIterator<Item = (Number, Quantity)>,
 ) {
     for (number, quantity) in values {
-        let plausible = Plausible::new(quantity, 0.0, of);
-        if let Some(text) = plausible.suspicion(number, str::to_owned) {
+        let plausible = plausible(quantity, 0.0, of);
+        if let Some(text) = suspicion(&plausible, number, str::to_owned) {
             output.note(format_args!("{flag}: {text}"));
         }
     }
@@ -204,13 +139,15 @@ fn note<'a>(
         let Some((quantity, home)) = find(name).filter(|_| !noted.contains(&name)) else {
             continue;
         };
-        let far = if form == Form::Range { WIDE } else { FAR };
-        let plausible = Plausible { far, ..Plausible::new(quantity, home, of) };
+        let mut plausible = plausible(quantity, home, of);
+        if form == Form::Range {
+            plausible = plausible.within(WIDE);
+        }
         let shown = |value: &str| match form {
             Form::Assignment => format!("{name}={value}"),
             Form::Range => value.to_owned(),
         };
-        if let Some(text) = plausible.suspicion(number, shown) {
+        if let Some(text) = suspicion(&plausible, number, shown) {
             match form {
                 Form::Assignment => output.note(format_args!("{flag}: {text}")),
                 Form::Range => output.note(format_args!("{flag}: {name}: {text}")),
@@ -223,13 +160,13 @@ fn note<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use opm_core::mechanism::file::{AngleUnit, LengthUnit};
+    use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit};
 
     fn said(text: &str, quantity: Quantity) -> Option<String> {
         let units = FileUnits { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
         let number = text.parse().expect("a number");
-        let plausible = Plausible { quantity, home: 0.0, size: 0.3, far: FAR, units };
-        plausible.suspicion(number, |value| format!("q={value}"))
+        let plausible = Plausible::new(quantity, 0.0, 0.3, units);
+        suspicion(&plausible, number, |value| format!("q={value}"))
     }
 
     #[test]

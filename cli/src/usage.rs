@@ -4,8 +4,9 @@ use crate::args::{Args, WIDEST};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
+use opm_core::text::{message, visible};
 use std::ffi::OsString;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 
 /// Reads a command line, which begins with the program's name.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Args, clap::Error> {
@@ -41,6 +42,28 @@ pub fn with_tips(mut error: clap::Error) -> clap::Error {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
     }
     error
+}
+
+/// Prints an error on standard error. What it repeats of the command line is made visible, and shortened; then it has no
+/// styles.
+pub fn print(mut error: clap::Error) {
+    // On one line: the next one may look like another message.
+    let values = error.context().filter_map(|(kind, value)| match value {
+        ContextValue::String(text) => {
+            Some((kind, ContextValue::String(visible(text).into_owned())))
+        }
+        _ => None,
+    });
+    for (kind, value) in values.collect::<Vec<_>>() {
+        error.insert(kind, value);
+    }
+    let plain = error.render().to_string();
+    let shown = message(&plain);
+    // Nobody is left to be told of a failure.
+    let _ = match *shown == *plain {
+        true => error.print(),
+        false => io::stderr().write_all(shown.as_bytes()),
+    };
 }
 
 /// The commands that have an option of this name.

@@ -18,6 +18,7 @@ use crate::args::{CloudArgs, Output, WorkspaceArgs};
 use crate::failure::Failure;
 use crate::interference;
 use crate::load::{self, Loaded};
+use crate::output::Shown;
 use crate::pose::GridAxis;
 use crate::progress::interruptible;
 use crate::text::{count, plural};
@@ -47,6 +48,8 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
         request.refuse_unused_setup()?;
     }
     let path = args.cloud.output.as_deref();
+    // Before there is a file that nobody would be told of.
+    let progress = interruptible()?;
     if let Some(path) = path {
         loaded.refuse_as_output(path, &[])?;
     }
@@ -65,7 +68,6 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let ends = args.grid.iter().flat_map(GridAxis::ends);
     unitless::note_ranges(output, "--grid", (&loaded, &manipulator), ends);
     interference::note_clearance(output, args.clearance, (&loaded, &manipulator));
-    let progress = interruptible()?;
     let work = Work { output, pool: &threads(args.threads)?, progress: &progress };
     let workspace = work.fit(request, loaded.file.units)?;
     advice::before(&workspace, output);
@@ -165,7 +167,7 @@ fn sweep_shard(
             })),
             other => other,
         })?;
-        output.note(format_args!("{}: shard {shard} is there already", path.display()));
+        output.note(format_args!("{}: shard {shard} is there already", path.shown()));
         (found, Effort::Earlier)
     } else {
         let recording = ShardRecording::create(path)?;
@@ -175,7 +177,7 @@ fn sweep_shard(
             ShardFindings { mechanism, mechanism_label, workspace, shard, found: &found };
         work.record_shard(recording, &findings)?;
         let (reachable, poses) = (count(found.count.reachable), count(found.count.poses));
-        let path = path.display();
+        let path = path.shown();
         output.note(format_args!("{path}: shard {shard}, {reachable} of {poses} poses"));
         (found, effort)
     };

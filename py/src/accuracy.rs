@@ -41,8 +41,8 @@ pub struct Accuracy {
     /// (n, p), metres and radians: the same if all errors come together, and each may use an equal part of the clearance of every
     /// joint that it reaches. None without `clearance`.
     permitted_share: Option<Py<PyArray2<f64>>>,
-    /// (n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. None without
-    /// `clearance`.
+    /// (n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. Infinite
+    /// where no error needs play. None without `clearance`.
     permitted_uniform: Option<Py<PyArray2<f64>>>,
     /// Mechanisms with errors that are drawn at random. None without `samples`.
     samples: Option<Py<AccuracySamples>>,

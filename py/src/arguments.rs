@@ -7,6 +7,7 @@ use numpy::{AllowTypeChange, PyArray2, PyArrayLike2, PyUntypedArray, PyUntypedAr
 use opm_core::mechanism::examples;
 use opm_core::skeleton::{Density, OutOfRange};
 use opm_export::MjcfOptions;
+use opm_mcap::input::{self, Expected, InputError, Pipes};
 use opm_workspace::MOST_THREADS;
 use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -121,23 +122,25 @@ pub fn path(given: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
     given.py().import("os")?.call_method1("fsdecode", (given,))?.extract()
 }
 
-/// The text of a file, or Python's exception for the system's error, with the file's name. If there is
-/// no such file, `hint` follows the message.
-pub fn text(py: Python<'_>, path: &Path, expected: &str, hint: &str) -> PyResult<String> {
-    let bytes = std::fs::read(path).map_err(|error| {
+/// The text of a file, or Python's exception for the system's error, with the file's name. If there is no such file, `hint`
+/// follows the message. Pipes are refused: Python could not be interrupted while it waits for one.
+pub fn text(py: Python<'_>, path: &Path, expected: Expected, hint: &str) -> PyResult<String> {
+    py.detach(|| input::text(path, expected, Pipes::Refuse)).map_err(|error| {
+        let missing = error.is_missing();
+        let error = match error {
+            InputError::Io(error) => error,
+            error => {
+                let label = path.display().to_string();
+                return wrong(format!("{}: {error}", error.place(&label)));
+            }
+        };
         let Some(number) = error.raw_os_error() else { return error.into() };
-        let missing = error.kind() == std::io::ErrorKind::NotFound;
         let message =
             py.import("os").and_then(|os| os.call_method1("strerror", (number,))?.extract());
         let message: String = message.unwrap_or_else(|_| error.to_string());
         let message = if missing { message + hint } else { message };
         // Python chooses the class by the number: FileNotFoundError, IsADirectoryError, ...
         PyOSError::new_err((number, message, path.as_os_str().to_owned()))
-    })?;
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
-        wrong(format!("{}:{line}: not UTF-8, expected {expected}", path.display()))
     })
 }
 
@@ -149,7 +152,7 @@ pub fn mechanism(py: Python<'_>, path: &Path, shipped: &str) -> PyResult<(String
         Some(_) => format!("; the shipped example is {shipped}({label:?})"),
         None => String::new(),
     };
-    Ok((text(py, path, "a mechanism file", &hint)?, label))
+    Ok((text(py, path, Expected::MECHANISM, &hint)?, label))
 }
 
 /// The argument as an array of numbers of any shape; entries that are masked or missing are NaN.

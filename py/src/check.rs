@@ -7,6 +7,7 @@ use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
 use opm_check::{Comparison as Compared, Options, check};
 use opm_mcap::RecoverError;
+use opm_mcap::input::is_same_file;
 use opm_study::recording::recovered_name;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -174,7 +175,13 @@ pub fn recover(
         Some(output) => arguments::path(output)?,
         None => recovered_name(&path),
     };
-    if target == path {
+    if !target.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+        return Err(wrong(format!(
+            "output is {}, expected a name that ends in .mcap",
+            target.display()
+        )));
+    }
+    if target == path || is_same_file(&target, &path) {
         return Err(wrong(format!("output is {}, the file to recover", path.display())));
     }
     let done = py.detach(|| opm_mcap::recover(&path, &target));

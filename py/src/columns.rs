@@ -1,5 +1,6 @@
 //! The values of one joint, from results with a table of joints and one of imaginary joints.
 
+use opm_core::text::cell;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyEllipsis;
@@ -20,7 +21,7 @@ pub fn column<'py>(
         }
     }
     let known = tables.map(|(names, _)| names.join(", ")).join(", ");
-    Err(PyKeyError::new_err(format!("{name}: no such joint among {known}")))
+    Err(PyKeyError::new_err(format!("{}: no such joint among {known}", cell(name))))
 }
 
 /// A view of a mapping, by the class of `collections.abc` with this name.

@@ -1,5 +1,6 @@
 //! What goes wrong, as Python exceptions with the program's messages.
 
+use opm_core::text;
 use opm_study::{RequestError, RequestOption, StudyError};
 use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
@@ -23,7 +24,7 @@ pub fn failed(error: &dyn Error) -> PyErr {
         }
         cause = inner.source();
     }
-    OpmError::new_err(message)
+    wrong(message)
 }
 
 /// The exception for an analysis that ended early.
@@ -77,5 +78,5 @@ fn argument(option: RequestOption) -> &'static str {
 
 /// An `OpmError` with a message of this module.
 pub fn wrong(message: impl Into<String>) -> PyErr {
-    OpmError::new_err(message.into())
+    OpmError::new_err(text::message(&message.into()).into_owned())
 }

@@ -1,12 +1,13 @@
 //! The explorer: a page that shows a mechanism in a browser, or in a notebook.
 
-use crate::error::failed;
+use crate::error::{failed, wrong};
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
-use opm_study::recording::partial;
+use opm_mcap::{PartialFile, RecordError};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
-use std::fs;
+use std::error::Error;
+use std::io::Write;
 use std::path::PathBuf;
 
 /// Height of the page in a notebook, pixels.
@@ -32,21 +33,38 @@ impl Explorer {
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     Name of the file, which browsers want to end in ``.html``.
+    ///     Name of the file, which ends in ``.html``.
     ///
     /// Raises
     /// ------
     /// OSError
     ///     The file cannot be written.
+    /// OpmError
+    ///     Its name does not end in ``.html``.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let unfinished = partial(&path);
-        let written = py.detach(|| {
-            fs::write(&unfinished, &self.html).and_then(|()| fs::rename(&unfinished, &path))
-        });
-        written.map_err(|error| {
-            // What was written of it has no use.
-            let _ = fs::remove_file(&unfinished);
-            PyOSError::new_err(format!("{}: {error}", path.display()))
+        // As the command does: browsers take the kind of a file from its ending.
+        if !path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("html") || e.eq_ignore_ascii_case("htm"))
+        {
+            return Err(wrong(format!("{}: expected a name that ends in .html", path.display())));
+        }
+        py.detach(|| {
+            let mut file = PartialFile::create(&path)?;
+            let written = file.write_all(self.html.as_bytes()).and_then(|()| file.flush());
+            match written {
+                Ok(()) => file.commit(),
+                Err(error) => {
+                    // What was written of it has no use.
+                    file.discard();
+                    Err(error)
+                }
+            }
+            .map_err(RecordError::Io)
+        })
+        .map_err(|error| {
+            let cause = error.source().map_or_else(String::new, |cause| format!(": {cause}"));
+            PyOSError::new_err(format!("{}: {error}{cause}", path.display()))
         })
     }
 

@@ -3,17 +3,19 @@
 mod assemblies;
 
 use crate::arguments;
-use crate::error::wrong;
+use crate::error::{failed, wrong};
+use crate::given::Columns;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
 use crate::rows::Rows;
 pub use assemblies::Assemblies;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use opm_core::forward::{self as core, ForwardError, NearError, Stop};
+use opm_core::forward::{self as core, ForwardError, LeastChange, NearError, Stop};
 use opm_core::manipulator::Mode;
 use opm_study::Tracker;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -138,14 +140,12 @@ impl Manipulator {
                 return Ok(Vec::new());
             }
             let (values, start) = (joints.row(row), start(row));
-            let mut found = if newton {
+            let found = if newton {
                 self.nearest_assembly(values, start, mode)
             } else {
-                self.every_assembly(values, start)
-            }
-            .map_err(|problem| format!("row {row}: {problem}"))?;
-            found.retain(|assembly| mode.is_none_or(|mode| assembly.mode == mode));
-            Ok(found)
+                self.every_assembly(values, start, mode)
+            };
+            found.map_err(|problem| format!("row {row}: {problem}"))
         };
         let found: Vec<_> = if joints.count <= FEW {
             (0..joints.count).map(solve).collect()
@@ -155,6 +155,55 @@ impl Manipulator {
         };
         let found = found.into_iter().collect::<Result<Vec<_>, _>>().map_err(wrong)?;
         Assemblies::new(py, self, &joints, &found)
+    }
+
+    /// The least change of the actuated joints with which the mechanism can be assembled, where it cannot with given values.
+    ///
+    /// The joints then have no pose, and :meth:`forward` finds no assembly. They reach the nearest values that have one where
+    /// the platform is at a parallel singularity.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints : (a,) array_like, or mapping
+    ///     Values of the actuated joints, in the order of `actuated`, or by name; metres and radians.
+    ///
+    /// Returns
+    /// -------
+    /// dict, or None
+    ///     ``"together"``, (a,): the changes of all joints whose sum of squares is least, with a length over the mechanism's size.
+    ///     ``"alone"``, (a,): the least change of each joint, with the others as they are given; NaN where none was found. None
+    ///     where there is an assembly, or where no answer was found that holds.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The mechanism's forward kinematics have no closed form, or a value is not a number.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import opm_kinematics as opm
+    /// >>> m = opm.examples.load("planar-3rpr")
+    /// >>> change = m.least_change([0.01, 0.01, 0.5])
+    /// >>> bool(change["alone"][2] < change["together"][2] < 0), m.least_change([0.01, 0.01, 0.01]) is None
+    /// (True, True)
+    fn least_change<'py>(
+        &self,
+        py: Python<'py>,
+        joints: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let coordinates = self.inner.coordinates();
+        let names: Vec<&str> =
+            self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
+        let joints = arguments::row(joints, "joints", Columns::all(&names))?;
+        let found = py.detach(|| self.inner.least_change(&joints));
+        let Some(LeastChange { together, alone }) = found.map_err(|error| failed(&error))? else {
+            return Ok(None);
+        };
+        let dict = PyDict::new(py);
+        dict.set_item("together", together.into_pyarray(py))?;
+        let alone: Vec<f64> = alone.into_iter().map(|change| change.unwrap_or(f64::NAN)).collect();
+        dict.set_item("alone", alone.into_pyarray(py))?;
+        Ok(Some(dict))
     }
 
     /// The pose for each row of actuated joint values, near the pose of the row before it, in one working mode.
@@ -227,11 +276,20 @@ impl Manipulator {
 }
 
 impl Manipulator {
-    /// Every assembly with these values of the actuated joints, those nearest to a pose first.
-    fn every_assembly(&self, joints: &[f64], near: &[f64]) -> Result<Vec<core::Assembly>, String> {
+    /// Every assembly with these values of the actuated joints, in one mode if that is given, those nearest to a pose first.
+    fn every_assembly(
+        &self,
+        joints: &[f64],
+        near: &[f64],
+        mode: Option<Mode>,
+    ) -> Result<Vec<core::Assembly>, String> {
         let found = self.inner.forward(joints);
         let mut list = found.map_err(|error: ForwardError| error.to_string())?.list;
-        let near = self.inner.platform_pose(near).map_err(|error| format!("near: {error}"))?;
+        if let Some(mode) = mode {
+            self.inner.keep_assemblies_in(&mut list, mode);
+        }
+        let near = self.inner.displacement_in(near, mode.unwrap_or(self.inner.home_mode()));
+        let near = self.inner.platform_at(&near.map_err(|error| format!("near: {error}"))?);
         self.inner.sort_assemblies(&mut list, &near);
         Ok(list)
     }

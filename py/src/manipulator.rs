@@ -11,6 +11,7 @@ use crate::place::placement;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::snap;
 use crate::solutions::{Names, Solutions};
+use opm_core::decomposition::mobility::mobility;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::OrientationCoordinates;
@@ -19,8 +20,10 @@ use opm_core::mechanism::family::{Family, ParameterValue};
 use opm_core::mechanism::file::{FileUnits, Locations, MechanismFile};
 use opm_core::task;
 use opm_export::{Keyframes, mjcf};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods, PyIterator, PyMapping};
+use std::ffi::CString;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -168,7 +171,7 @@ impl Manipulator {
     ) -> PyResult<Self> {
         let label = label.unwrap_or_else(|| "mechanism".to_owned());
         let (read, text) = snap::read(py, text, &label, tolerance)?;
-        Self::compile(read, text, label)
+        Self::compile(read, text, label)?.warned(py)
     }
 
     /// The geometric parameters of its family by name; empty for a list of joints.
@@ -354,6 +357,12 @@ impl Manipulator {
     #[getter]
     fn home_mode(&self) -> String {
         self.inner.format_mode(self.inner.home_mode())
+    }
+
+    /// What cannot be told at home, where home is a parallel singularity; None where it is regular. Reading such a mechanism gives this as a UserWarning.
+    #[getter]
+    fn home_warning(&self) -> Option<String> {
+        mobility(self.inner.mechanism()).ok().and_then(|found| found.parallel_home())
     }
 
     /// Number of two-valued choices; there are ``2**choices`` working modes.
@@ -556,6 +565,15 @@ impl Manipulator {
     pub fn compile(file: MechanismFile, text: String, label: String) -> PyResult<Self> {
         let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;
         Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: file.family })
+    }
+
+    /// The same, after a warning where home is a parallel singularity.
+    pub fn warned(self, py: Python<'_>) -> PyResult<Self> {
+        if let Some(text) = self.home_warning() {
+            let message = CString::new(format!("{}: {text}", self.label))?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
+        }
+        Ok(self)
     }
 
     /// The columns of joints that an argument names.

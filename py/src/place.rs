@@ -222,7 +222,11 @@ impl Manipulator {
         // Without dependent coordinates, the platform is at the same place in every mode.
         let mode = mode.filter(|_| !self.inner.dependent_coordinates().is_empty());
         let located = self.located(py, transforms, threads, widths, |place, [out]| {
-            let Ok(pose) = self.inner.locate_platform(place) else { return };
+            let found = match mode {
+                Some(mode) => self.inner.locate_platform_in(place, mode),
+                None => self.inner.locate_platform(place),
+            };
+            let Ok(pose) = found else { return };
             if mode.is_none_or(|mode| self.inner.is_at(&pose, mode, place)) {
                 out.copy_from_slice(&pose);
             }

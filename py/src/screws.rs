@@ -2,6 +2,7 @@
 
 use crate::error::wrong;
 use crate::manipulator::Manipulator;
+use crate::snap;
 use nalgebra::{Point3, Vector6};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods};
 use opm_core::group::screw::Screw;
@@ -25,7 +26,8 @@ impl Manipulator {
     ///     One array for each leg, by name; without names the legs are leg1, leg2, ... A row is the twist (omega; v) of a
     ///     joint with one degree of freedom, in the base frame, from base to platform, of any length except zero:
     ///     ``(a, p × a + h a)`` rotates about ``a`` through ``p`` with an advance of ``h`` metres per radian, ``(0, a)``
-    ///     slides along ``a``. A joint with several degrees of freedom has several rows.
+    ///     slides along ``a``. A joint with several degrees of freedom has several rows. Numbers may be rounded, as those of
+    ///     float32 are: an advance below one ten-thousandth of the mechanism's size is none.
     /// actuated : sequence of (n,) sequences of bool
     ///     Which joints are actuated: one sequence for each leg.
     /// home : sequence of (n,) sequences of float, optional
@@ -38,6 +40,10 @@ impl Manipulator {
     ///     Reference point of the platform at home, metres; the base's origin if not given.
     /// name : str
     ///     Name of the mechanism.
+    /// tolerance : float, optional
+    ///     Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+    ///     count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+    ///     much it was off; `text` is then the corrected mechanism.
     ///
     /// Raises
     /// ------
@@ -46,11 +52,12 @@ impl Manipulator {
     #[staticmethod]
     #[pyo3(signature = (
         legs, actuated, *, home = None, limits = None, joints = None, platform = [0.0; 3],
-        name = "mechanism",
+        name = "mechanism", tolerance = None,
     ))]
     // One a keyword of Python's.
     #[allow(clippy::too_many_arguments)]
     fn from_screws(
+        py: Python<'_>,
         legs: &Bound<'_, PyAny>,
         actuated: &Bound<'_, PyAny>,
         home: Option<&Bound<'_, PyAny>>,
@@ -58,6 +65,7 @@ impl Manipulator {
         joints: Option<&Bound<'_, PyAny>>,
         platform: [f64; 3],
         name: &str,
+        tolerance: Option<f64>,
     ) -> PyResult<Self> {
         let legs = read_legs(legs)?;
         let actuated: Vec<Vec<bool>> = per_joint(actuated, "actuated", "bools", &legs)?;
@@ -106,7 +114,8 @@ impl Manipulator {
         // The mechanism goes through a file, so that it is checked like any other, can be saved, and can be pickled.
         let text = file::write(&mechanism, FileUnits::SI, Digits::All);
         let file = file::read(&text).map_err(|e| wrong(message(&e, &text, &legs)))?;
-        Self::compile(file, text, name.to_owned())
+        let (file, text) = snap::within(py, (file, text), name, tolerance)?;
+        Self::compile(file, text, name.to_owned())?.warned(py)
     }
 
     /// The joints' unit screws by leg, (f, 6) each: (omega; v) in base coordinates, as they are at home, one row for each degree of freedom.

@@ -1,7 +1,7 @@
 //! Reading mechanism files whose joints nearly fit their subspaces.
 
 use crate::error::{failed, wrong};
-use opm_core::decomposition::{Snapped, snap};
+use opm_core::decomposition::{Snapped, slightly_off, snap};
 use opm_core::mechanism::file::{self, Digits, MechanismFile};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -15,8 +15,31 @@ pub fn read(
     label: &str,
     tolerance: Option<f64>,
 ) -> PyResult<(MechanismFile, String)> {
-    let mut read = file::read(&text).map_err(|errors| wrong(errors.in_file(label)))?;
-    let Some(tolerance) = tolerance else { return Ok((read, text)) };
+    let read = file::read(&text).map_err(|errors| wrong(errors.in_file(label)))?;
+    within(py, (read, text), label, tolerance)
+}
+
+/// Snaps a mechanism that was read, with its text, within a tolerance (metres) if one is given; else warns of joints that are
+/// off.
+pub fn within(
+    py: Python<'_>,
+    (mut read, text): (MechanismFile, String),
+    label: &str,
+    tolerance: Option<f64>,
+) -> PyResult<(MechanismFile, String)> {
+    let Some(tolerance) = tolerance else {
+        // The joints of a family are exact by construction.
+        if read.family.is_none()
+            && let Some(near) = slightly_off(&read.mechanism)
+        {
+            let (tolerance, what) =
+                (near.tolerance * 1.01, "joints are slightly off their subspaces");
+            let message = format!("{label}: {what}: {near}; tolerance={tolerance:.3e} snaps it");
+            let message = CString::new(message)?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
+        }
+        return Ok((read, text));
+    };
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(wrong(format!(
             "tolerance is {tolerance:?}, expected a positive length in metres"

@@ -18,6 +18,7 @@ use opm_analysis::Setup;
 use opm_core::manipulator::Mode;
 use opm_core::mechanism;
 use opm_core::motion::{Ends, PlatformMotion};
+use opm_core::table::ColumnNames;
 use opm_core::trajectory as core_trajectory;
 use opm_interference::{Distances, Interference, Watch, Watched};
 use opm_study::recording::{Attachment, MotionRecorder, TableOptions, write_motion_table};
@@ -25,7 +26,7 @@ use opm_study::{DEFAULT_RATE, MotionRequest};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 pub use read::motion;
-use read::{parse, read, spline_ends, through};
+use read::{Reading, parse, read, spline_ends, through};
 use record::Record;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -152,6 +153,11 @@ struct Source {
 /// ends : str, optional
 ///     How a spline through waypoints or the poses of a table starts and ends: ``"rest"`` (no speed; if not given),
 ///     ``"natural"`` (no acceleration), or ``"periodic"`` (as it ends, so it starts). A motion file says it itself.
+/// columns : dict of str, optional
+///     The columns of a table of poses (``.csv``) that are read: for ``t`` and each task coordinate the heading of its column,
+///     such as ``{"t": "stamp", "x": "pos_x"}``. Others are passed over.
+/// relative_time : bool, optional
+///     Count the times of a table of poses (``.csv``) from that of its first row, such as seconds since 1970.
 /// time_optimal : bool, optional
 ///     The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
 ///     joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.
@@ -167,7 +173,7 @@ struct Source {
 ///     Lists every problem of the file with its line and column; or waypoints are not poses, or times do not increase (the
 ///     message gives the index of the waypoint, counted from zero).
 #[pyfunction]
-#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None, time_optimal = false, clearance = None))]
+#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None, columns = None, relative_time = false, time_optimal = false, clearance = None))]
 #[allow(clippy::too_many_arguments)]
 pub fn trajectory(
     py: Python<'_>,
@@ -177,6 +183,8 @@ pub fn trajectory(
     rate: Option<f64>,
     mode: Option<&str>,
     ends: Option<&str>,
+    columns: Option<BTreeMap<String, String>>,
+    relative_time: bool,
     time_optimal: bool,
     clearance: Option<f64>,
 ) -> PyResult<Trajectory> {
@@ -185,6 +193,13 @@ pub fn trajectory(
     }
     let (owner, manipulator) = (manipulator, manipulator.get());
     let ends = ends.map(spline_ends).transpose()?;
+    let columns = columns.map(|names| ColumnNames::new(names.into_iter().collect())).transpose();
+    let columns = columns.map_err(|problem| wrong(format!("columns: {problem}")))?;
+    let reading = Reading { ends, columns: columns.as_ref(), relative_time };
+    if (columns.is_some() || relative_time) && motion.extract::<PathBuf>().is_err() {
+        let given = if columns.is_some() { "columns" } else { "relative_time" };
+        return Err(wrong(format!("{given}: waypoints have neither, expected a CSV file")));
+    }
     let (motion, file_name, text) = match times {
         Some(times) => {
             let times = arguments::list(times, "times")?;
@@ -194,7 +209,7 @@ pub fn trajectory(
         None if time_optimal && motion.extract::<PathBuf>().is_err() => {
             through(manipulator, motion, None, ends.unwrap_or_default())?
         }
-        None => read(manipulator, motion, ends)?,
+        None => read(manipulator, motion, reading)?,
     };
     let ends = ends.unwrap_or_default();
     let mode = match mode {
@@ -288,7 +303,8 @@ impl Trajectory {
         let (manipulator, file_name, text, rate, ends, time_optimal, clearance) = source;
         let ends = spline_ends(&ends)?;
         let csv = file_name.to_ascii_lowercase().ends_with(".csv").then_some(ends);
-        let motion = parse(manipulator.get(), &text, (&file_name, &file_name), csv)?;
+        let reading = Reading { ends: csv, ..Default::default() };
+        let (motion, _) = parse(manipulator.get(), &text, (&file_name, &file_name), reading)?;
         let mode: String = attribute(attributes, "mode")?;
         let signs = manipulator.get().mode(&mode)?;
         let motion = match time_optimal {

@@ -1,6 +1,7 @@
 """Manipulators from arrays of screws, held against the mechanism files that say the same."""
 
 import pickle
+import warnings
 
 import numpy as np
 import opm_kinematics as opm
@@ -129,6 +130,67 @@ def test_the_screws_of_a_mechanism_make_it_again():
     assert pickle.loads(pickle.dumps(again)).text == again.text
     assert opm.Manipulator.parse(again.text).joint_names == again.joint_names
 
+
+def parts_of(m):
+    ends = np.cumsum([0, *(len(s) for s in m.screws.values())])
+    flags = np.isin(np.arange(len(m.joint_names)), m.actuated)
+    return [flags[a:b] for a, b in zip(ends, ends[1:], strict=False)]
+
+
+def rounded(screws, how):
+    """Screws of no particular length, in single precision or with six digits."""
+    scaled = {leg: 0.7 * rows for leg, rows in screws.items()}
+    if how == "float32":
+        return {leg: rows.astype(np.float32) for leg, rows in scaled.items()}
+    return {leg: [[float(f"{c:.5e}") for c in row] for row in rows] for leg, rows in scaled.items()}
+
+
+@pytest.mark.parametrize("how", ["float32", "six digits"])
+@pytest.mark.parametrize("name", ["planar-3rrr", "agile-eye", "schoenflies-4dof", "plano-spherical-5dof-joints"])
+def test_rounded_screws_are_no_helical_joints(name, how):
+    m = opm.examples.load(name)
+    again = opm.Manipulator.from_screws(rounded(m.screws, how), parts_of(m))
+    assert again.text.count("helical") == m.text.count('type = "helical"')
+    for mine, theirs in zip(again.screws.values(), m.screws.values(), strict=True):
+        np.testing.assert_allclose(mine, theirs, atol=2e-5)
+    assert again.check(samples=10).holds
+    snapped = again
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        snapped = opm.Manipulator.from_screws(rounded(m.screws, how), parts_of(m), tolerance=1e-4)
+    assert all("snapped" in str(warning.message) and "leg" in str(warning.message) for warning in told)
+    assert snapped.check(samples=10).holds
+
+
+def test_screws_that_miss_tell_by_how_much():
+    m = opm.examples.load("planar-3rrr")
+    screws = {leg: rows.copy() for leg, rows in m.screws.items()}
+    first = next(iter(screws))
+    # One of the parallel axes is tilted by a milliradian.
+    turn = exponential(np.array([1e-3, 0, 0, 0, 0, 0]), 1.0)
+    screws[first][1] = adjoint(turn[:3, :3], np.zeros(3)) @ screws[first][1]
+    with pytest.raises(opm.OpmError, match="tolerance of .* m: .*0.0010 rad off"):
+        opm.Manipulator.from_screws(screws, parts_of(m))
+    with pytest.warns(UserWarning, match="snapped"):
+        snapped = opm.Manipulator.from_screws(screws, parts_of(m), tolerance=1e-2)
+    assert snapped.check(samples=10).holds
+    with pytest.raises(opm.OpmError, match="tolerance is -1.0, expected a positive length"):
+        opm.Manipulator.from_screws(screws, parts_of(m), tolerance=-1)
+
+
+def test_the_least_change_of_joints_that_do_not_close():
+    """Two chains from spools that are 2 m apart, which are too short by half a metre in sum."""
+    rows = [[0, 0, 1, 0, 1, 0], [0, 0, 0, 0.8, -0.6, 0], [0, 0, 1, 0, 0, 0]], [[0, 0, 1, 0, -1, 0], [0, 0, 0, -0.8, -0.6, 0]]
+    # Spools at (-1, 0.75) and (1, 0.75): the rows above have their axes there.
+    rows[0][0][3:], rows[1][0][3:] = [0.75, 1, 0], [0.75, -1, 0]
+    m = opm.Manipulator.from_screws(
+        list(rows), [[False, True, False], [False, True]], home=[[0, 1.25, 0], [0, 1.25]], joints=[["a", "l", "b"], ["c", "r"]]
+    )
+    change = m.least_change({"l": 0.7, "r": 0.8})
+    np.testing.assert_allclose(change["together"], [0.25, 0.25], atol=1e-8)
+    np.testing.assert_allclose(change["alone"], [0.5, 0.5], atol=1e-8)
+    assert m.least_change([1.2, 1.3]) is None
+    assert m.forward([0.7, 0.8]).counts == 0
 
 
 @pytest.mark.parametrize(

@@ -53,3 +53,10 @@ def test_an_exact_mechanism_stays_as_it_is() -> None:
 def test_a_tolerance_is_a_positive_length(tolerance: float) -> None:
     with pytest.raises(opm.OpmError, match="expected a positive length"):
         opm.Manipulator.parse(off(), tolerance=tolerance)
+
+
+def test_a_joint_that_is_slightly_off_is_a_warning() -> None:
+    slightly = off().replace("[0.4330127, 0.25, 0]", "[0.01, 0, 0]")
+    told = "joint theta32 of leg leg2: its axis passes the centre of the others at 0.0090 mm; tolerance="
+    with pytest.warns(UserWarning, match=told):
+        opm.Manipulator.parse(slightly)

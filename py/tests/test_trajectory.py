@@ -222,3 +222,41 @@ def test_the_fastest_timing_keeps_the_limits_and_the_poses(tmp_path):
     assert one.read_bytes() == other.read_bytes()
     with pytest.raises(opm.OpmError, match="no max_acceleration of S1, S2, S3"):
         opm.trajectory(opm.examples.load("translational-helical-3dof"), poses, times=times, time_optimal=True)
+
+
+PLAIN = "t,x,xi\n0,0,0\n0.5,0.01,0.1\n"
+
+
+def test_tables_of_other_programs_are_read_by_name_and_from_their_first_time(manipulator, tmp_path):
+    def follow(text, **options):
+        path = tmp_path / "motion.csv"
+        path.write_text(text)
+        return opm.trajectory(manipulator, path, **options)
+
+    plain = follow(PLAIN)
+    other = "stamp,pos_x (mm),quality,xi\n1700000000.25,0,9,0\n1700000000.75,10,8,0.1\n"
+    with pytest.raises(opm.OpmError, match=r'motion.csv:1:1: no coordinate "stamp".*columns=\{"t": "stamp", "x": "pos_x"'):
+        follow(other)
+    names = {"t": "stamp", "x": "pos_x", "xi": "xi"}
+    with pytest.raises(opm.OpmError, match="motion.csv:2:1: .*since 1970.*relative_time=True"):
+        follow(other, columns=names)
+    named = follow(other, columns=names, relative_time=True)
+    np.testing.assert_array_equal(named.times, plain.times)
+    np.testing.assert_allclose(named.joints, plain.joints, atol=1e-12)
+    again = pickle.loads(pickle.dumps(named))
+    np.testing.assert_allclose(again.joints, plain.joints, atol=1e-12)
+    with pytest.raises(opm.OpmError, match='no column "z" for x'):
+        follow(other, columns={"t": "stamp", "x": "z"})
+    with pytest.raises(opm.OpmError, match="columns: .*CSV file"):
+        opm.trajectory(manipulator, "plano-spherical-sinusoids", columns=names)
+    with pytest.raises(opm.OpmError, match="relative_time: .*CSV file"):
+        opm.trajectory(manipulator, np.zeros((2, 5)), times=[0, 1], relative_time=True)
+    with pytest.raises(opm.OpmError, match="motion.csv:1:1: the columns are separated by semicolons"):
+        follow("t;x\n0;0\n1;0,01\n")
+
+
+def test_a_motion_in_millimetres_is_doubted(manipulator, tmp_path):
+    path = tmp_path / "motion.csv"
+    path.write_text("t,x\n0,0\n1,30\n")
+    with pytest.warns(UserWarning, match=r"motion.csv:3: x has no unit and was read as 30 m.*head the column x \[mm\]"):
+        opm.trajectory(manipulator, path)

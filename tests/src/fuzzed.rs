@@ -11,7 +11,9 @@ use joints::joints;
 use opm_check::{Comparison, Options, closures, rows};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file;
-use opm_core::motion::{Ends, file as motion_file, table};
+use opm_core::motion::table::TableOptions;
+use opm_core::motion::{file as motion_file, table};
+use opm_core::table::ColumnNames;
 use opm_mcap::{ReadError, read};
 use std::io::Write as _;
 use std::sync::LazyLock;
@@ -46,7 +48,16 @@ pub fn motion(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(rest) else { return };
     let found = match first % 2 {
         0 => motion_file::read(text, &PLANO),
-        _ => table::read(text, "table", &PLANO, Ends::default()),
+        first => {
+            let columns: Option<ColumnNames> =
+                "t=time,x=pos_x,y".parse().ok().filter(|_| first % 4 == 3);
+            let options = TableOptions {
+                columns: columns.as_ref(),
+                relative_time: first % 8 > 4,
+                ..Default::default()
+            };
+            table::read(text, "table", &PLANO, &options).map(|read| read.motion)
+        }
     };
     match found {
         Ok(motion) => assert!(motion.duration.is_finite() && motion.duration >= 0.0),

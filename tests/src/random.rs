@@ -262,6 +262,7 @@ pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     };
     let classes = [&decomposition.lower, &decomposition.upper];
     let has_height = |class: &&SubspaceClass| matches!(class, SubspaceClass::Schoenflies { .. });

@@ -2,6 +2,8 @@
 //! legs: at every pose and in every mode the product of exponentials of each leg brings the platform to the same
 //! place, and every displacement that the constraining leg makes is found.
 
+mod charts;
+
 use fastrand::Rng;
 use nalgebra::{DVector, Isometry3};
 use opm_core::decomposition::mobility::mobility;

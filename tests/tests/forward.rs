@@ -4,6 +4,7 @@
 
 mod closure;
 mod edges;
+mod least;
 mod near;
 mod pairs;
 

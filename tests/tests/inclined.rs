@@ -54,6 +54,7 @@ fn described(legs: Vec<Vec<Joint>>) -> Mechanism {
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }
 

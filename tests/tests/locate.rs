@@ -104,3 +104,48 @@ fn the_platforms_place_is_its_point_and_its_orientation() {
         assert!((home.translation.vector - manipulator.mechanism().platform.coords).norm() < 1e-12);
     }
 }
+
+/// There is one reference point, wherever it is on the platform: every leg carries it to where the pose in SE(3) says, and
+/// its velocity is that of the twist.
+#[test]
+fn legs_carry_the_reference_point_to_where_it_is_said_to_be() {
+    const STEP: f64 = 1e-6;
+    let mut rng = Rng::with_seed(45);
+    for pair in PAIRS {
+        let mut solved = 0;
+        for _ in 0..20 {
+            let (mut mechanism, decomposition) = mechanism(&mut rng, pair, OPTIONS);
+            mechanism.platform += 0.4 * direction(&mut rng).into_inner();
+            let manipulator = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
+            let home = manipulator.home_pose();
+            let pose: Vec<f64> = home.iter().map(|q| q + 0.1 * (rng.f64() - 0.5)).collect();
+            let mut buffer = manipulator.solution();
+            let found = manipulator.inverse(&pose, manipulator.home_mode(), &mut buffer).unwrap();
+            let Some(solution) = found else { continue };
+            solved += 1;
+            let place = manipulator.platform_pose(&pose).unwrap().translation.vector;
+            let point = manipulator.mechanism().platform;
+            let mut joints = solution.joints();
+            for leg in &manipulator.mechanism().legs {
+                let (own, others) = joints.split_at(leg.coordinates().count());
+                joints = others;
+                let carried = leg.displacement(own).unwrap() * point;
+                assert!((carried.coords - place).norm() < 1e-8, "{pair:?}: {}", leg.name);
+            }
+            let mut jacobians = manipulator.jacobians();
+            manipulator.differentiate(solution, &mut jacobians).unwrap();
+            let twist = manipulator.twist_by_pose(&jacobians);
+            for coordinate in 0..pose.len() {
+                let [ahead, behind] = [STEP, -STEP].map(|step| {
+                    let mut moved = pose.clone();
+                    moved[coordinate] += step;
+                    manipulator.platform_pose(&moved).unwrap().translation.vector
+                });
+                let velocity = twist.column(coordinate).fixed_rows::<3>(3).into_owned();
+                let difference = (ahead - behind) / (2.0 * STEP);
+                assert!((velocity - difference).norm() < 1e-7, "{pair:?}, {coordinate}");
+            }
+        }
+        assert!(solved > 0, "{pair:?}");
+    }
+}

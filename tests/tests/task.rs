@@ -114,7 +114,15 @@ fn each_coordinate_moves_along_its_own_screw() {
                     }
                     _ => (axis.unwrap(), reference),
                 };
-                let [first, second] = in_plane(third);
+                // A plane perpendicular to the common rotation, where it stands upright: y points up.
+                let turns = line.is_some() && !matches!(class, SubspaceClass::Cylindrical { .. });
+                let fixed = turns || matches!(class, SubspaceClass::TranslationalSpace);
+                let mut senses = in_plane(third);
+                let sum = third.into_inner() + senses[1].into_inner();
+                if fixed && sum.dot(&Vector3::from(UP)) < 0.0 {
+                    senses = senses.map(|direction| -direction);
+                }
+                let [first, second] = senses;
                 let (amount, at_home) = (0.1 + 0.1 * rng.f64(), coordinate.home);
                 let w = match (axis, plane, class) {
                     (Some(axis), Some(normal), _) => {
@@ -210,6 +218,7 @@ fn level(rng: &mut Rng, rise: f64) -> Mechanism {
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }
 
@@ -497,5 +506,36 @@ fn names_of_coordinates_are_no_names_of_joints() {
         let refused = found.err().map(|error| error.to_string());
         let has_h = matches!(pair, [random::Kind::Cylindrical(_), _]);
         assert_eq!(refused.is_some_and(|told| told.starts_with("joint h of leg leg2")), has_h);
+    }
+}
+
+/// In every upright plane the second axis points up, and the intersection motion towards positive y, or else x: the directions
+/// are computed by hand. The plane is that of the legs of a plano-spherical mechanism, turned on its side.
+#[test]
+fn y_of_an_upright_plane_points_up() {
+    let text = examples::find("plano-spherical-5dof-joints").unwrap().text;
+    for degrees in (0..360).step_by(15) {
+        let azimuth = f64::from(degrees).to_radians();
+        let mut mechanism = file::read(text).unwrap().mechanism;
+        mechanism.task = TaskHints::default();
+        let normal = vector![azimuth.cos(), azimuth.sin(), 0.0];
+        let turned = UnitQuaternion::rotation_between(&Vector3::z(), &normal).unwrap();
+        let turned = Isometry3::from_parts(Translation3::identity(), turned);
+        let manipulator = Manipulator::new(displace(&mechanism, &turned)).unwrap();
+        let task = manipulator.task();
+        for frame in [&task.lower, &task.upper] {
+            let [first, second, third] = [0, 1, 2].map(|i| frame.axes.column(i).into_owned());
+            assert!((second - Vector3::z()).amax() < AGREE, "{degrees}: {second:?}");
+            assert!(third.y > 1e-9 || third.x > 0.99, "{degrees}: {third:?}");
+            assert!((first.cross(&second) - third).amax() < AGREE);
+        }
+        // The first two coordinates move the platform along these directions.
+        for (number, direction) in [(0, task.lower.axes.column(0).into_owned()), (1, Vector3::z())]
+        {
+            let mut pose = manipulator.home_pose();
+            pose[number] += 0.01;
+            let moved = platform(&manipulator, &pose).unwrap().translation.vector;
+            assert!((moved - direction * 0.01).amax() < AGREE, "{degrees}: {moved:?}");
+        }
     }
 }

@@ -45,6 +45,7 @@ fn mechanism(legs: Vec<Vec<Joint>>) -> Mechanism {
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }
 

@@ -212,3 +212,86 @@ fn what_has_no_timing_is_refused() {
     let error = far.time_optimal(&manipulator, manipulator.home_mode()).unwrap_err();
     assert!(matches!(error, TimingError::OutOfReach { .. }), "{error}");
 }
+
+/// A five-bar with arms of 150 mm, whose motors have limits.
+const PLOTTER: &str = r#"
+format = 1
+name = "plotter"
+units = { length = "mm", angle = "deg" }
+[platform]
+point = [200, 180, 0]
+[[leg]]
+name = "L"
+joints = [
+  { name = "L", type = "revolute", axis = [0, 0, 1], point = [0, 0, 0], actuated = true, max_rate = 180, max_acceleration = 720 },
+  { name = "LE", type = "revolute", axis = [0, 0, 1], point = [144.37410025544926, 40.69544416061194, 0] },
+  { name = "pen", type = "revolute", axis = [0, 0, 1], point = [200, 180, 0] },
+]
+[[leg]]
+name = "R"
+joints = [
+  { name = "R", type = "revolute", axis = [0, 0, 1], point = [400, 0, 0], actuated = true, max_rate = 180, max_acceleration = 720 },
+  { name = "RE", type = "revolute", axis = [0, 0, 1], point = [255.62589974455074, 40.69544416061194, 0] },
+]
+"#;
+
+/// A path through points at equal times, each coordinate of a pose a function of a share from 0 to 1, with noise.
+fn noisy(
+    manipulator: &Manipulator,
+    (count, noise, seed): (usize, f64, u64),
+    pose: &dyn Fn(f64) -> Vec<f64>,
+) -> PlatformMotion {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let times: Vec<f64> = (0..count).map(|i| 0.01 * i as f64).collect();
+    let mut columns = vec![Vec::new(); manipulator.task_coordinates().len()];
+    for i in 0..count {
+        let pose = pose(i as f64 / (count - 1) as f64);
+        for (column, value) in columns.iter_mut().zip(pose) {
+            column.push(value + noise * (2.0 * rng.f64() - 1.0));
+        }
+    }
+    PlatformMotion {
+        name: format!("noise {noise} of seed {seed}"),
+        start: 0.0,
+        duration: times[count - 1],
+        rate: None,
+        mode: None,
+        path: Path::Spline(Spline::new(times, columns, Ends::Natural).unwrap()),
+    }
+}
+
+/// What was recorded has noise, and splines have kinks: the fastest timing keeps the limits there too, as the search for
+/// violations sees it.
+#[test]
+fn limits_are_kept_along_noisy_paths() {
+    use std::f64::consts::TAU;
+    let plotter = Manipulator::read(PLOTTER).unwrap();
+    let circle = |share: f64| {
+        let (sin, cos) = (TAU * share).sin_cos();
+        vec![0.2 + 0.02 * cos, 0.15 + 0.02 * sin]
+    };
+    let corners = |share: f64| {
+        // Around a square, with a kink at each corner.
+        let (side, part) = ((4.0 * share) as usize % 4, (4.0 * share).fract());
+        let ends = [[0.0, 0.0], [0.03, 0.0], [0.03, 0.03], [0.0, 0.03], [0.0, 0.0]];
+        let [from, to] = [ends[side], ends[side + 1]];
+        (0..2).map(|i| [0.185, 0.14][i] + from[i] + part * (to[i] - from[i])).collect()
+    };
+    for seed in 0..6 {
+        for noise in [3e-5, 3e-4] {
+            let given = noisy(&plotter, (401, noise, seed), &circle);
+            assert_kept(&given, &fastest(&given, &plotter), &plotter);
+        }
+        let given = noisy(&plotter, (81, 1e-5 * seed as f64, seed), &corners);
+        assert_kept(&given, &fastest(&given, &plotter), &plotter);
+    }
+    let spatial = limited("plano-spherical-5dof-joints", Some(0.5), 2.0);
+    let helix = |share: f64| {
+        let (sin, cos) = (2.0 * TAU * share).sin_cos();
+        vec![0.02 * cos, 0.02 * sin, 0.1 * share, 0.15 + 0.05 * sin, 0.1 * cos]
+    };
+    for seed in 0..3 {
+        let given = noisy(&spatial, (151, 1e-4, seed), &helix);
+        assert_kept(&given, &fastest(&given, &spatial), &spatial);
+    }
+}

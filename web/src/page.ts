@@ -294,11 +294,12 @@ export class Page {
       JSON.stringify([coordinates, dimensions.map(({ name, values }) => [name, values.length]), joints.map(({ name, limits }) => [name, limits])]);
     const rebuilt = kinds || !this.description || names(this.description) !== names(description);
     this.description = description;
-    const { name, lower, upper, intersection, lambda, mobility, imaginary_joints: imaginary } = description;
+    const { name, lower, upper, intersection, lambda, mobility, imaginary_joints: imaginary, home_warning: warning } = description;
     const shared = intersection.dimension ? `a ${intersection.name}` : "no motion";
     const motions = upper.dimension ? `${lower.name} and ${upper.name}, sharing ${shared}` : lower.name;
     const joints = imaginary ? `; ${imaginary} imaginary joint${imaginary === 1 ? "" : "s"}` : "";
-    byId("summary").textContent = `Mobility ${mobility}, joint screws of rank ${lambda}: ${motions}${joints}`;
+    const home = warning ? `. Note: ${warning}` : "";
+    byId("summary").textContent = `Mobility ${mobility}, joint screws of rank ${lambda}: ${motions}${joints}${home}`;
     if (kinds) {
       document.title = `${name} – opm explorer`;
       byId("title").textContent = name;

@@ -121,7 +121,7 @@ export class SlicePanel {
         element("p", { className: "row" }, element("label", { for: "slice-colour" }, "Colour"), colour),
         this.scale,
         facts(fact("Poses of the slice", this.count), fact("Share", this.share), fact("Measure", this.area))),
-      facts(fact("Poses of the whole", this.whole), fact("Measure of the whole", this.wholeShare)),
+      facts(fact("Poses of the whole", this.whole), fact("Size of the whole in coordinates", this.wholeShare)),
       this.beyond,
     );
     this.whole.textContent = "counting…";

@@ -80,6 +80,8 @@ export interface Description {
   imaginary_joints: number;
   joints: Joint[];
   forward: boolean;
+  /** What cannot be told at home, where it is a parallel singularity. */
+  home_warning: string | null;
   dimensions: Dimension[];
   bodies: Body[];
 }

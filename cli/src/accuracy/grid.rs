@@ -6,9 +6,10 @@ use super::report::{
 use super::{Setting, row};
 use crate::args::{AccuracyArgs, Format, Output};
 use crate::failure::Failure;
-use crate::output::{is_stdout, named};
+use crate::output::{Shown, is_stdout, named, stdout};
 use crate::pose::GridAxis;
-use crate::progress::{interruptible, watch};
+use crate::progress::{clean_up_at_ctrl_c, interruptible, watch};
+use crate::target::ends_in;
 use crate::text::{self, Table, count, short};
 use crate::unitless;
 use crate::workspace::threads;
@@ -73,7 +74,7 @@ pub fn run(args: &AccuracyArgs, output: &Output, setting: &Setting<'_>) -> Resul
             return Err(Failure::flag("--format json", problem));
         }
         let work = Work { args, output, setting, grid: &grid, request };
-        return match work.run(&mut io::stdout()) {
+        return match work.run(&mut stdout()) {
             Ok(_) => Ok(()),
             Err(Stop::Cancelled) => Err(Failure::interrupted("interrupted")),
             Err(Stop::Write(error)) => Err(Failure::stdout(error)),
@@ -104,7 +105,9 @@ impl Work<'_> {
     /// Writes the table to a file that gets its name when it is whole.
     fn to_file(&self, path: &Path) -> Result<AccuracyField, Failure> {
         self.setting.loaded.refuse_as_output(path, &[])?;
-        let place = path.display();
+        ends_in(path, &["csv"])?;
+        clean_up_at_ctrl_c()?;
+        let place = path.shown();
         let mut file = PartialFile::create(path).map_err(|error| Failure::at(&place, error))?;
         match self.run(&mut file) {
             Ok(field) => {

@@ -15,7 +15,8 @@ pub fn run(
     output: &Output,
     setting: &Setting<'_>,
 ) -> Result<(), Failure> {
-    let streams = Streams { input, output: args.output.as_deref() };
+    let (target, columns) = (args.output.as_deref(), args.columns.as_ref());
+    let streams = Streams { input, output: target, columns };
     let solve = |stream: Stream<'_>| solve(stream, setting);
     let Some(totals) = stream::run(&streams, output, setting.loaded, solve)? else {
         return Ok(());

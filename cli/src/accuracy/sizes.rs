@@ -3,13 +3,12 @@
 use crate::args::AccuracyArgs;
 use crate::failure::Failure;
 use crate::load;
+use crate::output::Shown;
 use crate::pose::{Misread, Number};
 use opm_accuracy::{Both, Source, Tolerances};
 use opm_core::Quantity;
+use opm_mcap::input::Expected;
 use std::str::FromStr;
-
-/// Largest size of a file of tolerances.
-const LONGEST: u64 = 1 << 20;
 
 /// A length and an angle, or one of them; metres and radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,10 +46,8 @@ pub fn read(args: &AccuracyArgs, sources: &[Source]) -> Result<Vec<f64>, Failure
     let mut tolerances = match &args.tolerances {
         None => Tolerances::default(),
         Some(path) => {
-            let label = path.display().to_string();
-            let Some(text) = load::text(path, LONGEST, "file of tolerances")? else {
-                return Err(Failure::work(format!("{label}: No such file or directory")));
-            };
+            let label = path.shown();
+            let text = load::existing(path, Expected::TOLERANCES)?;
             let read = Tolerances::read(&text, sources);
             read.map_err(|errors| Failure::because(errors.in_file(&label), errors))?
         }

@@ -28,7 +28,8 @@ pub fn run(
     loaded: &Loaded,
     (analyser, mode): (&mut Analyser<'_>, Mode),
 ) -> Result<(), Failure> {
-    let streams = Streams { input, output: args.output.as_deref() };
+    let (target, columns) = (args.output.as_deref(), args.columns.as_ref());
+    let streams = Streams { input, output: target, columns };
     let solve = |stream: Stream<'_>| solve(stream, loaded, analyser, mode);
     let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
     summary.totals.tell(&streams, output, &summary)

@@ -330,7 +330,9 @@ impl Report<'_> {
         }
         if statics.internal() > 0 {
             let internal = text::plural(statics.internal() as u64, "internal effort");
-            let _ = writeln!(text, "redundant actuators: loads do not determine {internal}");
+            // Where they leave a motion, none of them is one too many: they depend on each other at this pose.
+            let actuators = if statics.loose() > 0 { "dependent" } else { "redundant" };
+            let _ = writeln!(text, "{actuators} actuators: loads do not determine {internal}");
         }
         if efforts.is_some_and(|efforts| efforts.balance == Balance::Driven) {
             let _ = writeln!(text, "the load is not balanced: it drives a motion of the platform");

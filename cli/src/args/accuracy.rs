@@ -6,6 +6,7 @@ use crate::pose::{GridAxis, Number, OverAxis, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use opm_accuracy::ErrorModel;
+use opm_core::table::ColumnNames;
 use opm_study::{BOX_BUDGET, MOST_SAMPLES};
 use opm_workspace::MOST_THREADS;
 use std::path::PathBuf;
@@ -61,6 +62,9 @@ pub struct AccuracyArgs {
     /// A CSV file of poses; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
+    /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "grid", "over"])]
+    pub columns: Option<ColumnNames>,
     /// Values of one task coordinate, for the largest errors over a grid; other coordinates stay at home
     #[arg(
         long,
@@ -144,7 +148,7 @@ pub struct AccuracyArgs {
     /// Number of threads of --grid, --over and --samples, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
-    /// Output file for the CSV of --poses or --grid; standard output if it is -
+    /// Output file (.csv) for the table of --poses or --grid; standard output if it is -
     #[arg(
         short,
         long,

@@ -3,6 +3,7 @@
 use super::{MechanismArgs, SetupArgs};
 use crate::pose::{GridAxis, Number, Pose};
 use clap::ValueHint;
+use opm_core::table::ColumnNames;
 use std::path::PathBuf;
 
 /// Forces and transmission at a pose: efforts of the actuators, payload, transmission indices
@@ -49,6 +50,9 @@ pub struct AnalyzeArgs {
     /// A CSV file of poses; - reads standard input. Its column `mode` is not read
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
+    /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "pose")]
+    pub columns: Option<ColumnNames>,
     /// What acts on the mechanism, and how much it gives way.
     #[command(flatten)]
     pub setup: SetupArgs,
@@ -61,7 +65,7 @@ pub struct AnalyzeArgs {
     /// Analyze for each of these values of a number that --set takes, and print a table
     #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "link_stiffness"])]
     pub vary: Option<GridAxis>,
-    /// Output file for the CSV; standard output if it is - or not given
+    /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(
         short,
         long,

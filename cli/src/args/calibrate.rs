@@ -87,7 +87,7 @@ pub struct CalibrateArgs {
     /// Working mode of all measurements: `home`, or a sign for every two-valued choice ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
-    /// Output: the calibrated mechanism file; with --plan a CSV of poses (standard output if it is -)
+    /// Output: the calibrated mechanism file (.toml); with --plan a table of poses (.csv; standard output if it is -)
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
 }

@@ -27,7 +27,7 @@ pub struct ConvertArgs {
     /// List every joint, whatever the form of the file
     #[arg(long)]
     pub joints: bool,
-    /// Output file; standard output if it is - or not given
+    /// Output file (.toml); standard output if it is - or not given
     #[arg(short, long, value_name = "OUT.toml", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
 }

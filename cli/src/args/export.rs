@@ -1,6 +1,6 @@
 //! Arguments of the commands that write a mechanism for other programs.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, MotionTableArgs};
 use clap::{Subcommand, ValueHint};
 use opm_export::MjcfOptions;
 use std::path::PathBuf;
@@ -72,6 +72,9 @@ pub struct MjcfArgs {
     /// Motion to be written as a table beside the model: a TOML or CSV file, or the name of a shipped one
     #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
     pub trajectory: Option<PathBuf>,
+    /// How its table of poses is read.
+    #[command(flatten)]
+    pub table: MotionTableArgs,
 }
 
 /// Write a mechanism as a tree of links (URDF), and what closes its loops (YAML)

@@ -1,6 +1,6 @@
 //! Arguments of the commands that follow a motion: of a platform, or of a single loop.
 
-use super::{MechanismArgs, SetupArgs};
+use super::{MechanismArgs, MotionTableArgs, SetupArgs};
 use crate::linkage::input::InputValue;
 use crate::pose::{GridAxis, Number};
 use clap::{ValueEnum, ValueHint};
@@ -129,6 +129,9 @@ pub struct TrajectoryArgs {
     /// Units of the table: SI and radians, or those of the mechanism file, which the header then names
     #[arg(long, value_enum, default_value_t = TableUnits::Si, requires = "output")]
     pub units: TableUnits,
+    /// How a table of poses is read.
+    #[command(flatten)]
+    pub table: MotionTableArgs,
     /// How the motion through the poses of a CSV file starts and ends
     #[arg(long, value_enum)]
     pub ends: Option<EndsName>,

@@ -4,6 +4,7 @@ use super::MechanismArgs;
 use crate::pose::{GridAxis, Number, Pose};
 use crate::transform::Transform;
 use clap::ValueHint;
+use opm_core::table::ColumnNames;
 use std::path::PathBuf;
 
 /// Inverse kinematics: the joint values at a pose, or at every pose of a CSV file
@@ -54,6 +55,9 @@ pub struct IkArgs {
     /// A CSV file of poses; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
+    /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "transform"])]
+    pub columns: Option<ColumnNames>,
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
     pub all_modes: bool,
@@ -66,7 +70,7 @@ pub struct IkArgs {
     /// Solve for each of these values of a number that --set takes, and print a table
     #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "transform", "all_modes"])]
     pub vary: Option<GridAxis>,
-    /// Output file for the CSV; standard output if it is - or not given
+    /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(
         short,
         long,
@@ -86,7 +90,7 @@ pub struct IkArgs {
 /// can move although the inputs are locked; null if there are too few inputs to hold the section at all.
 ///
 /// The condition number relates the actuated joints to the platform's twist, with lengths divided by
-/// --length. It is null if it is infinite: at a singularity, or with fewer actuators than freedoms.
+/// --length; of a five-bar to the velocity of the hand. It is null if it is infinite: at a singularity, or with fewer actuators than freedoms.
 /// Singularities of the Euler angles (xi = 0) are not counted; `coordinates` is 0 there. A pose out of
 /// reach is an answer (exit status 0).
 ///
@@ -127,7 +131,9 @@ pub struct VelocityArgs {
 /// mechanism's size). Otherwise, or with --near, Newton's method starts from a pose and finds one assembly,
 /// in the working mode of --mode or home. The assembly nearest to home comes first.
 ///
-/// No assembly is an answer (exit status 0): it names what does not meet, and by how much. Angles count
+/// No assembly is an answer (exit status 0): it names what does not meet, and the least change of the joints
+/// with which the mechanism can be assembled, of all together (least sum of squares, lengths over the
+/// mechanism's size) and of each alone; in JSON `least_change`, null where none was found. Angles count
 /// modulo a revolution, except where a screw joint follows them: each revolution is then an assembly of its
 /// own, one advance of the screw away. `opm ik` does not count revolutions; the angles in --joints decide.
 ///
@@ -159,10 +165,13 @@ pub struct FkArgs {
     /// A CSV file of actuated joints, from which poses are found; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
+    /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
+    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "joints")]
+    pub columns: Option<ColumnNames>,
     /// Every assembly of each row of --poses, not just the one near the row before
     #[arg(long, requires = "poses", conflicts_with = "joints")]
     pub all: bool,
-    /// Output file for the CSV; standard output if it is - or not given
+    /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(
         short,
         long,

@@ -56,17 +56,19 @@ use std::path::PathBuf;
 /// exists already is not swept again. `opm merge` joins the parts, and takes --axes, --color, --scalars and
 /// --shape.
 ///
-/// --inscribed takes each point for a cell of the grid, and what lies beyond the grid for outside. The result is exact for
-/// these cells; where between two points the workspace ends is known to half a step, for a disc or a ball to half of a
-/// cell's diagonal. The disc in --kind dexterous is the regular dexterous workspace.
+/// --inscribed takes each point for a cell of the grid, and what lies beyond the grid for outside. A disc or a ball is the
+/// largest in these cells, to 1e-9 of its radius. A box is inside the boundary that is drawn, which cuts the corners of
+/// cells and ends with its points: the largest with sides at points or half-way between them. Where between two points the
+/// workspace ends is known to half a step, for a disc or a ball to half of a cell's diagonal. The disc in --kind dexterous
+/// is the regular dexterous workspace.
 ///
 /// --explain solves every pose of the grid. A leg that is out of reach has no joint values, so that its limits reject
 /// nothing there. With --mode any, what rejects a pose `alone` is what would have to go in one of the modes, and a leg
 /// that reaches the pose in one of them rejects nothing. With -o OUT.mcap the rejected points are recorded too, coloured by
 /// what rejects them, and `opm plot` draws them; a place has the cause of most of its orientations.
 ///
-/// `measure` is the reachable fraction of the volume of the grid's box, over the coordinates with more than
-/// one value. It is an estimate: it may be too small by half a step at every edge of the box that the
+/// The size in coordinates (`measure` in JSON) is the reachable fraction of the volume of the grid's box, over the
+/// coordinates with more than one value. It is an estimate: it may be too small by half a step at every edge of the box that the
 /// workspace does not touch. Angles have equal weight. `opm measure` gives bounds, and weighs orientations
 /// by the Haar measure. `seconds` is the time of the count.
 #[derive(Debug, clap::Args)]

@@ -2,7 +2,7 @@
 
 use crate::analyze::load::numbers;
 use crate::pose::{Misread, Number, assignment};
-use opm_calibrate::{BasePoint, Sigma};
+use opm_calibrate::{BasePoint, SIGMAS, Sigma};
 use opm_core::Quantity;
 use std::str::FromStr;
 
@@ -22,12 +22,14 @@ impl FromStr for Sigmas {
         let of = |name: &str, number: Number| {
             let quantity = if name == "LENGTH" { Quantity::Length } else { Quantity::Angle };
             let value = number.value_of(name, quantity)?;
-            match value > 0.0 {
-                true => Ok(value),
-                false => {
-                    Err(Misread::new(format!("{name} is {value}, expected a positive number")))
-                }
+            if SIGMAS.contains(&value) {
+                return Ok(value);
             }
+            let shown = format!("{value:?}");
+            let shown = shown.trim_end_matches(".0");
+            Err(Misread::new(format!(
+                "{name} is {shown}, expected a positive number, 1e-75 to 1e75"
+            )))
         };
         let [length, angle] = numbers(text, ["LENGTH", "ANGLE"], of)?;
         let (first, second) = text.split_once(',').expect("two numbers were read");
@@ -60,7 +62,9 @@ mod tests {
         assert_eq!("0.02mm,0.001deg".parse::<Sigmas>().unwrap().sigma.length, 2e-5);
         for (text, expected) in [
             ("20e-6", "1 number in \"20e-6\", expected 2: LENGTH,ANGLE"),
-            ("0,1", "LENGTH is 0, expected a positive number"),
+            ("0,1", "LENGTH is 0, expected a positive number, 1e-75 to 1e75"),
+            ("5e-324,1", "LENGTH is 5e-324, expected"),
+            ("1,1e300", "ANGLE is 1e300, expected"),
             ("1deg,1", "LENGTH is a length"),
         ] {
             let message = text.parse::<Sigmas>().expect_err(text).to_string();

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::{is_stdout, print_with};
 use crate::progress::{interruptible, watch_steps};
-use crate::target::Target;
+use crate::target::{Target, ends_in};
 use crate::text::{Table, plural, short};
 use opm_calibrate::{BasePoint, Column, Options, Plan, candidates, plan};
 use opm_core::Quantity;
@@ -32,12 +32,13 @@ pub fn run(
     let target = match file {
         Some(path) => {
             loaded.refuse_as_output(path, &args.poses.iter().map(|p| &**p).collect::<Vec<_>>())?;
+            ends_in(path, &["csv"])?;
             Some(Target::create(path)?)
         }
         None => None,
     };
     let given = match &args.poses {
-        Some(path) => Some(poses(path, manipulator)?),
+        Some(path) => Some(poses(path, (loaded, manipulator), output)?),
         None => None,
     };
     let progress = interruptible()?;
@@ -93,8 +94,12 @@ pub fn run(
 }
 
 /// The poses of a CSV file; coordinates that it does not have stay at home.
-fn poses(path: &std::path::Path, manipulator: &Manipulator) -> Result<Vec<Vec<f64>>, Failure> {
-    let table = table::read(path, manipulator, &[])?;
+fn poses(
+    path: &std::path::Path,
+    (loaded, manipulator): (&Loaded, &Manipulator),
+    output: &Output,
+) -> Result<Vec<Vec<f64>>, Failure> {
+    let table = table::read(path, (loaded, manipulator), &[], output)?;
     let names: Vec<&str> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
     let pose = |row: &Vec<Option<f64>>| {
         let mut pose = manipulator.home_pose();

@@ -105,7 +105,10 @@ impl Answer<'_> {
     /// Why opm cannot solve the mechanism, as the rest of a sentence.
     fn because(&self) -> String {
         match (&self.survey.applies, &self.survey.near) {
-            (Applies::Outside(reason), _) => reason.to_string(),
+            (Applies::Outside(reason), _) => match &self.survey.order {
+                Some(order) => format!("{reason}; {order}"),
+                None => reason.to_string(),
+            },
             (Applies::Nearly, Some(near)) => near.to_string(),
             (Applies::Nearly, None) | (Applies::Decomposed(_), _) => String::new(),
         }

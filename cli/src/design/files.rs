@@ -2,10 +2,11 @@
 
 use crate::args::DesignArgs;
 use crate::failure::Failure;
-use crate::load::Loaded;
-use crate::output::is_stdout;
-use crate::target::Target;
+use crate::load::{self, Loaded};
+use crate::output::{Shown, is_stdout};
+use crate::target::{Target, ends_in};
 use opm_design::{Design, Log, LogError, Outcome, Problem, columns};
+use opm_mcap::input::{Expected, is_same_file};
 use std::path::{Path, PathBuf};
 
 /// The mechanism files, and the evaluations beside them.
@@ -26,10 +27,7 @@ impl Files {
             let problem = "the report goes to standard output, expected a file";
             return Err(Failure::flag("--output", problem));
         }
-        if output.extension().is_none_or(|ending| ending != "toml") {
-            let problem = format!("{}: expected a name that ends in .toml", output.display());
-            return Err(Failure::flag("--output", problem));
-        }
+        ends_in(output, &["toml"])?;
         loaded.refuse_as_output(output, &[&args.problem])?;
         let inputs: Vec<&Path> =
             loaded.path.as_deref().into_iter().chain([&*args.problem]).collect();
@@ -41,7 +39,7 @@ impl Files {
         if evaluations.exists() && !args.resume && !args.force {
             let problem = format!(
                 "{} is there already: --resume goes on with the evaluations of an earlier run, --force replaces the file",
-                evaluations.display()
+                evaluations.shown()
             );
             return Err(Failure::flag("--output", problem));
         }
@@ -51,14 +49,17 @@ impl Files {
         };
         let columns = columns(problem, &loaded.file);
         let log = match args.resume {
-            true => Log::resume(&evaluations, &columns),
+            true => {
+                let text = load::existing(&evaluations, Expected::EVALUATIONS)?;
+                Log::resume(&evaluations, &text, &columns)
+            }
             false => Log::create(&evaluations, &columns),
         };
         let log = log.map_err(|error| match error {
             LogError::OtherProblem => {
-                Failure::flag("--resume", format!("{}: {error}", evaluations.display()))
+                Failure::flag("--resume", format!("{}: {error}", evaluations.shown()))
             }
-            error => Failure::at(evaluations.display(), error),
+            error => Failure::at(evaluations.shown(), error),
         })?;
         Ok(Self { log, target, output: Some(output.clone()), evaluations: Some(evaluations) })
     }
@@ -113,8 +114,7 @@ fn refuse_front(output: &Path, inputs: &[&Path], most: u64) -> Result<(), Failur
         let is_design = number
             .and_then(|digits| digits.parse().ok())
             .is_some_and(|n: u64| (1..=most).contains(&n));
-        let file = entry.path().canonicalize().ok().filter(|_| is_design);
-        if file.is_some() && inputs.iter().any(|input| input.canonicalize().ok() == file) {
+        if is_design && inputs.iter().any(|input| is_same_file(input, &entry.path())) {
             let problem =
                 format!("{name} is also the input, and a design of the front would replace it");
             return Err(Failure::flag("--output", problem));

@@ -1,6 +1,7 @@
 //! What a design found, as text and as JSON.
 
 use crate::load::Loaded;
+use crate::output::Shown;
 use crate::text::{Table, plural, range, short};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
@@ -125,7 +126,7 @@ impl Report<'_> {
             table.row(row("as given".to_owned(), before));
         }
         for (number, (design, name)) in designs.iter().zip(self.names).enumerate() {
-            let name = name.as_ref().map(|name| name.display().to_string());
+            let name = name.as_ref().map(|name| name.shown());
             let broken = if design.feasible { "" } else { " (breaks constraints)" };
             let name = name.unwrap_or_else(|| format!("found {}", number + 1));
             table.row(row(name + broken, &design.values));

@@ -1,6 +1,6 @@
 //! Why no assembly was found near a pose, and what to do.
 
-use super::shown;
+use super::{least, shown};
 use crate::text::reason;
 use opm_core::Quantity;
 use opm_core::forward::{NotFound, Stop};
@@ -27,6 +27,10 @@ pub fn explain(
              (--mode)",
             leg(unreachable)
         );
+    }
+    if let Ok(Some(change)) = manipulator.least_change(actuated) {
+        let lines = least::lines(manipulator, &change, units);
+        return format!("no assembly from any start: {}", lines.join("; "));
     }
     let why = match &not_found.why {
         Stop::OutOfReach(unreachable) => {

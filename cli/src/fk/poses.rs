@@ -1,11 +1,13 @@
 //! `opm fk --poses`: a CSV file of actuated joints in, one of poses out, row by row.
 
+use super::least;
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::output::Shown;
 use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
-use crate::unitless::Plausible;
+use crate::unitless::plausible;
 use opm_core::forward::{Assembly, NearError};
 use opm_core::manipulator::{Manipulator, Mode};
 use opm_mcap::csv::Rows;
@@ -57,16 +59,25 @@ pub fn run(
         return Err(Failure::flag("--all", problem));
     }
     let request = Request { loaded, manipulator, seed, only, all: args.all };
-    let streams = Streams { input, output: args.output.as_deref() };
+    let (target, columns) = (args.output.as_deref(), args.columns.as_ref());
+    let streams = Streams { input, output: target, columns };
     let solve = |stream: Stream<'_>| request.solve(stream);
-    let Some(summary) = stream::run(&streams, output, loaded, solve)? else { return Ok(()) };
+    let Some((summary, unmet)) = stream::run(&streams, output, loaded, solve)? else {
+        return Ok(());
+    };
+    if let Some((line, joints)) = unmet
+        && let Ok(Some(change)) = manipulator.least_change(&joints)
+    {
+        let lines = least::lines(manipulator, &change, loaded.file.units).join("; ");
+        output.note(format_args!("line {line} is the first that has no assembly: {lines}"));
+    }
     let assemblies = match args.all {
         true => format!(", {} assemblies", count(summary.assemblies)),
         false => String::new(),
     };
     output.note(format_args!(
         "{}: {} rows, {} in reach, {} within limits{assemblies}; {} s, {} rows/s",
-        args.output.as_deref().unwrap_or(input).display(),
+        args.output.as_deref().unwrap_or(input).shown(),
         count(summary.rows),
         count(summary.reachable),
         count(summary.within_limits),
@@ -76,8 +87,12 @@ pub fn run(
     if output.format == crate::args::Format::Json { output.print(&summary, "") } else { Ok(()) }
 }
 
+/// The line and the joints of the first row without an assembly, if there is one.
+type Unassembled = Option<(u64, Vec<f64>)>;
+
 impl Request<'_> {
-    fn solve(&self, mut stream: Stream<'_>) -> Result<Summary, Stop> {
+    /// Solves all rows.
+    fn solve(&self, mut stream: Stream<'_>) -> Result<(Summary, Unassembled), Stop> {
         let start = Instant::now();
         let m = self.manipulator;
         let actuated: Vec<_> = m.actuated().iter().map(|&i| &m.coordinates()[i]).collect();
@@ -88,7 +103,7 @@ impl Request<'_> {
         let values = actuated.iter().map(|c| Wanted {
             name: &c.name,
             quantity: c.quantity,
-            plausible: Plausible::new(c.quantity, c.home, (self.loaded, m)),
+            plausible: plausible(c.quantity, c.home, (self.loaded, m)),
             optional: false,
         });
         let tasks = m.task_coordinates().iter().chain(m.dependent_coordinates());
@@ -111,17 +126,21 @@ impl Request<'_> {
         }
         stream.rows.header(self.header(columns.timed(), &joints))?;
 
-        let seed = m.platform_pose(&self.seed);
-        let seed = seed.map_err(|error| Failure::flag("--near", error))?;
-        let mut tracker = Tracker::new(m, &self.seed, self.only.unwrap_or(m.home_mode()));
+        let mode = self.only.unwrap_or(m.home_mode());
+        let seed = m.displacement_in(&self.seed, mode);
+        let seed = m.platform_at(&seed.map_err(|error| Failure::flag("--near", error))?);
+        let mut tracker = Tracker::new(m, &self.seed, mode);
         let (mut reachable, mut within_limits, mut assemblies) = (0, 0, 0);
+        let mut unmet = None;
         stream.each(&mut columns, &vec![0.0; joints.len()], |stream, line, time, joints| {
             let label = stream.label;
             let wrong = |error: &dyn std::error::Error| stream::at(label, line, error);
             let mut list: Vec<Assembly>;
             let found: &[Assembly] = if self.all {
                 list = m.forward(joints).map_err(|error| wrong(&error))?.list;
-                list.retain(|assembly| self.only.is_none_or(|mode| assembly.mode == mode));
+                if let Some(only) = self.only {
+                    m.keep_assemblies_in(&mut list, only);
+                }
                 m.sort_assemblies(&mut list, &seed);
                 &list
             } else {
@@ -139,6 +158,7 @@ impl Request<'_> {
                 self.write(&mut stream.rows, (row, number + 1), (time, joints), Some(assembly))?;
             }
             if found.is_empty() {
+                unmet.get_or_insert_with(|| (line, joints.to_vec()));
                 self.write(&mut stream.rows, (row, 0), (time, joints), None)?;
             }
             Ok(())
@@ -146,7 +166,9 @@ impl Request<'_> {
         let seconds = start.elapsed().as_secs_f64().max(1e-9);
         let rows = stream.number.load(Ordering::Relaxed);
         let rows_per_second = rows as f64 / seconds;
-        Ok(Summary { rows, reachable, within_limits, assemblies, seconds, rows_per_second })
+        let summary =
+            Summary { rows, reachable, within_limits, assemblies, seconds, rows_per_second };
+        Ok((summary, unmet))
     }
 
     fn header<'n>(&'n self, timed: bool, joints: &[&'n str]) -> Vec<&'n str> {

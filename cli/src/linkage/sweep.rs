@@ -4,6 +4,8 @@ use super::report::Run;
 use crate::args::{Format, LinkageArgs, Output};
 use crate::failure::Failure;
 use crate::layout;
+use crate::output::{Shown, stdout};
+use crate::progress::clean_up_at_ctrl_c;
 use crate::text::count;
 use opm_core::linkage::Position;
 use opm_mcap::PartialFile;
@@ -25,7 +27,7 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
             let problem = "the CSV takes standard output; give it a file with --output";
             return Err(Failure::flag("--format json", problem));
         }
-        return match sweep.csv(&mut io::stdout()) {
+        return match sweep.csv(&mut stdout()) {
             Ok(summary) => {
                 sweep.report(None, &summary, output);
                 Ok(())
@@ -35,7 +37,8 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
         };
     };
     run.loaded.refuse_as_output(path, &[])?;
-    let place = path.display();
+    clean_up_at_ctrl_c()?;
+    let place = path.shown();
     let summary = match path.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => {
             let mut file = PartialFile::create(path).map_err(|e| Failure::at(&place, e))?;
@@ -119,7 +122,7 @@ impl Sweep<'_> {
                 if summary.is_revolution { "one revolution of" } else { "there and back with" };
             output.note(format_args!(
                 "{}: {} positions, {round} {name}",
-                path.display(),
+                path.shown(),
                 count(summary.positions)
             ));
             layout::advise(path, output);

@@ -5,6 +5,7 @@ use super::sized::drawn;
 use crate::args::{MechanismArgs, Output, PlotArgs};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::output::Shown;
 use crate::pose::Pose;
 use crate::text::{nearest_text, reason};
 use crate::unitless;
@@ -33,7 +34,7 @@ pub fn draw(args: &PlotArgs, output: &Output) -> Result<Drawing, Failure> {
         ("--slice", !args.slice.is_empty()),
     ] {
         if given {
-            let problem = format!("{} is a mechanism, expected a recording", args.file.display());
+            let problem = format!("{} is a mechanism, expected a recording", args.file.shown());
             return Err(Failure::flag(flag, problem));
         }
     }

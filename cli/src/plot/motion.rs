@@ -10,6 +10,7 @@ use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::text::count;
 use opm_core::Quantity;
+use opm_core::text::cell;
 use opm_mcap::Flat;
 use opm_mcap::trajectory::JOINTS_TOPIC;
 use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
@@ -25,8 +26,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
     }
     let topics = || source.recording.topics.iter();
     if !topics().any(|topic| TOPICS.iter().any(|known| known.name == topic.name)) {
-        let mut names: Vec<&str> = topics().map(|topic| &*topic.name).collect();
-        names.truncate(8);
+        let names: Vec<_> = topics().map(|topic| cell(&topic.name)).take(8).collect();
         let found = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
         let cut = if source.recording.complete { "" } else { "cut short, and " };
         return Err(Failure::work(format!(

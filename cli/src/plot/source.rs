@@ -2,6 +2,7 @@
 
 use crate::args::Output;
 use crate::failure::Failure;
+use crate::output::Shown;
 use crate::progress::watch_reading;
 use crate::text::count;
 use opm_core::linkage::Linkage;
@@ -65,7 +66,7 @@ impl<'a> Source<'a> {
         output: &'a Output,
         progress: &'a Progress,
     ) -> Result<Self, Failure> {
-        let label = path.display().to_string();
+        let label = path.shown();
         // The file is read more than once.
         if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
             return Err(Failure::work(format!(

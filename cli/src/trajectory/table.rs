@@ -11,6 +11,7 @@ use crate::runs::{self, Cell};
 use crate::text::short;
 use opm_core::Quantity;
 use opm_study::StudyError;
+use std::sync::Once;
 
 pub fn run(
     args: &TrajectoryArgs,
@@ -25,9 +26,12 @@ pub fn run(
         interference::note_clearance(output, args.clearance, (loaded, &manipulator));
     }
     let (units, progress) = (loaded.file.units, interruptible()?);
+    // Once, and not for every value.
+    let doubted = Once::new();
     runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
         let manipulator = changed.compile()?;
-        let (motion, _) = motion(args, &manipulator)?;
+        let (motion, _) = motion(args, (changed, &manipulator))?;
+        doubted.call_once(|| motion.note_doubts(output));
         let request = request(args, &manipulator, &motion, clearance);
         let trajectory = request.trajectory()?;
         let followed = request.follow(trajectory, |_, _, _| Ok(()), |_| !progress.is_cancelled());

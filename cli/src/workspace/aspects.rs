@@ -55,7 +55,7 @@ pub fn text(workspace: &Workspace, aspects: &Aspects, units: FileUnits) -> Strin
     let measured =
         |aspect: &Aspect| workspace.measure(workspace.kind(), &counted(workspace, aspect), units);
     let unit = aspects.list().first().and_then(measured).map(|measure| measure.unit);
-    headers.extend(unit.map(|unit| format!(">measure [{unit}]")));
+    headers.extend(unit.map(|unit| format!(">size [{unit}]")));
     for &i in &varying {
         headers.push(text::header(&grid.axes()[i].name, grid.coordinates()[i].quantity, units));
         headers.push(">to".to_owned());

@@ -102,6 +102,6 @@ impl Found {
             true => "it touches the edge of the grid, beyond which the workspace may go on\n",
             false => "",
         };
-        format!("\n{table}measure {} {unit}\n{edge}", short(found.measure() / factor))
+        format!("\n{table}size in coordinates {} {unit}\n{edge}", short(found.measure() / factor))
     }
 }

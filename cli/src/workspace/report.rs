@@ -152,7 +152,7 @@ impl Outcome<'_> {
         if workspace.grid().poses() > 1
             && let Some(measure) = workspace.measure(self.counted(), found, units)
         {
-            let _ = writeln!(text, "measure {} {}", short(measure.value), measure.unit);
+            let _ = writeln!(text, "size in coordinates {} {}", short(measure.value), measure.unit);
         }
         text += &analysis_text(analysis, units);
         if let Some(aspects) = &analysis.aspects {

@@ -102,7 +102,7 @@ fn cells(
     if let (Some(si), Some(shown)) =
         (workspace.measure(kind, points, FileUnits::SI), workspace.measure(kind, points, units))
     {
-        let header = format!("measure [{}]", shown.unit);
+        let header = format!("size [{}]", shown.unit);
         cells.push(Cell { header, ..Cell::new("measure", si.value, short(shown.value)) });
     }
     if let Some(Shape { components, .. }) = &analysis.shape {

@@ -5,6 +5,7 @@ use super::report::Effort;
 use crate::args::Output;
 use crate::failure::Failure;
 use crate::layout;
+use crate::output::Shown;
 use crate::pose::GridAxis;
 use crate::progress::watch;
 use crate::text::count;
@@ -142,7 +143,7 @@ impl Work<'_> {
         let job = || recording.write(findings, self.progress);
         let path = self.watch("recording", poses, job)?;
         let points = count(findings.analysis.count.reachable);
-        self.output.note(format_args!("{}: {points} points", path.display()));
+        self.output.note(format_args!("{}: {points} points", path.shown()));
         layout::advise(&path, self.output);
         Ok(())
     }

@@ -260,8 +260,10 @@ fn outputs_that_cannot_be_written() {
         (folder.arg("taken.mcap"), &["taken.mcap", "not a regular file"]),
     ] {
         opm(&["workspace", PLANO, "-o", &output]).fails_with_one_line(1, parts);
-        opm(&["ik", PLANO, "--poses", &csv, "-o", &output]).fails_with_one_line(1, parts);
     }
+    let table = folder.arg("no/where.csv");
+    opm(&["ik", PLANO, "--poses", &csv, "-o", &table])
+        .fails_with_one_line(1, &["where.csv", "cannot create", "No such file"]);
     opm(&["ik", PLANO, "--poses", &folder.arg("none.csv")])
         .fails_with_one_line(1, &["none.csv: No such file"]);
 }

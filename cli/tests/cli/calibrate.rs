@@ -76,7 +76,8 @@ fn what_is_wrong_with_measurements_is_told_with_its_line() {
         ),
     ] {
         let file = folder.write("m.csv", table);
-        opm(&["calibrate", PLANO, "--measurements", &file]).fails_with_one_line(1, parts);
+        opm(&["calibrate", PLANO, "--measurements", &file, "--quiet"])
+            .fails_with_one_line(1, parts);
     }
     // A single row tells something, and what it does not is named.
     let file = folder.write("m.csv", rows(1));

@@ -7,7 +7,10 @@ use std::fs;
 #[test]
 fn a_certificate_says_what_was_held() {
     let found = opm(&["check", PLANO, "--samples", "5", "--format", "json"]).json();
-    assert_eq!(keys(&found), ["name", "version", "samples", "seed", "holds", "comparisons"]);
+    assert_eq!(
+        keys(&found),
+        ["name", "version", "samples", "seed", "holds", "misfit", "comparisons"]
+    );
     assert_eq!(found["holds"], true);
     let comparisons = found["comparisons"].as_array().unwrap();
     let names: Vec<&str> = comparisons.iter().map(|one| one["name"].as_str().unwrap()).collect();

@@ -222,7 +222,7 @@ fn frames_are_printed_and_can_be_set() {
     assert!(near(&frames["upper"]["axes"], [[0., 1., 0.], [0., 0., -1.], [-1., 0., 0.]]));
     assert_eq!(frames["lower"]["origin"], json!([0.1, 0.0, 0.0]));
     assert_eq!(frames["upper"]["origin"], json!([0.0, 0.0, 0.05]));
-    assert_eq!(frames["lower"]["reference"], json!([0.0, 0.0, 0.3]));
+    assert_eq!(frames["lower"]["centre"], json!([0.0, 0.0, 0.3]));
     let home: Vec<f64> = found["task_coordinates"]
         .as_array()
         .unwrap()
@@ -395,6 +395,63 @@ fn actuators_are_a_warning() {
         .fails_with_one_line(1, &["no joint is actuated"]);
     opm(&["ik", &folder.arg("few.toml"), "--pose", ""])
         .fails_with_one_line(1, &["control 4 of the 5"]);
+}
+
+/// A five-bar in inches whose forearms are in line at home. Every command tells it in one line, in the file's units, and
+/// does its work; `fk` at home, too, and what asks about rates there says so.
+#[test]
+fn a_parallel_singularity_at_home_is_one_warning() {
+    let folder = Folder::new();
+    let joint = |name: &str, point: &str, actuated: bool| {
+        format!(
+            "{{ name = \"{name}\", type = \"revolute\", axis = [0, 0, 1], point = {point}, actuated = {actuated} }}"
+        )
+    };
+    let text = format!(
+        "format = 1\nname = \"flat\"\nunits = {{ length = \"in\", angle = \"deg\" }}\n[platform]\npoint = [8, 2, 0]\n\
+         [[leg]]\njoints = [{}, {}, {}]\n[[leg]]\njoints = [{}, {}]\n",
+        joint("L", "[0, 0, 0]", true),
+        joint("LE", "[2, 2, 0]", false),
+        joint("pen", "[8, 2, 0]", false),
+        joint("R", "[16, 0, 0]", true),
+        joint("RE", "[14, 2, 0]", false),
+    );
+    let file = folder.write("flat.toml", text.clone());
+    let told = "home pose is a parallel singularity";
+    let loose = "rotation about (0, 0, 1) through (14, 2, 0) in";
+    for (line, code) in [
+        ("decompose FILE", 0),
+        ("ik FILE --pose x=7.85in", 0),
+        ("ik FILE --pose x=7.85in --all-modes", 0),
+        ("fk FILE --joints L=45deg,R=0deg", 0),
+        ("velocity FILE --pose x=7.5in", 0),
+        ("workspace FILE --grid x=7in:8in:3 --grid y=1in:2in:3", 0),
+        ("convert FILE", 0),
+        ("check FILE --samples 5", 0),
+    ] {
+        let words: Vec<&str> =
+            line.split(' ').map(|word| if word == "FILE" { &*file } else { word }).collect();
+        let run = opm(&words);
+        assert_eq!(run.code, Some(code), "{line}: {}", run.stderr);
+        assert_eq!(run.stderr.matches("warning: ").count(), 1, "{line}: {}", run.stderr);
+        assert!(run.stderr.contains(told) && run.stderr.contains(loose), "{line}: {}", run.stderr);
+        assert!(!run.stdout.contains("could be left out"), "{}", run.stdout);
+    }
+    let found = decompose(&file);
+    assert_eq!((&found["mobility"], found["warnings"].as_array().unwrap().len()), (&json!(2), 1));
+    // With one motor alone, the platform is loose everywhere: one other warning, with its verb in the singular.
+    let few = folder.write(
+        "few.toml",
+        text.replace("point = [16, 0, 0], actuated = true", "point = [16, 0, 0]"),
+    );
+    let run = opm(&["decompose", &few]);
+    assert_eq!(run.stderr.matches("warning: ").count(), 1, "{}", run.stderr);
+    assert!(
+        run.stderr.contains("1 actuated freedom controls 1 of the 2 freedoms"),
+        "{}",
+        run.stderr
+    );
+    assert!(run.stderr.contains(" in") && !run.stderr.contains(") m"), "{}", run.stderr);
 }
 
 /// One axis passes the centre at half a millimetre.

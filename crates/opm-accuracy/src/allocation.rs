@@ -7,7 +7,7 @@ use crate::zonotope::farthest;
 use nalgebra::{Matrix6xX, Vector3};
 use opm_core::Quantity;
 
-/// What an error permits to one joint is nothing if it is below this share of the largest play: rounding.
+/// A play is nothing if it is below this share of the largest one, or of the error itself, if no play is larger: rounding.
 const NOTHING: f64 = 1e-9;
 
 /// The tolerances that keep the play of every joint within a clearance, at all poses that were added.
@@ -69,7 +69,9 @@ impl Allocation {
                 plays.fixed_view::<3, 1>(row, k) * unit
             };
             let all = response.plays.iter().flat_map(|p| of_axis.iter().map(move |&k| (p, k)));
-            let largest = all.map(|(plays, k)| part(plays, k).norm()).fold(0.0, f64::max);
+            // An error of one length, or of the angle that counts as one, is a play of one such unit in its own axis.
+            let itself = unit(quantity, length);
+            let largest = all.map(|(plays, k)| part(plays, k).norm()).fold(itself, f64::max);
             for plays in &response.plays {
                 let needs = |&k: &usize| part(plays, k).norm() > NOTHING * largest;
                 let needing: Vec<usize> = of_axis.iter().copied().filter(needs).collect();

@@ -24,8 +24,21 @@
 //! *output constraint index* is the cosine of the pressure angle between the constraint wrench and that twist. Legs that
 //! repeat the constraint of another are one group, which is released together. The wrench of an input in such a leg is
 //! determined up to the leg's constraints; of these, it is the one that is perpendicular to them at the joint on its axis.
+//!
+//! If such a leg has one input and the only other leg with inputs has the other, as in a five-bar, the platform is a link
+//! between both. Then both legs are seen alike: they meet at the passive joint of the other leg that is next to the
+//! platform, and the wrench of the input passes through it (X.-J. Liu, J. Wang, G. Pritschow, *Performance atlases and
+//! optimum design of planar 5R symmetrical parallel mechanisms*, Mechanism and Machine Theory 41 (2006); Wang, Wu, Liu
+//! 2010). That joint is the characteristic point of the output index.
+//!
+//! Where the legs' constraints tie both sections together (dependent coordinates: 2-UPR-RPU, Sarrus' linkage), no section has an
+//! input for each freedom. Then legs are taken whole, in space, and the same definitions hold with the platform's twist while
+//! all other inputs are locked. The wrench of an input is determined up to the leg's constraints; it is the one that is
+//! perpendicular to them at the point in which most of the leg's passive axes meet. In these mechanisms that is the force along
+//! the leg.
 
 mod section;
+mod whole;
 
 use crate::screws::Screws;
 use nalgebra::{Isometry3, Vector3};
@@ -34,6 +47,7 @@ use opm_core::group::{Subspace, SubspaceKind};
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::leg::Section;
 use section::Mechanism;
+use whole::Whole;
 
 /// A determinant, or a length over the characteristic length, below this counts as zero: rounding.
 const ZERO: f64 = 1e-12;
@@ -109,6 +123,11 @@ pub enum NoTransmission {
         "no leg constrains the platform within the motions of its section, so that no constraint can be released"
     )]
     NoConstraint,
+    /// The legs' constraints tie both sections together.
+    #[error(
+        "the legs' constraints tie both sections together; only a constraint within a section has an index"
+    )]
+    Together,
     /// A leg imposes several constraints at once.
     #[error(
         "leg {leg} lacks {lacks} freedoms in its {section} section; only a single constraint has an index"
@@ -167,6 +186,8 @@ pub struct Transmissions<'a> {
     length: f64,
     screws: Screws,
     sections: Vec<Mechanism>,
+    /// All inputs, where the sections have none of their own.
+    whole: Option<Whole>,
     found: Vec<InputIndices>,
     /// The output constraint index of each section.
     constraints: Vec<f64>,
@@ -182,14 +203,22 @@ impl<'a> Transmissions<'a> {
             return Err(NoTransmission::Leans { joint: joint.to_owned() });
         }
         let mut sections = Vec::new();
+        let mut whole = None;
         for section in [Section::Lower, Section::Upper] {
-            sections.extend(Mechanism::new(manipulator, section)?);
+            match Mechanism::new(manipulator, section) {
+                Ok(found) => sections.extend(found),
+                Err(why) => whole = Some(Whole::new(manipulator).ok_or(why)?),
+            }
+        }
+        if whole.is_some() {
+            sections.clear();
         }
         Ok(Self {
             manipulator,
+            whole,
             length: manipulator.characteristic_length(),
             screws: Screws::new(manipulator),
-            found: Vec::with_capacity(sections.iter().map(|section| section.inputs).sum()),
+            found: Vec::with_capacity(manipulator.actuated().len() + manipulator.imaginary().len()),
             constraints: vec![f64::NAN; sections.len()],
             sections,
         })
@@ -200,6 +229,9 @@ impl<'a> Transmissions<'a> {
     /// # Errors
     /// No leg constrains the platform within its section, or one does so in several ways.
     pub fn has_constraints(&self) -> Result<(), NoTransmission> {
+        if self.whole.is_some() {
+            return Err(NoTransmission::Together);
+        }
         let mut any = false;
         for section in self.sections.iter().filter(|section| section.lacks > 0) {
             if section.lacks > 1 {
@@ -216,6 +248,10 @@ impl<'a> Transmissions<'a> {
     pub fn update(&mut self, at: &Solution) {
         self.screws.update(at);
         self.found.clear();
+        if let Some(whole) = &mut self.whole {
+            whole.indices((self.manipulator, at), &self.screws, &mut self.found);
+            return;
+        }
         let task = self.manipulator.task();
         let v = at.lower_displacement(self.manipulator);
         let along = task.intersection.as_ref().map(|axis| match axis.point {

@@ -131,8 +131,8 @@ fn a_planar_constraint_has_its_pressure_angle() {
     }
 }
 
-/// A motor in the leg that constrains: it pushes its link's end across the link, and while it is locked the platform turns
-/// about that end.
+/// A motor in the leg that constrains: with the motor of the other leg it makes a five-bar. The force of each motor passes
+/// through the joint where both legs meet. While the motor is locked the platform turns about the end of its link.
 #[test]
 fn a_motor_in_a_constraining_leg_has_indices() {
     let third = LINK.replacen("point =", "actuated = true, point =", 1);
@@ -146,11 +146,12 @@ fn a_motor_in_a_constraining_leg_has_indices() {
         let link = point(0, 2) - point(0, 1);
         assert!((a.input - sine(point(0, 1) - point(0, 0), link)).abs() < CLOSE);
         assert!((a.output - sine(link, point(0, 2) - point(2, 1))).abs() < CLOSE);
-        assert!((c.input - 1.0).abs() < CLOSE && (c.output - 1.0).abs() < CLOSE, "{c:?}");
-        // Released, the constraint lets the platform's joint move along the link: it turns about the point where the line of
-        // the other leg's force meets the line of the motor's, which is across the link at its end.
         let end = point(2, 1);
         let borne = end - point(2, 0);
+        assert!((c.input - sine(borne, point(0, 2) - end)).abs() < CLOSE, "{c:?}");
+        assert!((c.output - sine(link, point(0, 2) - end)).abs() < CLOSE, "{c:?}");
+        // Released, the constraint lets the platform's joint move along the link: it turns about the point where the line of
+        // the other leg's force meets the line of a force across the link at its end.
         let across = Vector2::new(-borne.y, borne.x);
         let expected = sine(borne, end - meet([point(0, 2), link], [end, across]));
         let found = transmissions.constraint().unwrap();

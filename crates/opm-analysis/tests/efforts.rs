@@ -104,6 +104,7 @@ struct Counts {
     undetermined: usize,
     imaginary: usize,
     singular: usize,
+    stuck: usize,
 }
 
 fn check(manipulator: &Manipulator, at: &Solution, mode: Mode, rng: &mut Rng, counts: &mut Counts) {
@@ -125,6 +126,12 @@ fn check(manipulator: &Manipulator, at: &Solution, mode: Mode, rng: &mut Rng, co
     };
     if freedoms < manipulator.task_coordinates().len() {
         // The coordinates are singular.
+        return;
+    }
+    if motions.actuated.row_iter().any(|row| row.norm() < 1e-9) {
+        // An actuated joint that cannot move (a revolute one where the platform never rotates) is no actuator: such a
+        // mechanism is refused unless it is compiled by a decomposition, as here.
+        counts.stuck += 1;
         return;
     }
     assert_eq!(statics.loose(), freedoms - held);

@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use opm_core::Quantity;
 use opm_core::manipulator::Mode;
 use opm_core::mechanism::file::MechanismFile;
+use std::ops::RangeInclusive;
 
 /// A table of measurements: a row for each pose of the platform.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +28,9 @@ pub struct Sigma {
     /// Of angles, radians.
     pub angle: f64,
 }
+
+/// Standard deviations whose weights stay numbers in squares and in their products with derivatives.
+pub const SIGMAS: RangeInclusive<f64> = 1e-75..=1e75;
 
 /// How to calibrate.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,8 +160,8 @@ pub enum CalibrateError {
     /// Every parameter is held.
     #[error("every parameter is held: nothing to calibrate")]
     NothingVaries,
-    /// A standard deviation is not a positive number.
-    #[error("a standard deviation is {0}, expected a positive number")]
+    /// A standard deviation is not a positive number, or so small or large that squares of weights overflow.
+    #[error("a standard deviation is {0:?}, expected a positive number, 1e-75 to 1e75")]
     Sigma(f64),
     /// A measured value is not a number.
     #[error("row {} of column {column} is {value}, expected a number", .row + 1)]
@@ -320,7 +324,7 @@ pub(crate) fn weights(
             Quantity::Length => sigma.length,
             Quantity::Angle => sigma.angle,
         };
-        match sigma.is_finite() && sigma > 0.0 {
+        match SIGMAS.contains(&sigma) {
             true => Ok(sigma.recip()),
             false => Err(CalibrateError::Sigma(sigma)),
         }

@@ -115,6 +115,19 @@ impl Column {
         named.filter_map(Result::ok).collect()
     }
 
+    /// Its value at home.
+    pub fn home(&self, manipulator: &Manipulator) -> f64 {
+        let platform = manipulator.mechanism().platform;
+        match self.kind {
+            Kind::Coordinate(number) => manipulator.task_coordinates()[number].home,
+            Kind::Dependent(number) => manipulator.dependent_coordinates()[number].home,
+            Kind::Joint(number) => manipulator.coordinates()[number].home,
+            Kind::Point(axis) => platform[axis],
+            Kind::Distance(from) => (platform - from).norm(),
+            Kind::Incline(_) => 0.0,
+        }
+    }
+
     /// Whether it is the value of a joint.
     pub fn is_joint(&self) -> bool {
         matches!(self.kind, Kind::Joint(_))

@@ -16,6 +16,9 @@ use opm_core::Quantity;
 use opm_core::manipulator::Mode;
 use rayon::prelude::*;
 
+/// Residuals below this share of one radian or of the characteristic length, and of the measured value, are rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// A relative change of the sum of squares that is nothing beside standard errors, and above the rounding of the rows' poses.
 const TOLERANCE: f64 = 1e-9;
 
@@ -114,6 +117,10 @@ impl Problem<'_> {
             scale_columns(&mut by, &units);
             let mut by_pose = solved.by_pose.clone();
             scale_columns(&mut by_pose, &pose_units);
+            // A decomposition of what is not a number would never end.
+            if !by.iter().chain(by_pose.iter()).all(|entry| entry.is_finite()) {
+                return Some(None);
+            }
             let basis = range(&by_pose);
             Some(Some((without(&basis, &by), basis)))
         });
@@ -157,6 +164,10 @@ impl Problem<'_> {
             let all = &identified.determined * DVector::from_column_slice(z);
             all.iter().zip(&units).map(|(change, unit)| change * unit).collect()
         };
+        // Of exact measurements nothing is left to fit.
+        if self.is_rounding(&start) {
+            return Ok((start, vec![0.0; units.len()]));
+        }
         let count = residuals(&start).len();
         // The last state that was evaluated, and where.
         let mut last: (Vec<f64>, State) = (vec![0.0; identified.rank()], start);
@@ -180,13 +191,32 @@ impl Problem<'_> {
         if stopped {
             return Err(Unsolved::Stopped);
         }
-        found.converged.map_err(Unsolved::Method)?;
         let changes = changes(&found.at);
         let state = match last.0 == found.at {
             true => last.1,
             false => self.moved(&changes, &last.1).ok_or(Unsolved::Method("a pose is lost"))?,
         };
-        Ok((state, changes))
+        match found.converged {
+            Err(why) if !self.is_rounding(&state) => Err(Unsolved::Method(why)),
+            _ => Ok((state, changes)),
+        }
+    }
+
+    /// Whether nothing but rounding is left of what was measured.
+    fn is_rounding(&self, state: &State) -> bool {
+        let length = self.nominal.manipulator.characteristic_length();
+        let unit = |column: usize| match self.columns[column].quantity {
+            Quantity::Angle => 1.0,
+            Quantity::Length => length,
+        };
+        let rows = state.rows.iter().enumerate();
+        let mut rows = rows.filter_map(|(number, solved)| Some((number, solved.as_ref()?)));
+        rows.all(|(number, solved)| {
+            solved.columns.iter().zip(&solved.residuals).all(|(&column, residual)| {
+                let value = self.rows[number][column].unwrap_or_default().abs();
+                residual.abs() <= ROUNDING * self.weights[column] * value.max(unit(column))
+            })
+        })
     }
 }
 

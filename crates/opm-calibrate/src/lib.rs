@@ -43,7 +43,7 @@ mod prediction;
 mod row;
 
 pub use calibration::{
-    CalibrateError, Calibration, Cell, Estimate, Measurements, Options, Sigma, calibrate,
+    CalibrateError, Calibration, Cell, Estimate, Measurements, Options, SIGMAS, Sigma, calibrate,
     parameters_of, with_changes,
 };
 pub use column::{BasePoint, Column};

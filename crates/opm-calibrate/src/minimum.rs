@@ -32,16 +32,29 @@ pub fn minimise(
     (rows, tolerance): (usize, f64),
     evaluate: &mut Evaluate<'_>,
 ) -> Minimum {
-    let problem =
-        Problem { at: Vector::from_column_slice(start), rows, evaluate: RefCell::new(evaluate) };
+    let problem = Problem {
+        at: Vector::from_column_slice(start),
+        rows,
+        evaluate: RefCell::new(evaluate),
+        seen: RefCell::new(Seen::default()),
+    };
     let method = LevenbergMarquardt::new().with_tol(tolerance);
     let (problem, report) = method.minimize(problem);
+    let seen = problem.seen.into_inner();
     let converged = match report.termination {
         // Where nothing but rounding is left, no step improves the sum.
         TerminationReason::NoImprovementPossible(_) => Ok(()),
         reason if reason.was_successful() => Ok(()),
         TerminationReason::LostPatience => Err("too many steps without convergence"),
-        TerminationReason::Numerical(_) => Err("a residual is not a number"),
+        TerminationReason::Numerical(_) if !seen.least.is_finite() => {
+            Err("a residual is not a number")
+        }
+        // The method shrinks its steps beside the distance from zero. Where the start is zero and best, up to rounding, it
+        // never comes to an end, and its region becomes too small for double precision.
+        TerminationReason::Numerical(_) => {
+            let converged = if seen.refused { Err("every step loses a pose") } else { Ok(()) };
+            return Minimum { at: seen.at, converged };
+        }
         TerminationReason::NoParameters => Err("nothing to vary"),
         _ => Err("the derivatives are not defined there"),
     };
@@ -52,6 +65,23 @@ struct Problem<'f> {
     at: Vector<f64>,
     rows: usize,
     evaluate: RefCell<&'f mut Evaluate<'f>>,
+    seen: RefCell<Seen>,
+}
+
+/// What was seen on the way.
+struct Seen {
+    /// The point with the least sum of squares.
+    at: Vec<f64>,
+    /// That sum.
+    least: f64,
+    /// Whether the last step was refused.
+    refused: bool,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self { at: Vec::new(), least: f64::INFINITY, refused: false }
+    }
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
@@ -69,6 +99,12 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
     fn residuals(&self) -> Option<Vector<f64>> {
         let found = (self.evaluate.borrow_mut())(self.at.as_slice(), false);
+        let mut seen = self.seen.borrow_mut();
+        seen.refused = found.is_none();
+        let sum = |found: &Evaluation| found.residuals.iter().map(|r| r * r).sum::<f64>();
+        if let Some(sum) = found.as_ref().map(sum).filter(|&sum| sum < seen.least) {
+            (seen.at, seen.least) = (self.at.as_slice().to_vec(), sum);
+        }
         Some(match found {
             Some(found) => Vector::from_vec(found.residuals),
             None => Vector::repeat(self.rows, REFUSED),

@@ -120,9 +120,9 @@ impl Row<'_> {
         };
         let actuated: Option<Vec<f64>> = manipulator.actuated().iter().map(value).collect();
         let Some(actuated) = actuated else { return Vec::new() };
-        let list = manipulator.forward(&actuated).map(|found| found.list).unwrap_or_default();
-        let in_mode = list.into_iter().filter(|assembly| assembly.mode == predictor.mode);
-        let mut poses: Vec<Vec<f64>> = in_mode.map(|assembly| assembly.pose).collect();
+        let mut list = manipulator.forward(&actuated).map(|found| found.list).unwrap_or_default();
+        manipulator.keep_assemblies_in(&mut list, predictor.mode);
+        let mut poses: Vec<Vec<f64>> = list.into_iter().map(|assembly| assembly.pose).collect();
         for start in [near, &manipulator.home_pose()] {
             let found = manipulator.forward_near(&actuated, start, predictor.mode);
             poses.extend(found.map(|assembly| assembly.pose));

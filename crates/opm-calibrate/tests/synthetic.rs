@@ -4,7 +4,8 @@
 
 use fastrand::Rng;
 use opm_calibrate::{
-    Calibration, Column, Measurements, Options, Sigma, calibrate, parameters_of, with_changes,
+    CalibrateError, Calibration, Column, Measurements, Options, Sigma, calibrate, parameters_of,
+    with_changes,
 };
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
@@ -484,3 +485,79 @@ fn poses_near_the_boundary_of_reach_are_fitted() {
     }
     assert!(moved > 80, "{moved}");
 }
+
+/// Tables of the drawing itself, exact or nearly so: with home, with rows twice, and rounded to some digits. Every one ends, and
+/// finds the drawing as well as its digits tell.
+#[test]
+fn exact_tables_of_every_mechanism_end() {
+    let mut atlas: Vec<(String, MechanismFile)> =
+        EXAMPLES.iter().map(|example| (example.name.to_owned(), read(example.name))).collect();
+    // A spherical five-bar in its symmetric pose.
+    atlas.push(("five-bar of right angles".to_owned(), file::read(RIGHT_ANGLES).unwrap()));
+    let mut solved = 0;
+    for (name, drawing) in atlas {
+        // Single loops are no manipulators.
+        let Ok(real) = Manipulator::new(drawing.mechanism.clone()) else { continue };
+        let off = vec![0.0; parameters_of(&drawing).unwrap().len()];
+        let machine = Machine { drawing, off, real };
+        let names = machine.all_columns();
+        let columns: Vec<&str> = names.iter().map(String::as_str).collect();
+        for seed in 0..12 {
+            let mut rng = Rng::with_seed(seed);
+            let mut poses = machine.poses(3 + seed as usize, &mut rng);
+            match seed % 3 {
+                0 => {}
+                1 => poses.push(machine.real.home_pose()),
+                _ => poses.extend([poses[0].clone(), machine.real.home_pose()]),
+            }
+            let mut measured = machine.measured(&columns, &poses, 0.0, &mut rng);
+            let digits = [None, Some(1e-13), Some(1e-10), Some(1e-8)][seed as usize / 3];
+            if let Some(digit) = digits {
+                for cell in measured.rows.iter_mut().flatten().flatten() {
+                    *cell = (*cell / digit).round() * digit;
+                }
+            }
+            let options = Options { sigma: (seed % 2 == 0).then_some(SIGMA), ..Options::default() };
+            match calibrate(&machine.drawing, &measured, &options, &mut |_| true) {
+                Ok(found) => {
+                    let left = found.cells.iter().map(|cell| cell.residual.abs());
+                    let left = left.fold(0.0, f64::max);
+                    // The sum of squares is at most that of the drawing, half a digit in each cell. Without standard
+                    // deviations, lengths weigh one over the characteristic length.
+                    let length = machine.real.characteristic_length();
+                    let cells = found.cells.len() as f64;
+                    let share = 0.5 * cells.sqrt() * length.max(length.recip());
+                    let most = share * digits.unwrap_or(0.0) + 1e-11;
+                    assert!(left <= most, "{name}, seed {seed}: {left}");
+                    solved += 1;
+                }
+                // Home may be at a singularity of the mechanism; that is another answer.
+                Err(CalibrateError::NotConverged("a measured pose is singular"))
+                    if seed % 3 > 0 => {}
+                Err(error) => panic!("{name}, seed {seed}: {error}"),
+            }
+        }
+    }
+    assert!(solved > 200, "{solved}");
+}
+
+const RIGHT_ANGLES: &str = r#"
+format = 1
+name = "right-angles"
+units = { length = "mm", angle = "deg" }
+[platform]
+point = [0, 0, 100]
+[[leg]]
+name = "leg1"
+joints = [
+  { name = "r1a", type = "revolute", axis = [1, 0, 0], point = [0, 0, 0], actuated = true },
+  { name = "r1b", type = "revolute", axis = [0, 1, 0], point = [0, 0, 0] },
+]
+[[leg]]
+name = "leg2"
+joints = [
+  { name = "r2a", type = "revolute", axis = [0, 1, 0], point = [0, 0, 0], actuated = true },
+  { name = "r2b", type = "revolute", axis = [1, 0, 0], point = [0, 0, 0] },
+  { name = "r2c", type = "revolute", axis = [0.707106781187, 0, 0.707106781187], point = [0, 0, 0] },
+]
+"#;

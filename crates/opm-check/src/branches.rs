@@ -1,6 +1,7 @@
 //! The branches of a leg by its closed form, and by the numeric solver.
 
 use crate::newton::{Closure, displacement};
+use crate::poses::DEVIATIONS;
 use fastrand::Rng;
 use nalgebra::{DVector, Isometry3};
 use opm_core::decomposition::{Decomposition, LegSplit};
@@ -19,6 +20,10 @@ const STARTS: usize = 80;
 const MORE: usize = 5_000;
 /// Two solutions are the same if their joints' displacements, as matrices with lengths over the size, differ by less.
 const SAME: f64 = 1e-5;
+/// Where joints miss their subspaces, solutions differ by so many times that.
+const MISFITS: f64 = 1e3;
+/// But two that differ by more are different.
+const MOST: f64 = 1e-2;
 /// If the smallest singular value of the leg's Jacobian is below this, two solutions nearly meet (a fold), and
 /// neither solver can be expected to find the right number. Radians, and lengths over the size.
 const FOLD: f64 = 2e-2;
@@ -30,6 +35,8 @@ pub struct Alone {
     split: LegSplit,
     /// The length that lengths are compared with, metres.
     size: f64,
+    /// By how much the joints miss their subspaces, radians and shares of the size.
+    misfit: f64,
 }
 
 /// What a comparison of branches found.
@@ -65,11 +72,12 @@ impl Alone {
     ) -> Result<Self, CompileError> {
         let split = decomposition.legs[number].clone();
         let alone = Mechanism { legs: vec![mechanism.legs[number].clone()], ..mechanism.clone() };
+        let misfit = decomposition.deviation;
         let decomposition = Decomposition { legs: vec![split.clone()], ..decomposition.clone() };
         let cylinder = |class: &SubspaceClass| matches!(class, SubspaceClass::Cylindrical { .. });
         let cylindrical = [cylinder(&decomposition.lower), cylinder(&decomposition.upper)];
         let manipulator = Manipulator::with_decomposition(alone, decomposition)?;
-        Ok(Self { manipulator, cylindrical, split, size })
+        Ok(Self { manipulator, cylindrical, split, size, misfit })
     }
 
     /// The leg, compiled.
@@ -91,10 +99,13 @@ impl Alone {
             point: self.manipulator.mechanism().platform,
             target: self.manipulator.task().displacement(pose),
             size: self.size,
+            misfit: DEVIATIONS * self.misfit,
         };
+        // Where the number of solutions changes, a misfit moves a pose by its square root.
+        let fold = FOLD.max(5.0 * self.misfit.sqrt());
         let closed = self.closed_form(pose)?;
         let mut numeric = closure.solutions(STARTS, rng);
-        if closed.iter().chain(&numeric).any(|q| closure.sharpness(q) < FOLD) {
+        if closed.iter().chain(&numeric).any(|q| closure.sharpness(q) < fold) {
             return Ok(Branches::Fold);
         }
         let (mut branches, mut solutions) = (Vec::new(), Vec::new());
@@ -165,7 +176,8 @@ impl Alone {
                 .map(|(a, b)| (a.to_homogeneous() - b.to_homogeneous()).amax())
                 .fold(0.0, f64::max)
         };
-        if different.iter().all(|known| off(known) > SAME) {
+        let same = SAME.max((MISFITS * self.misfit).min(MOST));
+        if different.iter().all(|known| off(known) > same) {
             different.push(parts);
         }
     }

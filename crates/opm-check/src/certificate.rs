@@ -103,6 +103,9 @@ pub struct Certificate {
     pub name: String,
     /// What was asked for.
     pub options: Options,
+    /// By how much the joints miss their subspaces, as rounded numbers do, radians and shares of the mechanism's size. What
+    /// is compared can agree to some multiple of that at best.
+    pub misfit: f64,
     /// Every kind of comparison.
     pub comparisons: Vec<Comparison>,
 }

@@ -74,22 +74,34 @@ pub fn forward(
             }
             Err(_) => Vec::new(),
         };
-        if closed_form.is_err() || screws {
-            let step = |q: &f64| q + 1e-4 * (2.0 * rng.f64() - 1.0);
+        let near = [0.0, 1e-4].map(|farthest| {
+            let step = |q: &f64| q + farthest * (2.0 * rng.f64() - 1.0);
             let start: Vec<f64> = pose.iter().map(step).collect();
-            assemblies.extend(manipulator.forward_near(&actuated, &start, mode));
-        }
+            manipulator.forward_near(&actuated, &start, mode)
+        });
+        let listed = if closed_form.is_ok() && !screws { assemblies.len() } else { usize::MAX };
+        assemblies.extend(near.into_iter().flatten());
         let mut nearest = f64::INFINITY;
-        for assembly in &assemblies {
-            let Ok(there) = manipulator.displacement_in(&assembly.pose, assembly.mode) else {
-                found.fail(|| format!("an assembly without a place: {}", place()));
-                continue;
-            };
+        for (number, assembly) in assemblies.iter().enumerate() {
+            // All coordinates as they are given, dependent ones too.
+            let there = manipulator.displacement_of(assembly);
             let open = gap(manipulator, &assembly.joints, &there);
             if open.is_nan() || open > most {
                 found.fail(|| format!("an assembly whose legs are {open:.2e} open: {}", place()));
             }
-            if assembly.mode == mode {
+            let follows = manipulator.displacement_in(&assembly.pose, assembly.mode);
+            if !follows.is_ok_and(|follows| apart(manipulator, &follows, &there) <= most.max(SAME))
+            {
+                found.fail(|| {
+                    let signs = manipulator.format_mode(assembly.mode);
+                    format!(
+                        "an assembly whose coordinates do not follow in mode {signs:?}: {}",
+                        place()
+                    )
+                });
+            }
+            // One pose may have two sets of angles, each in modes of its own: places are compared, not numbers.
+            if number < listed && manipulator.assembly_in(assembly, mode).is_some() {
                 nearest = nearest.min(apart(manipulator, &there, &target));
             }
         }

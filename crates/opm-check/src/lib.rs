@@ -56,5 +56,6 @@ pub fn check(
         forward::forward(manipulator, options, &mut step)?,
     ];
     let name = manipulator.mechanism().name.clone();
-    Some(Certificate { name, options: *options, comparisons })
+    let misfit = manipulator.decomposition().deviation;
+    Some(Certificate { name, options: *options, misfit, comparisons })
 }

@@ -25,6 +25,9 @@ pub struct Closure<'a> {
     pub target: Isometry3<f64>,
     /// The length that lengths are compared with, metres.
     pub size: f64,
+    /// What a leg may miss the target by, because its joints miss their subspaces: radians, and lengths over the size. Its
+    /// solutions are then where it misses least.
+    pub misfit: f64,
 }
 
 impl Closure<'_> {
@@ -44,12 +47,18 @@ impl Closure<'_> {
         found
     }
 
-    fn solve(&self, mut q: DVector<f64>) -> Option<DVector<f64>> {
+    fn solve(&self, q: DVector<f64>) -> Option<DVector<f64>> {
+        let (q, miss) = self.approach(q)?;
+        (miss < SOLVED.max(self.misfit)).then_some(q)
+    }
+
+    /// The values to which steps lead, and by how much they miss the target.
+    fn approach(&self, mut q: DVector<f64>) -> Option<(DVector<f64>, f64)> {
         let (mut miss, mut jacobian) = self.linear(&q, rates);
         let mut damping = 1e-2;
         for _ in 0..STEPS {
             if miss.norm() < SOLVED {
-                return Some(q);
+                break;
             }
             let normal = jacobian.tr_mul(&jacobian) + DMatrix::identity(q.len(), q.len()) * damping;
             let mut step = normal.cholesky()?.solve(&jacobian.tr_mul(&miss));
@@ -66,11 +75,11 @@ impl Closure<'_> {
             } else {
                 damping *= 10.0;
                 if damping > 1e8 {
-                    return None;
+                    break;
                 }
             }
         }
-        None
+        Some((q, miss.norm()))
     }
 
     /// The smallest singular value of the leg's Jacobian: nearly zero where two solutions meet. A

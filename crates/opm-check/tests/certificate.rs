@@ -30,6 +30,57 @@ fn shipped_mechanisms_hold() {
     assert!(compared.iter().all(|&count| count > 300), "{compared:?}");
 }
 
+/// One pose has two sets of angles here, each in modes of its own.
+#[test]
+fn places_are_compared_and_not_coordinates() {
+    let charts = [
+        include_str!("../../../data/reference/forward/sph4-1.toml"),
+        include_str!("../../../data/reference/forward/sph4-x.toml"),
+        include_str!("../../../data/reference/forward/sph4-y.toml"),
+        include_str!("../../../data/reference/forward/spherical-5R-symmetric-orthogonal.toml"),
+        include_str!("../../../data/reference/forward/2UPR-RPU.toml"),
+    ];
+    for text in charts {
+        let manipulator = Manipulator::new(file::read(text).unwrap().mechanism).unwrap();
+        for seed in 1..4 {
+            let found = certificate(&manipulator, 60, seed);
+            let forward = &found.comparisons[4];
+            assert!(found.holds(), "{}: {found:?}", found.name);
+            assert!(forward.compared > 20, "{}: {forward:?}", found.name);
+        }
+    }
+}
+
+/// Axes and points in single precision, and with six digits: legs miss by that, and what is compared holds within it.
+#[test]
+fn rounded_joints_hold_within_their_misfit() {
+    let single = |c: f64| f64::from(c as f32);
+    let six_digits = |c: f64| format!("{c:.5e}").parse().unwrap();
+    let (mut mechanisms, mut branches) = (0, 0);
+    for example in examples::EXAMPLES {
+        let exact = file::read(example.text).unwrap().mechanism;
+        if Manipulator::new(exact.clone()).is_err() {
+            continue;
+        }
+        for round in [single as fn(f64) -> f64, six_digits] {
+            let mut mechanism = exact.clone();
+            for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+                joint.axis = Unit::new_normalize(joint.axis.map(|c| round(0.7 * c)));
+                joint.point = joint.point.map(round);
+            }
+            let manipulator = Manipulator::new(mechanism).unwrap();
+            let found = certificate(&manipulator, 20, 2);
+            assert_eq!(found.misfit, manipulator.decomposition().deviation);
+            assert!(found.holds(), "{}, misfit {:e}: {found:?}", found.name, found.misfit);
+            mechanisms += usize::from(found.misfit > 1e-10);
+            branches += found.comparisons[1].compared;
+        }
+    }
+    println!("{mechanisms} mechanisms, {branches} legs");
+    // In a plane whose axes stand along a base axis, rounded joints still fit.
+    assert!(mechanisms >= 4 && branches > 500, "{mechanisms} {branches}");
+}
+
 /// One axis is tilted after the decomposition was found: every comparison with what does not use it fails.
 #[test]
 fn a_joint_that_is_off_is_found() {

@@ -20,8 +20,10 @@ pub(crate) mod height;
 mod imaginary;
 pub mod mobility;
 mod near;
+mod nearby;
 mod odd;
 mod order;
+mod reorder;
 mod search;
 mod survey;
 
@@ -29,16 +31,21 @@ mod survey;
 pub(crate) mod samples;
 
 pub use height::{HeightMiss, HeightReason};
-pub use near::{JointMiss, NearMiss, Snapped, nearly, snap};
+pub use near::{JointMiss, NearMiss, Snapped, nearly, slightly_off, snap};
+pub use reorder::{OrderChange, Reordered};
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
 
 use crate::decomposition::mobility::{HomeSingularity, Mobility, MobilityError, frame, mobility};
 use crate::group::SubspaceKind;
 use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
 use crate::mechanism::Mechanism;
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::Leg;
+use crate::numeric::Quantity;
 use nalgebra::Vector6;
+use nearby::{NearbyPart, NearbyPose, group_of};
+use reorder::Exchanges;
 use search::SplitCandidate;
 use std::cmp::Reverse;
 use thiserror::Error;
@@ -144,13 +151,16 @@ pub enum DecomposeError {
     },
     /// The home pose is singular, so that it does not represent other poses.
     #[error(
-        "the home pose is singular ({}); expected a regular home pose{}",
+        "the home pose is singular ({}); expected the joints at a regular pose{}{}",
         list(singularities),
+        reordered_text(order.as_deref()),
         nearly_text(near.as_deref())
     )]
     SingularHome {
         /// Every respect in which home is singular.
         singularities: Vec<HomeSingularity>,
+        /// An order of the joints in which the mechanism decomposes.
+        order: Option<Box<Reordered>>,
         /// What the mechanism misses, if it is nearly one that decomposes.
         near: Option<Box<NearMiss>>,
     },
@@ -164,11 +174,11 @@ pub enum DecomposeError {
     },
     /// The actuators do not control every motion of the platform.
     #[error(
-        "the actuators do not control the platform: {actuators} actuated {} control {controlled} of \
+        "the actuators do not control the platform: {actuators} actuated {} {controlled} of \
          the {mobility} freedoms of the mechanism; with all actuators locked, these motions are \
          free: {}",
-        if *actuators == 1 { "freedom" } else { "freedoms" },
-        list(free)
+        if *actuators == 1 { "freedom controls" } else { "freedoms control" },
+        motions(free, *units)
     )]
     Loose {
         /// Mobility of the mechanism, `N`.
@@ -179,11 +189,13 @@ pub enum DecomposeError {
         controlled: usize,
         /// Independent motions of the platform with all actuators locked.
         free: Vec<SubspaceClass>,
+        /// The units of the mechanism's file, for messages.
+        units: FileUnits,
     },
     /// No split of the legs gives two groups that share exactly a one-parameter group.
     #[error(
         "no partial subspaces (lambda = {lambda}, mobility N = {mobility}){}; {}{}",
-        subspace.as_deref().map(|group| format!(": {}", one_group(group))).unwrap_or_default(),
+        subspace.as_deref().map(|group| format!(": {}", one_group(group, *units))).unwrap_or_default(),
         match height {
             Some(height) => height.to_string(),
             None => format!(
@@ -191,9 +203,10 @@ pub enum DecomposeError {
                  a one-parameter motion"
             ),
         },
-        match (near, height, odd) {
-            (Some(near), ..) => nearly_text(Some(near)),
-            (None, None, Some(odd)) => format!(
+        match (order, near, height, odd) {
+            (Some(order), ..) => reordered_text(Some(order)),
+            (None, Some(near), ..) => nearly_text(Some(near)),
+            (None, None, None, Some(odd)) => format!(
                 "; only joint {} of leg {} does not fit such a split: {}",
                 odd.joint,
                 odd.leg,
@@ -207,6 +220,8 @@ pub enum DecomposeError {
         lambda: usize,
         /// Mobility of the mechanism, `N`.
         mobility: usize,
+        /// An order of the joints in which the mechanism decomposes.
+        order: Option<Box<Reordered>>,
         /// What the mechanism misses, if it is nearly one that decomposes.
         near: Option<Box<NearMiss>>,
         /// Otherwise, the joint without which there would be such a split, if there is exactly one.
@@ -216,22 +231,40 @@ pub enum DecomposeError {
         /// The group in which all legs move together; `None` if the span of all joint screws is not
         /// a subgroup.
         subspace: Option<Box<SubspaceClass>>,
+        /// The units of the mechanism's file, for messages.
+        units: FileUnits,
     },
 }
 
 /// What a mechanism is whose legs all move in one group.
-fn one_group(group: &SubspaceClass) -> String {
+fn one_group(group: &SubspaceClass, units: FileUnits) -> String {
     match group {
         SubspaceClass::Full => "the joints of all legs together move in all six dimensions".into(),
-        group => format!("all legs move in one subgroup, {group}"),
+        group => {
+            format!(
+                "all legs move in one subgroup, {}",
+                motions(std::slice::from_ref(group), units)
+            )
+        }
     }
+}
+
+/// Motions of the platform, as a part of a message.
+fn motions(motions: &[SubspaceClass], units: FileUnits) -> String {
+    let (size, unit) = (units.length.factor(), units.length.symbol());
+    list(&motions.iter().map(|motion| motion.in_unit(size, unit)).collect::<Vec<_>>())
+}
+
+/// A better order of the joints, as a part of a message.
+fn reordered_text(order: Option<&Reordered>) -> String {
+    order.map_or_else(String::new, |order| format!("; {order}"))
 }
 
 /// What a mechanism misses, as a part of a message.
 fn nearly_text(near: Option<&NearMiss>) -> String {
     near.map_or_else(String::new, |near| {
-        let millimetres = near.tolerance * 1e3;
-        format!("; it would decompose within a tolerance of {millimetres:.2} mm: {near}")
+        let tolerance = near::shown(near.tolerance, Quantity::Length, near.units);
+        format!("; it would decompose within a tolerance of {tolerance}: {near}")
     })
 }
 
@@ -250,42 +283,42 @@ fn list<T: ToString>(items: &[T]) -> String {
 /// actuators that do not control the platform, or has no partial subspaces.
 pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
     let report = mobility(mechanism)?;
-    found_or_near(mechanism, regular_home(&report))?;
+    found_or_near(mechanism, &report, regular_home(&report))?;
     check_actuators(&report)?;
-    found_or_near(mechanism, ranked(mechanism, &report))
+    found_or_near(mechanism, &report, ranked(mechanism, &report))
 }
 
-/// All valid decompositions of a mechanism, as [`decompose`], whatever its actuators: none yet, too few,
-/// or so placed that home is a parallel singularity.
+/// All valid decompositions of a mechanism, as [`decompose`], whatever its actuators: none yet, or too few.
 ///
 /// # Errors
-/// [`DecomposeError`] if the mechanism is incomplete, cannot move, or has no partial subspaces, or if its home pose is
-/// singular in another respect.
+/// [`DecomposeError`] if the mechanism is incomplete, cannot move, is singular at home other than by its actuators, or
+/// has no partial subspaces.
 pub fn search_all(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
-    found_or_near(mechanism, passive(mechanism, &mobility(mechanism)?))
+    let report = mobility(mechanism)?;
+    found_or_near(mechanism, &report, passive(mechanism, &report))
 }
 
 /// As [`search_all`]. Errors do not say yet whether the mechanism nearly decomposes.
 fn passive(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
-    let mut report = report.clone();
-    report.singular.retain(|s| !matches!(s, HomeSingularity::Parallel { .. }));
-    regular_home(&report)?;
-    ranked(mechanism, &report)
+    regular_home(report)?;
+    ranked(mechanism, report)
 }
 
-/// Checks that the mechanism moves and that home is regular.
+/// Checks that the mechanism moves and that the screws at home are those of other poses, too. A parallel singularity
+/// is none of the screws: it depends on which joints are actuated.
 fn regular_home(report: &Mobility) -> Result<(), DecomposeError> {
     if report.mobility == 0 {
         return Err(DecomposeError::NoFreedom { lambda: report.lambda, near: None });
     }
-    if !report.singular.is_empty() {
-        let singularities = report.singular.clone();
-        return Err(DecomposeError::SingularHome { singularities, near: None });
+    let of_screws = |s: &&HomeSingularity| !matches!(s, HomeSingularity::Parallel { .. });
+    let singularities: Vec<_> = report.singular.iter().filter(of_screws).cloned().collect();
+    match singularities.is_empty() {
+        true => Ok(()),
+        false => Err(DecomposeError::SingularHome { singularities, order: None, near: None }),
     }
-    Ok(())
 }
 
-/// Checks that the actuators control every motion of the platform.
+/// Checks that the actuators control every motion of the platform at poses near home.
 ///
 /// # Errors
 /// [`DecomposeError::NoActuator`] or [`DecomposeError::Loose`].
@@ -296,8 +329,8 @@ pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
     }
     if !report.loose.is_empty() {
         let (actuators, controlled) = (report.actuators, report.controlled);
-        let free = report.loose.clone();
-        return Err(DecomposeError::Loose { mobility, actuators, controlled, free });
+        let (free, units) = (report.loose.clone(), report.units);
+        return Err(DecomposeError::Loose { mobility, actuators, controlled, free, units });
     }
     Ok(())
 }
@@ -305,7 +338,7 @@ pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
 /// The decompositions of a mechanism that moves, the preferred one first.
 fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     let (lambda, mobility) = (report.lambda, report.mobility);
-    let mut found = order::listed(mechanism, lambda, mobility);
+    let mut found = order::listed(mechanism, report);
     if found.is_empty() {
         let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
         let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);
@@ -313,19 +346,22 @@ fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>
         return Err(DecomposeError::NoPartialSubspaces {
             lambda,
             mobility,
+            order: None,
             near: None,
             odd: None,
             height: height.map(Box::new),
             subspace,
+            units: mechanism.units,
         });
     }
     found.sort_by_cached_key(|decomposition| preference(decomposition, mechanism));
     Ok(found)
 }
 
-/// Adds to an error what the mechanism misses, if it nearly decomposes.
+/// Adds to an error an order of the joints in which the mechanism decomposes, or what it misses, if it nearly does.
 fn found_or_near<T>(
     mechanism: &Mechanism,
+    report: &Mobility,
     found: Result<T, DecomposeError>,
 ) -> Result<T, DecomposeError> {
     let mut error = match found {
@@ -334,13 +370,27 @@ fn found_or_near<T>(
     };
     let near_miss = |mechanism| near::near_miss(mechanism, near::MOST_DIMENSIONS);
     match &mut error {
-        DecomposeError::NoFreedom { near, .. } | DecomposeError::SingularHome { near, .. } => {
-            *near = near_miss(mechanism).map(Box::new);
+        DecomposeError::NoFreedom { near, .. } => *near = near_miss(mechanism).map(Box::new),
+        DecomposeError::SingularHome { near, order, singularities } => {
+            // A parallel singularity is none of the order.
+            let parallel = |s: &HomeSingularity| matches!(s, HomeSingularity::Parallel { .. });
+            if !singularities.iter().all(parallel) {
+                *order = reorder::better_order(mechanism, Exchanges::Any).map(Box::new);
+            }
+            if order.is_none() {
+                *near = near_miss(mechanism).map(Box::new);
+            }
         }
-        DecomposeError::NoPartialSubspaces { near, odd, mobility, .. } => {
-            *near = near_miss(mechanism).map(Box::new);
-            if near.is_none() {
-                *odd = odd::odd_joint(mechanism, *mobility).map(Box::new);
+        DecomposeError::NoPartialSubspaces { order, near, odd, height, .. } => {
+            // In one subgroup, the order of joints is not what is missing.
+            if height.is_none() {
+                *order = reorder::better_order(mechanism, Exchanges::Neighbours).map(Box::new);
+            }
+            if order.is_none() {
+                *near = near_miss(mechanism).map(Box::new);
+            }
+            if order.is_none() && near.is_none() {
+                *odd = odd::odd_joint(mechanism, report).map(Box::new);
             }
         }
         DecomposeError::Mobility(_)
@@ -361,11 +411,17 @@ pub const MAX_DECOMPOSITIONS: usize = 1024;
 
 /// The decomposition of a mechanism whose legs all move in one proper subgroup: the subgroup is the lower
 /// section, and there is no upper one. `None` if the joint screws do not span a subgroup that has closed forms.
-fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option<Decomposition> {
+fn one_subspace(mechanism: &Mechanism, report: &Mobility) -> Option<Decomposition> {
     let frame = frame(mechanism);
     let screws: Vec<_> =
         mechanism.legs.iter().flat_map(Leg::screws).map(|screw| frame.unit(&screw)).collect();
-    let group = fit(&screws).filter(|group| group.class.dimension() == lambda)?;
+    let moved = || {
+        let nearby = NearbyPose::new(mechanism, &frame, report);
+        let parts = mechanism.legs.iter().enumerate();
+        parts.flat_map(|(number, leg)| nearby.part(number, &Freedom::of_leg(leg)).screws).collect()
+    };
+    let group =
+        group_of(&screws, moved).filter(|group| group.class.dimension() == report.lambda)?;
     // Others have no closed forms, alone.
     SubspaceKind::of(&group.class)?;
     let class = group.class.restored(&frame);
@@ -376,14 +432,14 @@ fn one_subspace(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Option
     let whole =
         |leg: &Leg| LegSplit { lower: Freedom::of_leg(leg), upper: vec![], imaginary: false };
     Some(Decomposition {
-        lambda,
-        mobility,
+        lambda: report.lambda,
+        mobility: report.mobility,
         lower: class,
         upper: SubspaceClass::Identity,
         intersection: SubspaceClass::Identity,
         legs: mechanism.legs.iter().map(whole).collect(),
         imaginary_joints: 0,
-        first_section_motions: mobility,
+        first_section_motions: report.mobility,
         upper_mobility: 0,
         redundancy: 0,
         deviation: group.deviation,
@@ -400,19 +456,15 @@ fn height_miss(mechanism: &Mechanism, group: &SubspaceClass) -> Option<HeightMis
 
 /// All decompositions into two subgroups that share a group of `shared` dimensions, and the number of partial
 /// splits that were visited.
-fn search(
-    mechanism: &Mechanism,
-    lambda: usize,
-    mobility: usize,
-    shared: usize,
-) -> (Vec<Decomposition>, usize) {
+fn search(mechanism: &Mechanism, report: &Mobility, shared: usize) -> (Vec<Decomposition>, usize) {
     let frame = frame(mechanism);
+    let nearby = NearbyPose::new(mechanism, &frame, report);
     let candidates: Vec<Vec<SplitCandidate>> =
         mechanism.legs.iter().map(|leg| search::candidates(leg, &frame)).collect();
     let mut found = vec![];
-    let visited = search::splits(&candidates, lambda, &mut |split| {
-        let sections = Sections::new(split, lambda, shared);
-        found.extend(sections.map(|s| s.decomposition(mechanism, &frame, lambda, mobility)));
+    let visited = search::splits(&candidates, report.lambda, &mut |split| {
+        let sections = Sections::new(split, &nearby, report.lambda, shared);
+        found.extend(sections.map(|s| s.decomposition(mechanism, &frame, report)));
         found.len() < MAX_DECOMPOSITIONS
     });
     (found, visited)
@@ -421,6 +473,8 @@ fn search(
 /// A split of every leg whose two sections are groups that share a one-parameter group, or the identity alone.
 struct Sections<'a> {
     legs: &'a [&'a SplitCandidate],
+    /// The upper parts of the legs at a pose near home.
+    nearby: Vec<NearbyPart>,
     lower: Fit,
     upper: Fit,
     /// `None` where they share the identity alone.
@@ -428,15 +482,25 @@ struct Sections<'a> {
 }
 
 impl<'a> Sections<'a> {
-    fn new(legs: &'a [&'a SplitCandidate], lambda: usize, shared: usize) -> Option<Self> {
-        let partial = |screws: fn(&SplitCandidate) -> &[Vector6<f64>]| {
+    fn new(
+        legs: &'a [&'a SplitCandidate],
+        nearby: &NearbyPose,
+        lambda: usize,
+        shared: usize,
+    ) -> Option<Self> {
+        let partial = |screws: fn(&SplitCandidate) -> &[Vector6<f64>],
+                       freedoms: fn(&SplitCandidate) -> &[Freedom]| {
             let all: Vec<_> =
                 legs.iter().flat_map(|candidate| screws(candidate)).copied().collect();
+            let moved = || {
+                let parts = legs.iter().enumerate();
+                parts.flat_map(|(leg, split)| nearby.part(leg, freedoms(split)).screws).collect()
+            };
             let dimension = |fit: &Fit| fit.class.dimension();
-            fit(&all).filter(|fit| (1..lambda).contains(&dimension(fit)))
+            group_of(&all, moved).filter(|fit| (1..lambda).contains(&dimension(fit)))
         };
-        let lower = partial(SplitCandidate::lower_screws)?;
-        let upper = partial(SplitCandidate::upper_screws)?;
+        let lower = partial(SplitCandidate::lower_screws, |split| &split.lower)?;
+        let upper = partial(SplitCandidate::upper_screws, |split| &split.upper)?;
         let intersection = lower.basis.intersection(&upper.basis);
         if intersection.dimension() != shared {
             return None;
@@ -451,21 +515,26 @@ impl<'a> Sections<'a> {
             0 => None,
             _ => Some(fit(intersection.vectors())?),
         };
-        Some(Self { legs, lower, upper, intersection })
+        let parts = legs.iter().enumerate();
+        let nearby = parts.map(|(leg, split)| nearby.part(leg, &split.upper)).collect();
+        Some(Self { legs, nearby, lower, upper, intersection })
     }
 
     fn decomposition(
         &self,
         mechanism: &Mechanism,
         frame: &Frame,
-        lambda: usize,
-        mobility: usize,
+        report: &Mobility,
     ) -> Decomposition {
-        let parts: Vec<_> = self.legs.iter().map(|candidate| candidate.upper_screws()).collect();
+        let &Mobility { lambda, mobility, .. } = report;
+        let parts: Vec<_> = self.nearby.iter().map(|part| part.screws.as_slice()).collect();
+        let shared = self.intersection.as_ref().map(|fit| fit.basis.vectors()[0]);
+        let seen: Option<Vec<_>> =
+            shared.map(|shared| self.nearby.iter().map(|part| part.seen(&shared)).collect());
         let section = imaginary::UpperSection {
             basis: &self.upper.basis,
             legs: &parts,
-            intersection: self.intersection.as_ref().map(|fit| fit.basis.vectors()[0]),
+            intersection: seen.as_deref(),
         };
         let key = |leg: &Leg, split: &SplitCandidate| {
             (split.upper.len(), split.lower.len(), leg.name.clone())

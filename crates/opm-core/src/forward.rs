@@ -48,6 +48,7 @@ mod along;
 mod candidates;
 mod distance;
 mod held;
+mod least;
 mod matches;
 mod near;
 mod nearest;
@@ -58,6 +59,7 @@ mod three;
 mod trigonometric;
 
 pub use crate::manipulator::NoClosedForm;
+pub use least::LeastChange;
 pub use near::{NearError, NotFound, Stop};
 pub use newton::NearBuffer;
 
@@ -121,7 +123,7 @@ pub struct ForwardBuffer {
     memory: Memory,
 }
 
-/// Why the mechanism cannot be assembled.
+/// Why the mechanism cannot be assembled. [`Manipulator::least_change`] tells by how much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Unmet {
@@ -131,10 +133,10 @@ pub enum Unmet {
     Legs([usize; 2]),
     /// Each leg of the section closes alone, but no pose of the platform closes all of them.
     Section(Section),
-    /// There are more actuated joints than degrees of freedom, and they contradict each other. The number is
-    /// the smallest error of a joint, in radians or shares of the mechanism's size; it is infinite if a leg
-    /// is out of reach.
-    Contradiction(f64),
+    /// No pose of the platform closes all legs at once.
+    Together,
+    /// There are more actuated joints than degrees of freedom, and they contradict each other.
+    Contradiction,
 }
 
 /// Why forward kinematics cannot be computed for given joint values.

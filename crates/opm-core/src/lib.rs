@@ -72,7 +72,7 @@
 //! * A pose out of reach is an answer (`None`), not an error; an error means that the input is not valid.
 //!   A pose on the boundary of reach, or on a limit, counts as inside.
 
-// Layers: numeric, group, chain, mechanism, decomposition, task, manipulator, velocity, forward, motion,
+// Layers: text, numeric, group, chain, mechanism, decomposition, task, manipulator, velocity, forward, motion,
 // trajectory, enclosure, linkage, skeleton. Each uses only those before it (tests/layers.rs).
 pub mod chain;
 pub mod decomposition;
@@ -87,7 +87,9 @@ pub mod mechanism;
 pub mod motion;
 pub mod numeric;
 pub mod skeleton;
+pub mod table;
 pub mod task;
+pub mod text;
 pub mod trajectory;
 pub mod velocity;
 

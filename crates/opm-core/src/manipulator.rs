@@ -20,6 +20,7 @@ pub(crate) mod dependent;
 #[doc(hidden)]
 pub mod form;
 mod inverse;
+mod judged;
 mod leg;
 mod lift;
 mod locate;
@@ -68,11 +69,12 @@ use crate::numeric::four_wide::FourWide;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 pub(crate) use closure::ClosureBuffer;
+use judged::judged_at;
 use leg::CompileContext;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 pub(crate) use mode::Choices;
 use mode::ModeLayout;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use plan::Plan;
 pub(crate) use solution::SolvedPose;
 use std::ops::Range;
@@ -159,6 +161,8 @@ pub struct Manipulator {
     /// All task coordinates at home, dependent ones too.
     home: Vec<f64>,
     length: f64,
+    /// The point whose velocity stands for the platform's twist in condition numbers, from the reference point.
+    pub(crate) judged_at: Option<Vector3<f64>>,
     /// The order in which forward kinematics solve the sections, or why they have no closed form.
     pub(crate) plan: Result<Plan, NoClosedForm>,
     /// The legs' products of exponentials.
@@ -513,6 +517,7 @@ impl Compiled {
         let closure = Closure::new(&mechanism);
         let mut manipulator = Manipulator {
             plan: Plan::new(&task, &legs, closure.size),
+            judged_at: judged_at(&mechanism, &task, &independent),
             closure,
             arch: FourWide::new(),
             mechanism,

@@ -19,6 +19,7 @@ pub use hints::{FrameHints, OrientationCoordinates, TaskHints, TaskKey};
 pub use screws::{ScrewError, ScrewJoint};
 pub use shapes::{Obstacle, ObstacleShape, Shapes};
 
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::{Joint, JointCoordinate};
 use crate::mechanism::leg::Leg;
 use nalgebra::Point3;
@@ -50,6 +51,9 @@ pub struct Mechanism {
     pub bodies: BodyMasses,
     /// How thick the bodies are, and what stands around them.
     pub shapes: Shapes,
+    /// The units of the file that it was read from, in which messages about it are given; all numbers here are SI.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub units: FileUnits,
 }
 
 impl Mechanism {

@@ -4,6 +4,7 @@
 //! lines and arcs with feed rates) or from a table of poses ([`table`]: cubic splines). Either way it is a formula in time with exact
 //! derivatives, which can be evaluated at any time: nothing is sampled in advance.
 
+mod clock;
 mod columns;
 pub mod examples;
 #[cfg(feature = "files")]

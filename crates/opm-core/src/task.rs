@@ -17,7 +17,7 @@
 //! A Schoenflies section is a planar one at a height along the plane's normal: `z`, or `h` above a cylinder, which has
 //! a `z`. The cylinder's axis may be inclined to the normal. Then `I` has a part in the plane and a part in the height.
 //!
-//! `x y` move the reference point in the plane, `w` moves it perpendicular to `I`, `z` along the axis; in a
+//! `x y` move the centre of the frame in the plane, `w` moves it perpendicular to `I`, `z` along the axis; in a
 //! translational space, `x y z` move it along the frame's directions, and `w h` along the first two, where the third
 //! one is that of `I`;
 //! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
@@ -28,7 +28,7 @@
 //! # Frames
 //!
 //! Each section has a frame, fixed in the base: three directions, the point that lengths are measured
-//! from, and the reference point at home, which is the centre of rotations. They follow from the geometry
+//! from, and the centre at home: the point that lengths move and rotations are about. They follow from the geometry
 //! of the two subspaces and the base's directions alone:
 //!
 //! * The axis `d` of `I`, where it is a rotation or along a cylinder, is the third direction of both
@@ -36,14 +36,17 @@
 //!   x positive x ([`UP`](crate::group::subspace::UP) is what decides).
 //! * `x` is the base's x projected into the plane, or its y where x is within 6 degrees of the normal; of
 //!   a sphere likewise, projected into the plane perpendicular to `d`. `y` is `x` rotated by a right angle
-//!   about the third direction.
+//!   about the third direction. Where the third direction is given by a rotation `I`, or by a translation `I` in a
+//!   translational space, and is level, that would make `y` point down along some of them: there `x` is reversed, so that
+//!   `y` points up. In between, the sum of `y` and the third direction points up.
 //! * The normal of a plane that holds a translation `I` points up where the plane is level; where it
 //!   is upright, `y` points up. In between, the sum of both does.
 //! * `w` points up in a plane.
 //! * Without `I`, the third direction is a plane's normal, a cylinder's axis, which points up, or the base's z
 //!   for a sphere and for a translational space. The latter has the direction of a translation `I` as its third.
-//! * The reference point is the platform's, moved to the axis of `I` where that is a rotation, to a
-//!   cylinder's axis, or to a sphere's centre. Lengths are measured from the base's origin.
+//! * The centre is the platform's reference point, moved to the axis of `I` where that is a rotation, to a
+//!   cylinder's axis, or to a sphere's centre. Lengths are measured from the base's origin. The reference point itself
+//!   is what a pose in SE(3) places, and whose velocity a twist has.
 //!
 //! For a level plane, `x y` are the base's. No rule is discontinuous near the directions of usual
 //! designs: a mechanism that is rotated a little has its frames rotated a little.
@@ -69,6 +72,7 @@ pub(crate) use displacement::{
 };
 pub use error::{FrameProblem, OddJoint, TaskError};
 pub(crate) use height::Height;
+pub(crate) use pose::other_triple;
 
 // The types of `Task`'s fields and results.
 pub use crate::group::{Displacement, Subspace, SubspaceKind};

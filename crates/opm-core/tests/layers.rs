@@ -5,11 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The top-level modules, lowest first. A module may use itself and those before it.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 16] = [
+    "text",
     "numeric",
     "group",
     "chain",
     "mechanism",
+    "table",
     "decomposition",
     "task",
     "manipulator",

@@ -36,6 +36,8 @@ use toml::Spanned;
 
 /// The version of the format.
 const FORMAT: u32 = 1;
+/// The most poses of a grid: some seconds for each design.
+const MOST_POSES: u64 = 10_000_000;
 
 /// What is wrong with a file of a problem: every problem, at least one, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -348,7 +350,16 @@ impl Reader<'_> {
             return None;
         }
         let grid = Grid::new(manipulator, axes);
-        grid.map_err(|error| self.report(text.span().start, error.to_string())).ok()
+        let grid = grid.map_err(|error| self.report(text.span().start, error.to_string())).ok()?;
+        if grid.poses() > MOST_POSES {
+            let problem = format!(
+                "the grid has {} poses, expected at most {MOST_POSES}: every design is judged at all of them",
+                grid.poses()
+            );
+            self.report(text.span().start, problem);
+            return None;
+        }
+        Some(grid)
     }
 
     fn measure(

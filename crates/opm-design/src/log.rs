@@ -83,12 +83,12 @@ impl Log {
         Ok(Self::with(columns, known, file))
     }
 
-    /// Reads the table of an interrupted run, and goes on with it. A last row that is cut short is left out.
+    /// Reads `text`, the table of an interrupted run in a file, and goes on with it. A last row that is cut short is left
+    /// out.
     ///
     /// # Errors
     /// It cannot be read or written, or is of another problem.
-    pub fn resume(path: &Path, columns: &Columns) -> Result<Self, LogError> {
-        let text = std::fs::read_to_string(path)?;
+    pub fn resume(path: &Path, text: &str, columns: &Columns) -> Result<Self, LogError> {
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         let mut reader =
             csv::ReaderBuilder::new().flexible(true).from_reader(&text.as_bytes()[..whole]);

@@ -10,6 +10,7 @@
 
 mod geoms;
 mod joints;
+mod mass_unit;
 mod reference;
 mod servo;
 
@@ -18,10 +19,11 @@ pub use reference::{MjcfReference, ReferenceError};
 use crate::keyframe::{Keyframes, Source};
 use crate::xml::{Element, number};
 use joints::{Names, joint_values, joints};
+use mass_unit::MassUnit;
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::leg::Leg;
 use opm_core::skeleton::{Body, Density, Mass, OutOfRange, Skeleton};
-use servo::Servos;
+use servo::{FREQUENCY, Servos};
 use std::ops::Range;
 
 /// How stiff a constraint is: the share of the force of a rigid one. MuJoCo refuses 1.
@@ -30,6 +32,11 @@ const SOLIMP: [f64; 3] = [0.9999, 0.9999, 0.001];
 const TIME_STEPS: [f64; 2] = [1e-9, 1.0];
 /// The time in which a gap closes, in time steps: MuJoCo takes 2 as the least that is stable.
 const SOLREF_STEPS: f64 = 2.0;
+/// The acceleration of gravity, metres per second squared.
+const GRAVITY: f64 = 9.81;
+/// A servo may give way to the weight of what moves by this share of the mechanism's size. That of a mechanism of a few
+/// millimetres would give way by more, and the mechanism would leave its assembly.
+const SAG: f64 = 0.05;
 
 /// What a model in MJCF is written with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,8 +80,13 @@ pub fn mjcf(keyframes: &Keyframes<'_>, options: &MjcfOptions) -> String {
     let bodies = skeleton.bodies();
     let density = options.density.of(mechanism);
     let masses = skeleton.masses(mechanism, options.density);
+    let unit = MassUnit::of(bodies, &masses, skeleton.size());
+    let masses: Vec<Mass> = masses.iter().map(|mass| mass.share(unit.per_kilogram())).collect();
+    let density = density * unit.per_kilogram();
     let time_step = options.time_step;
-    Model { mechanism, bodies, masses: &masses, density, time_step }.document(keyframes)
+    let floats = skeleton.size() < GRAVITY / (SAG * FREQUENCY * FREQUENCY);
+    Model { mechanism, bodies, masses: &masses, unit, density, time_step, floats }
+        .document(keyframes)
 }
 
 /// What is known while a model is written.
@@ -84,10 +96,14 @@ struct Model<'a> {
     bodies: &'a [Body],
     /// Their masses, in their frames.
     masses: &'a [Mass],
-    /// The density of bodies whose masses are not given, kilograms per cubic metre.
+    /// The unit of these masses.
+    unit: MassUnit,
+    /// The density of bodies whose masses are not given, in that unit per cubic metre.
     density: f64,
     /// Seconds.
     time_step: f64,
+    /// Whether weight is taken from the bodies.
+    floats: bool,
 }
 
 impl Model<'_> {
@@ -134,14 +150,20 @@ impl Model<'_> {
             .with("contype", "0")
             .with("conaffinity", "0")
             .numbers("density", &[self.density]);
-        // The smallest mechanisms have moments of inertia that MuJoCo takes for none.
+        // Bodies without an extent, such as a link between axes that meet.
         let compiler = Element::new("compiler")
             .with("angle", "radian")
             .with("autolimits", "true")
             .numbers("boundmass", &[1e-12])
             .numbers("boundinertia", &[1e-14]);
-        Element::new("mujoco")
-            .with("model", &*self.mechanism.name)
+        let mut heading = Element::new("mujoco").with("model", &*self.mechanism.name);
+        if let Some(told) = self.unit.told() {
+            heading.comment(told);
+        }
+        if self.floats {
+            heading.comment("servos of 20 Hz would give way to the weight of so small bodies: it is taken from them".to_owned());
+        }
+        heading
             .child(compiler)
             .child(option)
             .child(Element::new("default").child(geom))
@@ -179,6 +201,9 @@ impl Model<'_> {
                 }
             }
             let share = if end { 1.0 / self.mechanism.legs.len() as f64 } else { 1.0 };
+            if self.floats {
+                element = element.with("gravcomp", "1");
+            }
             element.push(geoms::inertial(&self.masses[number].share(share)));
             // The end of another leg is the platform, drawn already.
             if !end || chain.first {

@@ -2,6 +2,9 @@
 
 use std::collections::HashSet;
 
+/// The longest identifier of a name. Files are called after it, too, and their systems take 255 characters.
+const LONGEST: usize = 100;
+
 /// The prefix of every symbol: the mechanism's name with `_` for everything that an identifier cannot have.
 pub fn prefix(name: &str) -> String {
     let plain = plain(name);
@@ -41,9 +44,11 @@ pub fn comment(name: &str) -> String {
     name.replace("*/", "* /").replace("/*", "/ *").replace('\\', "/")
 }
 
+/// The beginning of a name with `_` for everything that an identifier cannot have. A symbol has the prefix of the library
+/// in it, and there are a thousand: one of a million letters would fill the memory.
 fn plain(name: &str) -> String {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    name.chars().map(letter).collect()
+    name.chars().take(LONGEST).map(letter).collect()
 }
 
 #[cfg(test)]
@@ -59,5 +64,11 @@ mod tests {
         assert_eq!(package("classes", &["class"]), "classes");
         assert_eq!(identifiers(["s.x", "s_x", "s x"]), ["s_x", "s_x_2", "s_x_3"]);
         assert_eq!(comment("a */ b"), "a * / b");
+        assert_eq!(prefix(&"n".repeat(1_000_000)).len(), LONGEST);
+        let long = [format!("{}1", "n".repeat(200)), format!("{}2", "n".repeat(200))];
+        let [first, second] = &*identifiers(long.iter().map(String::as_str)) else {
+            unreachable!()
+        };
+        assert_ne!(first, second);
     }
 }

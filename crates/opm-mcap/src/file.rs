@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::RecordError;
 
@@ -96,6 +97,7 @@ impl PartialFile {
             }
         };
         file.set_len(0).map_err(failed)?;
+        open().push(partial.clone());
         let file = BufWriter::with_capacity(1 << 17, file);
         Ok(Self { file, partial, target: target.into(), begun: false })
     }
@@ -120,6 +122,25 @@ impl PartialFile {
         self.file.get_ref().sync_all()?;
         fs::rename(&self.partial, &self.target)
     }
+}
+
+/// The unfinished files of this process.
+static OPEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn open() -> MutexGuard<'static, Vec<PathBuf>> {
+    OPEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The unfinished files of this process that something was written to, for one that ends at once. Those that nothing was
+/// written to are removed.
+pub fn unfinished() -> Vec<PathBuf> {
+    let is_empty = |path: &PathBuf| fs::metadata(path).is_ok_and(|found| found.len() == 0);
+    let (empty, begun): (Vec<_>, Vec<_>) = open().iter().cloned().partition(is_empty);
+    for path in empty {
+        // Empty or of no use; if it stays, so be it.
+        let _ = fs::remove_file(path);
+    }
+    begun
 }
 
 /// The file that a symbolic link leads to, whether it is there yet or not; another name as it is.
@@ -165,6 +186,7 @@ impl Sink for PartialFile {
 
 impl Drop for PartialFile {
     fn drop(&mut self) {
+        open().retain(|path| *path != self.partial);
         if !self.begun {
             // Empty or of no use; if it stays, so be it.
             let _ = fs::remove_file(&self.partial);

@@ -112,8 +112,8 @@ impl Layout {
             None => frames.extent().map_or_else(Vec::new, |extent| motion(&recording, extent)),
         };
         if views.is_empty() && plots.is_empty() {
-            let mut names: Vec<&str> = recording.topics.iter().map(|topic| &*topic.name).collect();
-            names.truncate(8);
+            let names = recording.topics.iter().take(8);
+            let names: Vec<_> = names.map(|topic| topic.name.escape_debug().to_string()).collect();
             let found = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
             return Err(LayoutError::Nothing { found });
         }

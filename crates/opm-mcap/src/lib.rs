@@ -58,6 +58,7 @@
 //! | [`slices`] | what the slices of a workspace are |
 //! | [`shard`] | the reachable poses of a part of a sweep, by their numbers |
 //! | [`table`] | points as NPY for NumPy and PLY for mesh tools |
+//! | [`input`] | files of users, read within limits |
 //! | [`csv`] | plain numbers as CSV, read and written a row at a time |
 //! | [`cloud`] | the layout of the points of a cloud, and how they are packed |
 //! | [`scene`] | bodies made of simple solids |
@@ -83,6 +84,7 @@ mod decode;
 mod error;
 mod file;
 mod flat;
+pub mod input;
 pub mod joints;
 pub mod layout;
 mod log;
@@ -99,7 +101,7 @@ pub mod workspace;
 pub use cloud::{CloudLayout, Packer};
 pub use decode::{Cloud, Column};
 pub use error::{ReadError, RecordError};
-pub use file::{PartialFile, Sink};
+pub use file::{PartialFile, Sink, unfinished};
 pub use flat::Flat;
 pub use layout::{Layout, LayoutError};
 #[doc(hidden)]

@@ -7,6 +7,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+use lz4_flex::frame::FrameDecoder;
 use mcap::McapError;
 use mcap::records::{self, Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -14,6 +15,7 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 use crate::cloud::COLOR_FIELDS;
 use crate::decode::Cloud;
 use crate::flat::Flat;
+use crate::recover::RECOVERED;
 use crate::rejected::REJECTED_TOPIC;
 use crate::shard::{self, RUNS_SCHEMA};
 use crate::workspace::BOUNDARY_POINTS_TOPIC;
@@ -38,8 +40,8 @@ pub struct Recording {
     pub metadata: Vec<(String, Metadata)>,
     /// The attachments, in the order of the file.
     pub attachments: Vec<AttachmentInfo>,
-    /// Whether the file has its end, and a metadata record in it says `complete = "true"`. If not, the run
-    /// that wrote it was cut short, and this is what reached the file.
+    /// Whether the file has its end, and, if it is of this program, a metadata record says `complete = "true"`. If not, the
+    /// run that wrote it was cut short, and this is what reached the file.
     pub complete: bool,
 }
 
@@ -160,7 +162,8 @@ impl<'a> Message<'a> {
     }
 
     fn malformed(&self, reason: String) -> ReadError {
-        ReadError::Malformed { what: format!("{} at {} ns", self.topic, self.time), reason }
+        let topic = self.topic.escape_debug();
+        ReadError::Malformed { what: format!("{topic} at {} ns", self.time), reason }
     }
 }
 
@@ -264,6 +267,18 @@ fn unpacked(chunk: &[u8]) -> Result<Cow<'_, [u8]>, McapError> {
     let size = size.ok_or(McapError::ChunkTooLarge(header.uncompressed_size))?;
     let content = match &*header.compression {
         "" => data,
+        "lz4" => {
+            let mut content = Vec::new();
+            let decoded = FrameDecoder::new(&*data).take(size as u64 + 1).read_to_end(&mut content);
+            match decoded {
+                Ok(found) if found == size => Cow::Owned(content),
+                Ok(_) => {
+                    let problem = format!("more or less than the {size} bytes of its header");
+                    return Err(McapError::DecompressionError(problem));
+                }
+                Err(error) => return Err(McapError::DecompressionError(error.to_string())),
+            }
+        }
         "zstd" => match zstd::bulk::decompress(&data, size) {
             Ok(content) => Cow::Owned(content),
             Err(error) => return Err(McapError::DecompressionError(error.to_string())),
@@ -418,11 +433,13 @@ impl Contents {
             .collect();
         topics.sort_by(|a, b| a.name.cmp(&b.name));
         let done = |record: &Metadata| record.get("complete").is_some_and(|value| value == "true");
+        // Recordings of this program say at their beginning what run they are of, and recovered ones where they come from.
+        let ours = self.metadata.iter().any(|(name, _)| name == "run" || name == RECOVERED);
         Recording {
             topics,
             time_range: self.time_range,
             extents: self.extents,
-            complete: ended && self.metadata.iter().any(|(_, record)| done(record)),
+            complete: ended && (!ours || self.metadata.iter().any(|(_, record)| done(record))),
             metadata: self.metadata,
             attachments: self.attachments,
         }

@@ -3,7 +3,7 @@
 //! Coordinates are in pixels of a screen (96 to the inch), x to the right and y down.
 
 use crate::color::Color;
-use crate::font::Face;
+use crate::font::{Face, LONGEST, shortened};
 use crate::{pdf, png, svg};
 use std::io;
 
@@ -248,19 +248,19 @@ pub struct Style {
 impl Style {
     /// The width of a text, in pixels.
     pub fn width(&self, text: &str) -> f64 {
-        self.face.width(text, self.size)
+        self.face.width(&shortened(text, LONGEST), self.size)
     }
 
     /// A text from left to right, with the anchor of its baseline at a point.
     pub fn text(&self, text: impl Into<String>, [x, y]: [f64; 2], anchor: Anchor) -> Shape {
-        let text = text.into();
+        let text = shortened(&text.into(), LONGEST).into_owned();
         let x = x - self.before(&text, anchor);
         self.shape(text, [x, y], false)
     }
 
     /// A text from bottom to top, with the anchor of its baseline, which is on its right, at a point.
     pub fn turned(&self, text: impl Into<String>, [x, y]: [f64; 2], anchor: Anchor) -> Shape {
-        let text = text.into();
+        let text = shortened(&text.into(), LONGEST).into_owned();
         let y = y + self.before(&text, anchor);
         self.shape(text, [x, y], true)
     }

@@ -3,6 +3,7 @@
 use read_fonts::model::Font;
 use read_fonts::model::glyph::outline::{DrawMemory, DrawOptions, PathSink};
 use read_fonts::types::GlyphId;
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 /// The font of a text.
@@ -34,6 +35,13 @@ static BOLD: LazyLock<Option<Font>> =
 
 /// The height of capitals above the baseline, as a share of the font's size.
 pub const CAPITALS: f64 = 0.73;
+
+/// The longest text on one line, in characters.
+pub const LONGEST: usize = 1000;
+/// The longest label, in characters: of what is drawn beside other things.
+const LONGEST_LABEL: usize = 100;
+/// The most lines of one paragraph.
+pub const MOST_LINES: usize = 12;
 
 /// The space at which lines are not broken.
 const NO_BREAK: char = '\u{a0}';
@@ -92,39 +100,82 @@ impl Face {
 
     /// The text, or as much of it as fits in `room` together with an ellipsis.
     pub fn fit(self, text: &str, size: f64, room: f64) -> String {
-        if self.width(text, size) <= room {
-            return text.to_owned();
-        }
-        let mut kept: Vec<char> = text.chars().collect();
-        while kept.pop().is_some() {
-            let short: String = kept.iter().chain(&['…']).collect();
-            if self.width(&short, size) <= room {
-                return short;
+        let metrics = self.metrics();
+        let width = |c: char| metrics(c).1 * size / Self::UNITS;
+        let mut at = 0.0;
+        // Where the text is cut if it goes on: the last place that has room for the ellipsis.
+        let mut cut = None;
+        for (number, (place, c)) in text.char_indices().enumerate() {
+            if at + width('…') <= room {
+                cut = Some(place);
+            }
+            at += width(c);
+            // Characters without a width would never fill the room.
+            if at > room || number >= LONGEST {
+                return cut.map_or_else(String::new, |cut| format!("{}…", &text[..cut]));
             }
         }
-        String::new()
+        text.to_owned()
     }
 
     /// The text in lines no wider than `room`, which are broken between words. A no-break space
-    /// breaks only where its line would be too wide by itself, and is drawn as a space.
+    /// breaks only where its line would be too wide by itself, and is drawn as a space. A text of more than [`MOST_LINES`]
+    /// lines ends in an ellipsis.
     pub fn wrap(self, text: &str, size: f64, room: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         let words = text.split([' ', '\n', '\t']).filter(|word| !word.is_empty());
         for word in words {
+            if lines.len() > MOST_LINES {
+                break;
+            }
             let whole = word.replace(NO_BREAK, " ");
+            let is_too_wide = self.is_wider(&whole, size, room);
             match lines.last_mut() {
-                Some(line) if self.width(&format!("{line} {whole}"), size) <= room => {
+                Some(line)
+                    if !is_too_wide
+                        && line.len() < LONGEST
+                        && self.width(&format!("{line} {whole}"), size) <= room =>
+                {
                     line.push(' ');
                     line.push_str(&whole);
                 }
-                _ if self.width(&whole, size) > room && word.contains(NO_BREAK) => {
+                _ if is_too_wide && word.contains(NO_BREAK) => {
                     lines.extend(self.wrap(&whole, size, room));
                 }
                 _ => lines.push(self.fit(&whole, size, room)),
             }
         }
+        if lines.len() > MOST_LINES {
+            lines.truncate(MOST_LINES);
+            if let Some(last) = lines.last_mut() {
+                *last = self.fit(&format!("{last} …"), size, room);
+            }
+        }
         lines
     }
+
+    /// Whether a text, however long, is wider than this.
+    fn is_wider(self, text: &str, size: f64, room: f64) -> bool {
+        let metrics = self.metrics();
+        let mut at = 0.0;
+        text.chars().any(|c| {
+            at += metrics(c).1 * size / Self::UNITS;
+            at > room
+        })
+    }
+}
+
+/// A text with at most so many characters; what is cut off is an ellipsis.
+pub fn shortened(text: &str, longest: usize) -> Cow<'_, str> {
+    match text.char_indices().nth(longest) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
+        None => Cow::Borrowed(text),
+    }
+}
+
+/// A name as a label.
+pub fn label(name: &str) -> Cow<'_, str> {
+    shortened(name, LONGEST_LABEL)
 }
 
 struct Outline(Vec<Stroke>);
@@ -177,6 +228,22 @@ mod tests {
         assert!((width - 0.01 * (3.0 * 1303.0 + 651.0)).abs() < 1e-9, "{width}");
         let ends: Vec<f64> = Face::Regular.glyphs("10 2").map(|(_, at)| at).collect();
         assert_eq!(ends, [0.0, 1303.0, 2606.0, 3257.0]);
+    }
+
+    /// A name of a million characters was cut one by one, each time with a measurement of the rest.
+    #[test]
+    fn long_texts_are_cut_in_time() {
+        let start = std::time::Instant::now();
+        let face = Face::Regular;
+        for letter in ["n", "n ", "\u{a0}n", "\u{200b}"] {
+            let long = letter.repeat(1_000_000);
+            let lines = face.wrap(&long, 12.0, 300.0);
+            assert!((1..=MOST_LINES).contains(&lines.len()), "{letter:?}: {}", lines.len());
+            assert!(lines.iter().all(|line| line.chars().count() <= LONGEST + 1));
+            assert!(lines.iter().all(|line| face.width(line, 12.0) <= 300.0));
+            assert!(lines.last().is_some_and(|line| line.ends_with('…')), "{letter:?}");
+        }
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
     }
 
     #[test]

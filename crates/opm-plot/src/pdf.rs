@@ -3,7 +3,7 @@
 
 use crate::color::{Color, WHITE};
 use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
-use crate::font::{Face, Stroke};
+use crate::font::{Face, LONGEST, Stroke, shortened};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use pdf_writer::types::LineJoinStyle;
@@ -33,7 +33,7 @@ pub fn write(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let mut pdf = Pdf::new();
     let [catalog, tree, only, stream, info] = std::array::from_fn(|_| number());
     pdf.catalog(catalog).pages(tree);
-    pdf.document_info(info).title(TextStr(&drawing.title)).finish();
+    pdf.document_info(info).title(TextStr(&shortened(&drawing.title, LONGEST))).finish();
     pdf.pages(tree).kids([only]).count(1);
     let images: Vec<Ref> = page.images.iter().map(|_| number()).collect();
     let mut written = pdf.page(only);

@@ -2,7 +2,7 @@
 
 use crate::color::Color;
 use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
-use crate::font::{Face, Stroke};
+use crate::font::{Face, LONGEST, Stroke, shortened};
 use crate::png;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -165,7 +165,7 @@ fn hex([r, g, b]: Color) -> String {
 /// A text for elements and attributes. Control characters, which XML does not allow, become spaces.
 fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in shortened(text, LONGEST).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),

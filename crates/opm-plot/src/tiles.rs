@@ -15,7 +15,7 @@ use crate::axis::{self, Axis, Steps, Unit};
 use crate::color::Color;
 use crate::color::{FAINT, INK, WHITE};
 use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
-use crate::font::Face;
+use crate::font::{Face, label};
 use crate::frame::{BELOW, Frame, NAME, fits, left_of, ticks_in};
 use crate::heading::{Heading, MARGIN};
 use crate::{MOST, TooSmall};
@@ -303,7 +303,7 @@ impl<'a> Laid<'a> {
     }
 
     fn right(&self) -> f64 {
-        let title = SECTION.width(&self.section.title);
+        let title = SECTION.width(&label(&self.section.title));
         MARGIN + title.max(self.across() + self.bar) + MARGIN
     }
 
@@ -331,7 +331,7 @@ impl<'a> Laid<'a> {
 
     fn draw(&self, top: f64) -> Shape {
         let section = self.section;
-        let title = SECTION.text(&*section.title, [MARGIN, top + 11.0], Anchor::Start);
+        let title = SECTION.text(label(&section.title), [MARGIN, top + 11.0], Anchor::Start);
         let mut shapes = vec![title];
         let start = top + TITLE_ROOM;
         for (number, tile) in section.tiles.iter().enumerate() {

@@ -7,6 +7,7 @@ mod paint;
 use crate::axis::{self, Axis, Unit};
 use crate::color::Color;
 use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size};
+use crate::font::label as short;
 use crate::frame::{BELOW, Frame, NAME, TICK, TITLE, fits, left_of, ticks_in};
 use crate::heading::{Heading, MARGIN};
 use crate::{MOST, TooSmall};
@@ -192,7 +193,7 @@ impl ViewFigure {
     fn legend_places(&self, width: f64) -> Vec<(f64, usize)> {
         let (mut x, mut line) = (MARGIN, 0);
         let place = |(name, _): &(String, Color)| {
-            let own = SWATCH + 5.0 + NAME.width(name);
+            let own = SWATCH + 5.0 + NAME.width(&short(name));
             if x > MARGIN && x + own > width - MARGIN {
                 (x, line) = (MARGIN, line + 1);
             }
@@ -215,7 +216,7 @@ impl ViewFigure {
             let y = top + line as f64 * LEGEND_LINE;
             let swatch = Rect { x, y: y - SWATCH + 2.0, width: SWATCH, height: SWATCH };
             shapes.push(Shape::Area(Path::rect(swatch), *color));
-            shapes.push(NAME.text(&**name, [x + SWATCH + 5.0, y], Anchor::Start));
+            shapes.push(NAME.text(short(name), [x + SWATCH + 5.0, y], Anchor::Start));
         }
         Shape::Group { kind: "legend", label: String::new(), shapes }
     }

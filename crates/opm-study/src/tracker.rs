@@ -38,9 +38,9 @@ impl<'a> Tracker<'a> {
             Err(NearError::NotFound(_)) => {
                 let Ok(found) = manipulator.forward(actuated) else { return Ok(None) };
                 let mut list = found.list;
-                list.retain(|assembly| assembly.mode == *mode);
-                let Ok(seed) = manipulator.platform_pose(last) else { return Ok(None) };
-                manipulator.sort_assemblies(&mut list, &seed);
+                manipulator.keep_assemblies_in(&mut list, *mode);
+                let Ok(seed) = manipulator.displacement_in(last, *mode) else { return Ok(None) };
+                manipulator.sort_assemblies(&mut list, &manipulator.platform_at(&seed));
                 let Some(nearest) = list.into_iter().next() else { return Ok(None) };
                 leap.insert(nearest)
             }

@@ -5,6 +5,7 @@ use crate::explorer::Explorer;
 use crate::scene::{self, Body};
 use crate::session::Reply;
 use crate::units::{shown, shown_range};
+use opm_core::decomposition::mobility::mobility;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::nalgebra::{Point3, Unit, Vector3};
 use opm_core::{Quantity, TaskCoordinate};
@@ -32,6 +33,8 @@ struct Description<'a> {
     joints: Vec<Joint<'a>>,
     /// Whether forward kinematics have a closed form.
     forward: bool,
+    /// What cannot be told at home, where it is a parallel singularity.
+    home_warning: Option<String>,
     dimensions: Vec<Dimension>,
     bodies: Vec<Body<'a>>,
 }
@@ -105,6 +108,7 @@ pub fn describe(explorer: &Explorer) -> Reply {
         imaginary_joints: decomposition.imaginary_joints,
         joints: joints(explorer),
         forward: manipulator.forward_closed_form().is_ok(),
+        home_warning: mobility(manipulator.mechanism()).ok().and_then(|m| m.parallel_home()),
         dimensions: dimensions(explorer.file()),
         bodies: scene::bodies(explorer),
     })

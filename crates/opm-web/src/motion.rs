@@ -6,7 +6,8 @@ use crate::problem::Problems;
 use crate::session::Reply;
 use crate::units::shown;
 use opm_core::motion::examples::MOTIONS;
-use opm_core::motion::{Ends, file, table};
+use opm_core::motion::table::TableOptions;
+use opm_core::motion::{file, table};
 use opm_core::trajectory::ViolationReport;
 use opm_study::MotionRequest;
 use opm_study::text::chain;
@@ -71,7 +72,8 @@ pub fn follow(
     let (manipulator, units) = (explorer.manipulator(), explorer.units());
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
     let motion = match ending.eq_ignore_ascii_case("csv") {
-        true => table::read(text, stem, manipulator, Ends::default()),
+        true => table::read(text, stem, manipulator, &TableOptions { units, ..Default::default() })
+            .map(|read| read.motion),
         false => file::read(text, manipulator),
     }
     .map_err(|errors| Problems::from(errors).in_file(name))?;

@@ -241,8 +241,9 @@ fn a_motion_out_of_reach_says_when_and_which_leg() {
     assert!(reach["text"].as_str().unwrap().starts_with("leg"), "{reach}");
     let start = list.iter().filter(|v| v["kind"] == "reach").map(|v| v["start"].as_f64().unwrap());
     let start = start.fold(f64::INFINITY, f64::min);
-    let motion =
-        opm_core::motion::table::read(text, "out", &manipulator, Default::default()).unwrap();
+    let motion = opm_core::motion::table::read(text, "out", &manipulator, &Default::default())
+        .unwrap()
+        .motion;
     let (mut instant, mut buffer) = (Instant::new(5), manipulator.solution());
     for (time, expected) in [(start - 1e-6, true), (start + 1e-6, false)] {
         motion.at(time, &mut instant);

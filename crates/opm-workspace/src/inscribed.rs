@@ -1,19 +1,25 @@
 //! The largest disc, ball or box in a set of points of a grid.
 //!
 //! Each point stands for its cell: a box around it that is one step wide along every axis. What is found is inside the
-//! union of the cells of the set; what is outside of the grid's cells is not in the set. A disc or ball has its centre
-//! on the lattice of the cells' middles, corners, and middles of sides. There, the distance from the nearest cell
-//! outside is exact: of such a cell, the point nearest to a point of the lattice is on the lattice too, and the
-//! distances of all of them are found axis by axis (P. F. Felzenszwalb, D. P. Huttenlocher, *Distance Transforms of
-//! Sampled Functions*, Theory of Computing 8, 2012). A box is as large as any with cells for its ends.
+//! union of the cells of the set; what is outside of the grid's cells is not in the set.
+//!
+//! A disc or ball is the largest in that union, to a share of 1e-9 of its radius. First the distance from the nearest cell
+//! outside is found on the lattice of the cells' middles, corners, and middles of sides. There it is exact: of such a cell,
+//! the point nearest to a point of the lattice is on the lattice too, and the distances of all of them are found axis by
+//! axis (P. F. Felzenszwalb, D. P. Huttenlocher, *Distance Transforms of Sampled Functions*, Theory of Computing 8, 2012).
+//! Then the centre is looked for between the points of the lattice that may be next to it.
+//!
+//! A box is inside the boundary that is drawn, too, which cuts the corners of cells and ends with the points of the grid: it
+//! has sides half-way between points, or at points, and is as large as any of those.
 
 mod cells;
 mod centred;
 mod distance;
 mod rectangle;
+mod search;
 
 use crate::set::GridSet;
-use cells::Cells;
+use cells::{Cells, Found};
 
 /// Most points of the lattice, which take a GiB of memory.
 const MOST: u64 = 1 << 27;
@@ -91,7 +97,8 @@ pub struct Inscribed {
     /// The radius along each coordinate, of a box half of each side; radians and metres.
     pub radii: Vec<f64>,
     /// How far the set's true boundary may be from the cells' sides: half of a cell's diagonal for a disc or a ball, half a
-    /// step along each coordinate for a box.
+    /// step along each coordinate for a box. If the search for a disc or a ball had to end before its radius was known to
+    /// 1e-9 of it, what may be missing is added.
     pub error: Vec<f64>,
     /// Whether it touches the edge of the grid, beyond which the set may go on.
     pub at_edge: bool,
@@ -110,8 +117,8 @@ impl Inscribed {
 }
 
 /// The largest shape in a set, with its centre free or given by one value for each coordinate in which the set varies.
-/// `None` if the set is empty, or the given centre is not inside it. Of several that are equally large it is the one with
-/// the lowest coordinates, the last coordinate first.
+/// `None` if the set is empty, or the given centre is not inside it. Of several that are equally large it is one, the same
+/// each time.
 ///
 /// # Errors
 /// The set varies in too many coordinates or too few, or is too large.
@@ -152,18 +159,19 @@ pub fn inscribed(
         return Err(InscribedError::Size { given: lattice, most: MOST });
     }
     let cells = Cells::new(set, &axes);
+    let exact = |found: Option<Found>| found.map(|found| (found, 0.0));
     let found = match (shape, centre) {
         (InscribedShape::Disc | InscribedShape::Ball, None) => distance::largest_ball(&cells),
-        (InscribedShape::Disc | InscribedShape::Ball, Some(at)) => centred::ball(&cells, at),
-        (InscribedShape::Box, None) => rectangle::largest_box(&cells),
-        (InscribedShape::Box, Some(at)) => centred::cuboid(&cells, at),
+        (InscribedShape::Disc | InscribedShape::Ball, Some(at)) => exact(centred::ball(&cells, at)),
+        (InscribedShape::Box, None) => exact(rectangle::largest_box(&cells.halves())),
+        (InscribedShape::Box, Some(at)) => exact(centred::cuboid(&cells.halves(), at)),
     };
-    Ok(found.map(|(centre, radii)| {
+    Ok(found.map(|((centre, radii), short)| {
         let half = cells.step.map(|step| 0.5 * step);
         let diagonal = half[..axes.len()].iter().map(|h| h * h).sum::<f64>().sqrt();
         let used = |values: [f64; 3]| values[..axes.len()].to_vec();
         let error = match shape {
-            InscribedShape::Disc | InscribedShape::Ball => vec![diagonal; axes.len()],
+            InscribedShape::Disc | InscribedShape::Ball => vec![diagonal + short; axes.len()],
             InscribedShape::Box => used(half),
         };
         let at_edge = cells.is_at_edge(centre, radii, axes.len());

@@ -177,12 +177,14 @@ class Explorer:
         Parameters
         ----------
         path : str or os.PathLike
-            Name of the file, which browsers want to end in ``.html``.
+            Name of the file, which ends in ``.html``.
 
         Raises
         ------
         OSError
             The file cannot be written.
+        OpmError
+            Its name does not end in ``.html``.
         """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -479,6 +481,7 @@ class Manipulator:
         joints: Sequence[Sequence[str]] | None = None,
         platform: Sequence[float] | NDArray[np.float64] = ...,
         name: str = "mechanism",
+        tolerance: float | None = None,
     ) -> Manipulator:
         """Compile a mechanism that is given by the screws of its joints at an assembled pose, home.
 
@@ -490,7 +493,8 @@ class Manipulator:
             One array for each leg, by name; without names the legs are leg1, leg2, ... A row is the twist (omega; v) of a
             joint with one degree of freedom, in the base frame, from base to platform, of any length except zero:
             ``(a, p × a + h a)`` rotates about ``a`` through ``p`` with an advance of ``h`` metres per radian, ``(0, a)``
-            slides along ``a``. A joint with several degrees of freedom has several rows.
+            slides along ``a``. A joint with several degrees of freedom has several rows. Numbers may be rounded, as those of
+            float32 are: an advance below one ten-thousandth of the mechanism's size is none.
         actuated : sequence of (n,) sequences of bool
             Which joints are actuated: one sequence for each leg.
         home : sequence of (n,) sequences of float, optional
@@ -503,6 +507,10 @@ class Manipulator:
             Reference point of the platform at home, metres; the base's origin if not given.
         name : str
             Name of the mechanism.
+        tolerance : float, optional
+            Accept joints that miss their subspaces by at most this length, metres, and move them exactly into these. Angles
+            count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
+            much it was off; `text` is then the corrected mechanism.
 
         Raises
         ------
@@ -632,6 +640,9 @@ class Manipulator:
     @property
     def home_mode(self) -> str:
         """The working mode that the mechanism is assembled in."""
+    @property
+    def home_warning(self) -> str | None:
+        """What cannot be told at home, where home is a parallel singularity; None where it is regular. Reading such a mechanism gives this as a UserWarning."""
     @property
     def choices(self) -> int:
         """Number of two-valued choices; there are ``2**choices`` working modes."""
@@ -1352,6 +1363,37 @@ class Manipulator:
         >>> int(found.counts), found.poses.shape, bool(abs(found.poses[0] - m.home).max() < 1e-9)
         (2, (2, 3), True)
         """
+    def least_change(self, joints: _Rows) -> dict[str, NDArray[np.float64]] | None:
+        """The least change of the actuated joints with which the mechanism can be assembled, where it cannot with given values.
+
+        The joints then have no pose, and :meth:`forward` finds no assembly. They reach the nearest values that have one where
+        the platform is at a parallel singularity.
+
+        Parameters
+        ----------
+        joints : (a,) array_like, or mapping
+            Values of the actuated joints, in the order of `actuated`, or by name; metres and radians.
+
+        Returns
+        -------
+        dict, or None
+            ``"together"``, (a,): the changes of all joints whose sum of squares is least, with a length over the mechanism's size.
+            ``"alone"``, (a,): the least change of each joint, with the others as they are given; NaN where none was found. None
+            where there is an assembly, or where no answer was found that holds.
+
+        Raises
+        ------
+        OpmError
+            The mechanism's forward kinematics have no closed form, or a value is not a number.
+
+        Examples
+        --------
+        >>> import opm_kinematics as opm
+        >>> m = opm.examples.load("planar-3rpr")
+        >>> change = m.least_change([0.01, 0.01, 0.5])
+        >>> bool(change["alone"][2] < change["together"][2] < 0), m.least_change([0.01, 0.01, 0.01]) is None
+        (True, True)
+        """
     def forward_track(
         self, joints: _Rows, *, near: _Rows | None = None, mode: str = "home"
     ) -> NDArray[np.float64]:
@@ -1496,8 +1538,8 @@ class Accuracy:
         joint that it reaches. None without `clearance`."""
     @property
     def permitted_uniform(self) -> NDArray[np.float64] | None:
-        """(n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. None without
-        `clearance`."""
+        """(n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. Infinite
+        where no error needs play. None without `clearance`."""
     @property
     def samples(self) -> AccuracySamples | None:
         """Mechanisms with errors that are drawn at random. None without `samples`."""
@@ -2331,8 +2373,9 @@ class Sweep:
     ) -> Inscribed | None:
         """The largest disc, ball or box in the set of points.
 
-        Each point stands for a cell of the grid, and what lies beyond the grid is outside. The disc in the kind
-        ``"dexterous"`` is the regular dexterous workspace.
+        Each point stands for a cell of the grid, and what lies beyond the grid is outside. A disc or ball is the largest in
+        these cells, to 1e-9 of its radius; a box is inside the boundary, with sides at points or half-way between them. The disc
+        in the kind ``"dexterous"`` is the regular dexterous workspace.
 
         Parameters
         ----------
@@ -2999,6 +3042,8 @@ def trajectory(
     rate: float | None = None,
     mode: str | None = None,
     ends: str | None = None,
+    columns: Mapping[str, str] | None = None,
+    relative_time: bool = False,
     time_optimal: bool = False,
     clearance: float | None = None,
 ) -> Trajectory:
@@ -3021,6 +3066,11 @@ def trajectory(
     ends : str, optional
         How a spline through waypoints or the poses of a table starts and ends: ``"rest"`` (no speed; if not given),
         ``"natural"`` (no acceleration), or ``"periodic"`` (as it ends, so it starts). A motion file says it itself.
+    columns : dict of str, optional
+        The columns of a table of poses (``.csv``) that are read: for ``t`` and each task coordinate the heading of its column,
+        such as ``{"t": "stamp", "x": "pos_x"}``. Others are passed over.
+    relative_time : bool, optional
+        Count the times of a table of poses (``.csv``) from that of its first row, such as seconds since 1970.
     time_optimal : bool, optional
         The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
         joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.

@@ -7,6 +7,7 @@ use crate::velocity::characteristic_length;
 use opm_accuracy::{Both, ErrorModel, Model, Source, Tolerances};
 use opm_core::Quantity;
 use opm_core::mechanism::file::hint::expected_one_of;
+use opm_mcap::input::Expected;
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
 
@@ -101,7 +102,7 @@ fn tolerances(given: &Bound<'_, PyAny>, sources: &[Source]) -> PyResult<Toleranc
     let mut found = Tolerances::default();
     if given.cast::<PyMapping>().is_err() {
         let path = arguments::path(given)?;
-        let text = arguments::text(py, &path, "file of tolerances", "")?;
+        let text = arguments::text(py, &path, Expected::TOLERANCES, "")?;
         let read = Tolerances::read(&text, sources);
         return read.map_err(|errors| wrong(errors.in_file(path.display())));
     }

@@ -75,11 +75,10 @@ impl Assemblies {
         let joints = table(k, &|assembly, to| to.extend(&assembly.joints));
         let imaginary = table(j, &|assembly, to| to.extend(&assembly.imaginary));
         let residuals = table(1, &|assembly, to| to.push(assembly.residual));
-        let transforms =
-            table(16, &|assembly, to| match inner.displacement_in(&assembly.pose, assembly.mode) {
-                Ok(g) => to.extend(inner.platform_at(&g).to_homogeneous().transpose().iter()),
-                Err(_) => to.extend([f64::NAN; 16]),
-            });
+        let transforms = table(16, &|assembly, to| {
+            let platform = inner.platform_at(&inner.displacement_of(assembly));
+            to.extend(platform.to_homogeneous().transpose().iter());
+        });
         let mut within = Vec::with_capacity(found.len() * most);
         let mut modes = Vec::with_capacity(found.len());
         for (row, list) in found.iter().enumerate() {

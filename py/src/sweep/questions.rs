@@ -141,8 +141,9 @@ impl Sweep {
 
     /// The largest disc, ball or box in the set of points.
     ///
-    /// Each point stands for a cell of the grid, and what lies beyond the grid is outside. The disc in the kind
-    /// ``"dexterous"`` is the regular dexterous workspace.
+    /// Each point stands for a cell of the grid, and what lies beyond the grid is outside. A disc or ball is the largest in
+    /// these cells, to 1e-9 of its radius; a box is inside the boundary, with sides at points or half-way between them. The disc
+    /// in the kind ``"dexterous"`` is the regular dexterous workspace.
     ///
     /// Parameters
     /// ----------

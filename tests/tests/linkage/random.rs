@@ -132,5 +132,6 @@ pub fn linkage(rng: &mut Rng, pattern: [usize; 2]) -> Mechanism {
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }

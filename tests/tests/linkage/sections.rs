@@ -187,6 +187,7 @@ fn mechanism(rng: &mut Rng, shared: Shared, mut sections: [Section; 2]) -> Mecha
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }
 

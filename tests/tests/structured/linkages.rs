@@ -83,6 +83,7 @@ fn apart(mut lower: Vec<Joint>, upper: Vec<Joint>) -> Mechanism {
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }
 

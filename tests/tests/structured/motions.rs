@@ -35,7 +35,8 @@ fn half_turns_go_on() {
         let lines: Vec<String> =
             (0..5).map(|i| format!("{i},{:?}", sign * f64::from(i) * PI)).collect();
         let text = format!("t,zeta\n{}\n", lines.join("\n"));
-        let motion = table::read(&text, "turns", &m, Ends::Natural).unwrap();
+        let options = table::TableOptions { ends: Ends::Natural, ..Default::default() };
+        let motion = table::read(&text, "turns", &m, &options).unwrap().motion;
         let mut at = Instant::new(5);
         for step in 0..=40 {
             let t = 0.1 * f64::from(step);

@@ -8,7 +8,8 @@ use assembled::Assembly;
 use fastrand::Rng;
 use nalgebra::{DVector, Vector6};
 use opm_accuracy::{
-    Assembler, Budget, ErrorModel, Model, Response, Samples, draw, sample, sample_assembled,
+    Allocation, Assembler, Both, Budget, ErrorModel, Model, Permitted, Response, Samples, draw,
+    sample, sample_assembled,
 };
 use opm_core::Manipulator;
 use opm_core::manipulator::Solution;
@@ -323,4 +324,41 @@ fn samples_have_the_deviation_of_the_root_of_squares() {
         samples.length < budget.length.worst
             && samples.length > budget.length.root_sum_square / 2.0
     );
+}
+
+/// At home, axes that are not where the file has them do nothing: joints are assembled there. So any tolerance keeps any
+/// clearance, and what rounding leaves of their plays permits no number. Away from home, what needs play has a tolerance of the
+/// order of the clearance.
+#[test]
+fn what_needs_no_play_may_have_any_tolerance() {
+    let clearance = Both { length: Some(20e-6), angle: Some(20e-6) };
+    let (mut finite, mut rng) = (0, Rng::with_seed(41));
+    for example in opm_core::mechanism::examples::EXAMPLES {
+        // Single loops are no manipulators.
+        let Ok(manipulator) = Manipulator::read(example.text) else { continue };
+        let model = Model::new(&manipulator, None, ErrorModel::Axes);
+        let mut at = manipulator.solution();
+        let mut permitted = |pose: &[f64]| {
+            let mode = manipulator.home_mode();
+            let at = manipulator.inverse(pose, mode, &mut at).unwrap()?;
+            let sources = model.sources();
+            let mut found = Allocation::new(clearance, model.length(), sources.len());
+            found.add(&model.at(at).unwrap(), sources);
+            Some(found)
+        };
+        let home = manipulator.home_pose();
+        let at_home = permitted(&home).expect("home is in reach");
+        assert!(at_home.permitted().iter().all(|&p| p == Permitted::UNLIMITED), "{}", example.name);
+        assert_eq!(at_home.uniform(), [f64::INFINITY; 2], "{}", example.name);
+        for _ in 0..5 {
+            let pose: Vec<f64> = home.iter().map(|q| q + 0.05 * (rng.f64() - 0.5)).collect();
+            let Some(found) = permitted(&pose) else { continue };
+            let numbers = found.permitted().iter().map(|p| p.alone).filter(|p| p.is_finite());
+            for number in numbers {
+                assert!(number < 1e3, "{}: {number} at {pose:?}", example.name);
+                finite += 1;
+            }
+        }
+    }
+    assert!(finite > 300, "{finite} tolerances");
 }

@@ -30,6 +30,9 @@ struct Chain {
     members: Vec<Member>,
     /// The column of the rate along the intersection motion, of the lower section's unknowns.
     along: Option<usize>,
+    /// Where it meets the only other leg with an input, if it constrains the section: the number of that leg, and of the
+    /// passive joint there that is next to the platform.
+    meets: Option<(usize, usize)>,
 }
 
 /// One section as a parallel mechanism.
@@ -108,7 +111,7 @@ impl Mechanism {
                 columns += 1;
                 columns - 1
             });
-            chains.push(Chain { leg, members, along });
+            chains.push(Chain { leg, members, along, meets: None });
         }
         let inputs = chains.iter().flat_map(|c| &c.members).filter(|m| m.input).count();
         let shared = task.intersection.as_ref().map(IntersectionAxis::motion_type);
@@ -129,6 +132,9 @@ impl Mechanism {
         }
         if inputs != freedoms {
             return Err(NoTransmission::Inputs { section, inputs, freedoms });
+        }
+        for &leg in constraining.iter().filter(|_| kind.dimension() == 3 && lacks == 1) {
+            chains[leg].meets = meeting(&chains, leg);
         }
         let basis = vec![Local::zeros(); kind.dimension() - less];
         let rows = inputs + lacks;
@@ -188,8 +194,14 @@ impl Mechanism {
         let mut column = n;
         for chain in &self.chains {
             for (place, member) in chain.members.iter().enumerate().filter(|(_, m)| m.input) {
-                let wrench = chain.wrench(place, self.kind);
                 let output = if regular { self.output(chain, column) } else { Local::zeros() };
+                let last = chain.last(place, self.kind);
+                let (wrench, last) = match self.meeting(chain, place) {
+                    Some((wrench, joint)) => {
+                        (wrench, if has_axis(self.kind, &joint.twist) { Some(joint) } else { last })
+                    }
+                    None => (chain.wrench(place, self.kind), last),
+                };
                 let index = |twist: &Local, at: Option<&Member>| {
                     cosine(self.kind, &wrench, twist, at.map(|member| member.twist))
                 };
@@ -198,7 +210,7 @@ impl Mechanism {
                     section: self.section,
                     coordinate: member.coordinate,
                     input: index(&member.twist, chain.beside(place, self.kind)),
-                    output: index(&output, chain.last(place, self.kind)),
+                    output: index(&output, last),
                 });
                 column += 1;
             }
@@ -214,6 +226,15 @@ impl Mechanism {
             cosine(self.kind, &wrench, &output, joint.map(|member| member.twist))
         });
         each.fold(1.0, f64::min)
+    }
+
+    /// The wrench of an input on the joint where its leg meets the other one, and that joint. It differs from the one that
+    /// [`Chain::wrench`] gives by a wrench that the leg's own joints bear, so that both do the same work.
+    fn meeting(&self, chain: &Chain, place: usize) -> Option<(Local, &Member)> {
+        let (leg, joint) = chain.meets?;
+        let joint = &self.chains[leg].members[joint];
+        let own = chain.members.iter().enumerate().find(|(i, _)| *i != place)?.1;
+        Some((own.twist.cross(&joint.twist), joint))
     }
 
     /// The twist of the last link of a leg for a unit rate of one input, whose solution is a column of the system.
@@ -235,6 +256,15 @@ impl Mechanism {
         }
         twist
     }
+}
+
+/// Where a leg that has an input meets the only other leg that has one; `None` if it has two, or none other has any.
+fn meeting(chains: &[Chain], leg: usize) -> Option<(usize, usize)> {
+    let inputs = |chain: &Chain| chain.members.iter().filter(|member| member.input).count();
+    let mut others = (0..chains.len()).filter(|&other| other != leg && inputs(&chains[other]) > 0);
+    let (Some(other), None) = (others.next(), others.next()) else { return None };
+    let passive = chains[other].members.iter().rposition(|member| !member.input)?;
+    (inputs(&chains[leg]) == 1).then_some((other, passive))
 }
 
 impl Chain {

@@ -193,11 +193,15 @@ impl Equation {
         }
     }
 
-    /// The slope at `t = 0`.
-    pub(crate) fn slope_at_zero(&self) -> f64 {
+    /// The slope at `t`.
+    pub(crate) fn slope_at(&self, t: f64) -> f64 {
         match *self {
-            Self::Polynomial([_, c1, _]) | Self::Periodic([_, c1], _) => c1,
-            Self::Harmonic([_, _, c2]) => c2,
+            Self::Polynomial([_, c1, c2]) => c1 + 2.0 * c2 * t,
+            Self::Periodic([_, c1], _) => c1,
+            Self::Harmonic([_, c1, c2]) => {
+                let (sin, cos) = t.sin_cos();
+                c2 * cos - c1 * sin
+            }
         }
     }
 

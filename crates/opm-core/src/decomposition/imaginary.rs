@@ -5,15 +5,16 @@ use crate::numeric::svd::{self, Svd};
 use nalgebra::{DMatrix, DVector, Vector6};
 
 /// The upper section: the upper parts of all legs, between the lower section and the platform, as
-/// normalised screws.
+/// normalised screws at a pose near home: at home itself, imaginary joints may depend that do not
+/// elsewhere.
 pub(super) struct UpperSection<'a> {
     /// Basis of the algebra of the group in which the section moves.
     pub basis: &'a Basis,
     /// The screws of the upper parts, leg by leg.
     pub legs: &'a [&'a [Vector6<f64>]],
-    /// The screw of the intersection motion, along which imaginary joints lie; `None` where the two groups
+    /// The screw of each leg's intersection motion, along which its imaginary joint lies; `None` where the two groups
     /// share the identity alone, so that no leg has one.
-    pub intersection: Option<Vector6<f64>>,
+    pub intersection: Option<&'a [Vector6<f64>]>,
 }
 
 /// The chosen legs with an imaginary joint.
@@ -68,7 +69,7 @@ impl UpperSection<'_> {
     fn candidate(&self, leg: usize) -> bool {
         let own = self.legs[leg];
         let Some(intersection) = self.intersection else { return false };
-        let with: Vec<_> = own.iter().copied().chain([intersection]).collect();
+        let with: Vec<_> = own.iter().copied().chain([intersection[leg]]).collect();
         Basis::span(&with).dimension() == own.len() + 1
     }
 
@@ -88,7 +89,7 @@ impl UpperSection<'_> {
     fn insert(&self, leg: usize, column: &mut DVector<f64>) {
         let Some(intersection) = self.intersection else { return };
         for (i, b) in self.basis.vectors().iter().enumerate() {
-            column[leg * self.basis.dimension() + i] = b.dot(&intersection);
+            column[leg * self.basis.dimension() + i] = b.dot(&intersection[leg]);
         }
     }
 
@@ -107,7 +108,7 @@ impl UpperSection<'_> {
                 columns.push((k, *screw));
             }
         }
-        columns.extend(imaginary.iter().filter_map(|&k| Some((k, self.intersection?))));
+        columns.extend(imaginary.iter().filter_map(|&k| Some((k, self.intersection?[k]))));
         let joints = columns.len();
         DMatrix::from_fn(rows * self.legs.len(), joints + rows, |i, j| {
             let (leg, row) = (i / rows, i % rows);
@@ -167,8 +168,9 @@ mod tests {
                 .collect();
             let parts: Vec<&[Vector6<f64>]> = legs.iter().map(Vec::as_slice).collect();
             let basis = Basis::span(&basis);
+            let intersections = vec![intersection.to_vector(); legs.len()];
             let section =
-                UpperSection { basis: &basis, legs: &parts, intersection: Some(intersection.to_vector()) };
+                UpperSection { basis: &basis, legs: &parts, intersection: Some(&intersections) };
             let order: Vec<usize> = (0..legs.len()).collect();
             let choice = section.imaginary_joints(n, dim_a, &order);
 

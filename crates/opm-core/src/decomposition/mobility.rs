@@ -7,13 +7,16 @@
 mod linkage;
 mod singular;
 
-pub(crate) use linkage::{Linkage, loop_closure};
 pub use singular::HomeSingularity;
 
+use super::motions;
 use crate::group::subspace::{Basis, Frame, SubspaceClass, TOLERANCE, fit};
 use crate::mechanism::Mechanism;
+use crate::mechanism::file::FileUnits;
 use crate::numeric::svd::{Svd, singular_values};
+use linkage::Linkage;
 use nalgebra::{DMatrix, Vector6};
+use singular::Nearby;
 use thiserror::Error;
 
 /// Largest supported number of freedoms of all joints together. The time grows with the fourth
@@ -60,23 +63,49 @@ pub struct Mobility {
     pub lambda: usize,
     /// Mobility `N`: the freedoms of all joints minus the rank of the loop closure.
     pub mobility: usize,
-    /// Those of the `mobility` freedoms that do not move the platform, such as a strut that spins
+    /// Those of the `mobility` freedoms that do not move the platform at poses near home, such as a strut that spins
     /// between two spherical joints.
     pub idle: usize,
     /// The number of freedoms of the actuated joints.
     pub actuators: usize,
-    /// How many of the mechanism's freedoms the actuators control: `mobility` minus the freedoms
-    /// left when the actuators are locked.
+    /// How many of the mechanism's freedoms the actuators control at assembled poses near home: `mobility` minus the
+    /// freedoms left when the actuators are locked. At home itself they control fewer where it is a
+    /// [parallel singularity](HomeSingularity::Parallel).
     pub controlled: usize,
     /// Names of the actuated joints that are redundant: each of them, alone, could be made passive
-    /// without losing control. Empty unless `actuators > controlled`.
+    /// without losing control at poses near home. Empty unless `actuators > controlled`.
     pub redundant: Vec<String>,
-    /// The motions of the platform that are left when all actuators are locked: independent twists,
-    /// each given as the motion that it generates.
+    /// The motions of the platform that are left when all actuators are locked, at home as at poses nearby: independent
+    /// twists, each given as the motion that it generates. Those that are left at home alone are in `singular`.
     pub loose: Vec<SubspaceClass>,
     /// Every respect in which home is more degenerate than assembled poses nearby; empty if home is
     /// regular.
     pub singular: Vec<HomeSingularity>,
+    /// The coordinates of an assembled pose near home, joint by joint: radians, and lengths in that of the
+    /// [`frame`]. `None` if there is none.
+    pub(crate) nearby: Option<Vec<f64>>,
+    /// The units of the mechanism's file, for messages.
+    pub(crate) units: FileUnits,
+}
+
+impl Mobility {
+    /// What people have to know about a home that is a parallel singularity, in one sentence; `None` if it is none, if it
+    /// is singular in another respect, too, or if the actuators control as little at poses nearby.
+    pub fn parallel_home(&self) -> Option<String> {
+        let [HomeSingularity::Parallel { loose, .. }] = &self.singular[..] else { return None };
+        if !self.loose.is_empty() {
+            return None;
+        }
+        let moves = match loose.is_empty() {
+            true => "a joint that does not move the platform".to_owned(),
+            false => format!("the platform ({})", motions(loose, self.units)),
+        };
+        Some(format!(
+            "the home pose is a parallel singularity: there, but not at poses nearby, the locked actuators do not hold \
+             {moves}; rates, forces and errors cannot be told at home itself, and iterations \
+             of forward kinematics have to start elsewhere"
+        ))
+    }
 }
 
 /// Counts freedoms and actuators at home, and finds its singularities.
@@ -86,61 +115,88 @@ pub struct Mobility {
 /// is not finite, or more than [`MAX_FREEDOMS`] freedoms.
 pub fn mobility(mechanism: &Mechanism) -> Result<Mobility, MobilityError> {
     let linkage = Linkage::new(mechanism)?;
-    let home = linkage.home();
-    let ranks = linkage.ranks(&home, TOLERANCE);
-    let freedoms = linkage.actuated.len();
+    let home = linkage.first_order(&linkage.home());
+    let nearby = Nearby::new(&linkage, &home);
+    let ranks = nearby.ranks(&home);
+    let mobility = ranks.mobility;
 
-    let kernel = Svd::new(loop_closure(&linkage.units(&home))).kernel(TOLERANCE);
-    let platform = kernel.rows(freedoms, 6).into_owned();
-    let actuators = linkage.actuated.iter().filter(|actuated| **actuated).count();
+    let motions = home.motions(mobility);
+    let at_home = nearby.controlled(&linkage.controls(&motions));
+    let loose = loose_twists(&linkage, &motions, at_home);
+    let motion = |twist: &Vector6<f64>| Some(fit(&[*twist])?.class.restored(&linkage.frame));
+    let mut loose: Vec<SubspaceClass> = loose.vectors().iter().filter_map(motion).collect();
 
+    let names = mechanism.legs.iter().map(|leg| &*leg.name);
+    let mut singular = singular::singularities(&nearby, &ranks, names);
+    let mut controlled = at_home;
+    if let Some(generic) = &nearby.generic {
+        controlled = at_home.max(generic.controlled);
+        let [home, nearby] =
+            [mobility - at_home, generic.mobility.saturating_sub(generic.controlled)];
+        if home > nearby {
+            singular.push(HomeSingularity::Parallel { home, nearby, loose: loose.clone() });
+        }
+        if generic.loose == 0 {
+            loose.clear();
+        }
+    }
     Ok(Mobility {
         lambda: ranks.lambda,
-        mobility: ranks.mobility,
-        idle: ranks.mobility - span(&platform).dimension(),
-        actuators,
-        controlled: ranks.mobility.saturating_sub(ranks.locked),
-        redundant: redundant(mechanism, &linkage, &kernel),
-        loose: loose(&linkage),
-        singular: singular::singularities(&linkage, &ranks, mechanism),
+        mobility,
+        idle: nearby.generic.as_ref().map_or(mobility - platform(&motions), |generic| generic.idle),
+        actuators: linkage.actuated_rows().count(),
+        controlled,
+        redundant: redundant(mechanism, &linkage, &nearby, controlled),
+        loose,
+        singular,
+        nearby: nearby.poses.into_iter().next().map(|(coordinates, _)| coordinates),
+        units: mechanism.units,
     })
 }
 
-/// The actuated joints whose rates follow from those of the other actuated joints.
-fn redundant(mechanism: &Mechanism, linkage: &Linkage, kernel: &DMatrix<f64>) -> Vec<String> {
+/// The actuated joints whose rates follow from those of the other actuated joints at poses near home.
+fn redundant(
+    mechanism: &Mechanism,
+    linkage: &Linkage,
+    nearby: &Nearby,
+    controlled: usize,
+) -> Vec<String> {
     let mut row = 0;
-    let mut driven: Vec<(&str, Vec<usize>)> = vec![];
+    let mut redundant = vec![];
+    if linkage.actuated_rows().count() <= controlled {
+        return redundant;
+    }
     for joint in mechanism.joints() {
-        let rows = (row..row + joint.freedoms()).collect();
+        let rows: Vec<usize> = (row..row + joint.freedoms()).collect();
         row += joint.freedoms();
-        if joint.actuated {
-            driven.push((&joint.name, rows));
+        if joint.actuated && nearby.spares(linkage, &rows) {
+            redundant.push(joint.name.clone());
         }
     }
-    let rank = |rows: &[usize]| absolute_rank(kernel.select_rows(rows));
-    let all: Vec<usize> = (0..row).filter(|&i| linkage.actuated[i]).collect();
-    let controlled = rank(&all);
-    let spare = |own: &[usize]| {
-        let rest: Vec<usize> = all.iter().copied().filter(|i| !own.contains(i)).collect();
-        rank(&rest) == controlled
+    redundant
+}
+
+/// The singular values of rows taken from orthonormal columns, largest first. Their natural size is one.
+fn absolute_values(rows: DMatrix<f64>) -> Vec<f64> {
+    let mut values = singular_values(rows);
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
+}
+
+/// The twists of the platform among motions, given as orthonormal columns, of which the actuators control this many.
+fn loose_twists(linkage: &Linkage, motions: &DMatrix<f64>, controlled: usize) -> Basis {
+    let rows: Vec<usize> = linkage.actuated_rows().collect();
+    let right = match rows.is_empty() {
+        true => DMatrix::identity(motions.ncols(), motions.ncols()),
+        false => Svd::new(motions.select_rows(&rows)).right,
     };
-    driven.into_iter().filter(|(_, rows)| spare(rows)).map(|(name, _)| name.to_owned()).collect()
+    let free = motions * right.columns(controlled, right.ncols() - controlled);
+    span(&free.rows(free.nrows() - 6, 6).into_owned())
 }
 
-/// The rank of rows taken from orthonormal columns. The natural size of these rows is one, so the
-/// tolerance is absolute.
-fn absolute_rank(matrix: DMatrix<f64>) -> usize {
-    singular_values(matrix).iter().filter(|&&value| value > TOLERANCE).count()
-}
-
-/// The motions of the platform with every actuator locked.
-fn loose(linkage: &Linkage) -> Vec<SubspaceClass> {
-    let passive = linkage.passive(&linkage.units(&linkage.home()));
-    let kernel = Svd::new(loop_closure(&passive)).kernel(TOLERANCE);
-    let platform = kernel.rows(kernel.nrows() - 6, 6).into_owned();
-    let twists = span(&platform);
-    let motion = |twist: &Vector6<f64>| Some(fit(&[*twist])?.class.restored(&linkage.frame));
-    twists.vectors().iter().filter_map(motion).collect()
+/// How many independent twists of the platform motions have that are orthonormal columns.
+fn platform(motions: &DMatrix<f64>) -> usize {
+    span(&motions.rows(motions.nrows() - 6, 6).into_owned()).dimension()
 }
 
 /// The span of the columns of a 6 × n block of orthonormal columns. Columns that are nearly zero

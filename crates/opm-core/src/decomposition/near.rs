@@ -17,13 +17,14 @@ mod search;
 mod snapped;
 
 pub use miss::JointMiss;
-pub(super) use miss::misses_of;
+pub(super) use miss::{misses_of, shown};
 pub(super) use search::{MOST_DIMENSIONS, elements};
 
 use super::{DecomposeError, Decomposition, passive};
 use crate::decomposition::mobility::{MobilityError, frame, mobility};
 use crate::group::subspace::{Frame, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::Vector3;
 use search::{NearSplit, Parts};
@@ -52,6 +53,8 @@ pub struct NearMiss {
     pub joints: Vec<JointMiss>,
     /// The tolerance that [`snap`] needs to accept the mechanism, metres.
     pub tolerance: f64,
+    /// The units of the mechanism's file, for messages.
+    pub units: FileUnits,
 }
 
 /// Axes that miss a point by less than this share of the spread of the joints' points are nearly concurrent.
@@ -109,6 +112,18 @@ pub fn nearly(mechanism: &Mechanism) -> Result<Option<NearMiss>, MobilityError> 
     })
 }
 
+/// A joint screw farther than this from its subspace (the sine of an angle, with lengths divided by the mechanism's size) is
+/// told. Files with seven digits stay below.
+const TOLD: f64 = 1e-6;
+
+/// What joints miss of the subspaces of their sections in a mechanism that decomposes as it is, if it is more than rounding.
+/// `None` for one that does not decompose, or nearly decomposes into smaller sections: [`nearly`] is about these.
+pub fn slightly_off(mechanism: &Mechanism) -> Option<NearMiss> {
+    let found = plain(mechanism).ok()?;
+    let off = found.first().filter(|d| d.deviation > TOLD)?;
+    near_miss(mechanism, dimensions(off)).filter(|_| near_smaller(mechanism, &found).is_none())
+}
+
 /// What a mechanism misses of smaller sections, if it has a section that is large or has a pitch.
 pub(super) fn near_smaller(mechanism: &Mechanism, found: &[Decomposition]) -> Option<NearMiss> {
     near_miss(mechanism, smaller(found)?)
@@ -146,13 +161,15 @@ pub(super) fn near_miss(mechanism: &Mechanism, dimensions: usize) -> Option<Near
     let length = sized_frame(mechanism).length;
     let Correction { split, snapped } = correction(mechanism, FARTHEST, dimensions)?;
     let off = |joint: &JointMiss| joint.relative(length) > TOLERANCE;
-    let tolerance = snapped.joints.first().map_or(0.0, |worst| worst.relative(length) * length);
-    let worst = snapped.joints.first().cloned();
+    // Without a joint that is moved, the mechanism is as it was.
+    let worst = snapped.joints.first()?.clone();
+    let tolerance = worst.relative(length) * length;
     let mut joints: Vec<_> = snapped.joints.into_iter().filter(off).collect();
     if joints.is_empty() {
-        joints.extend(worst);
+        joints.push(worst);
     }
-    Some(NearMiss { lower: split.lower, upper: split.upper, joints, tolerance })
+    let units = mechanism.units;
+    Some(NearMiss { lower: split.lower, upper: split.upper, joints, tolerance, units })
 }
 
 /// Puts every joint exactly into the subspace of its section, if none is farther from it than

@@ -1,5 +1,6 @@
 //! The one joint that prevents a decomposition, if there is exactly one.
 
+use super::mobility::Mobility;
 use super::near::{JointMiss, misses_of};
 use super::{Decomposition, Freedom, frame, one_subspace, search};
 use crate::group::subspace::{MotionSubspace, SubspaceClass};
@@ -12,7 +13,7 @@ use crate::mechanism::leg::{Leg, Section};
 ///
 /// If all other axes meet in one point, the mechanism has no size that a miss could be small against: that is found
 /// here, and never [`nearly`](super::near::nearly).
-pub(super) fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<JointMiss> {
+pub(super) fn odd_joint(mechanism: &Mechanism, report: &Mobility) -> Option<JointMiss> {
     let frame = frame(mechanism);
     let mut odd = None;
     for (number, leg) in mechanism.legs.iter().enumerate().filter(|(_, leg)| leg.joints.len() > 1) {
@@ -21,15 +22,17 @@ pub(super) fn odd_joint(mechanism: &Mechanism, mobility: usize) -> Option<JointM
             let left_out = others.legs[number].joints.remove(joint);
             let screws: Vec<_> = others.legs.iter().flat_map(Leg::screws).collect();
             let lambda = MotionSubspace::span(frame, &screws).dimension();
-            let mut found = search(&others, lambda, mobility, 1).0;
-            found.extend(one_subspace(&others, lambda, mobility));
+            // The pose nearby is that of all joints.
+            let report = Mobility { lambda, nearby: None, ..report.clone() };
+            let mut found = search(&others, &report, 1).0;
+            found.extend(one_subspace(&others, &report));
             let misses = found.iter().flat_map(|split| joint_misses(leg, &left_out, split));
             let relative = |miss: &JointMiss| miss.relative(frame.length);
             if let Some(miss) = misses.min_by(|a, b| relative(a).total_cmp(&relative(b))) {
                 if odd.is_some() {
                     return None;
                 }
-                odd = Some(miss);
+                odd = Some(miss.in_units(mechanism.units));
             }
         }
     }

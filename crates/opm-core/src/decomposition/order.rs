@@ -7,20 +7,21 @@
 //! * Three translations and a sphere share nothing. With an axis of the sphere, the translations make a Schoenflies group
 //!   that shares this rotation with the sphere: then there is a height to carry, and an imaginary joint.
 
+use super::mobility::Mobility;
 use super::{Decomposition, Freedom, one_subspace, search};
 use crate::group::subspace::SubspaceClass;
 use crate::mechanism::Mechanism;
 
 /// The decompositions that are listed; none where the mechanism has none.
-pub(super) fn listed(mechanism: &Mechanism, lambda: usize, mobility: usize) -> Vec<Decomposition> {
-    let alone = || one_subspace(mechanism, lambda, mobility);
+pub(super) fn listed(mechanism: &Mechanism, report: &Mobility) -> Vec<Decomposition> {
+    let alone = || one_subspace(mechanism, report);
     if let Some(alone) = alone().filter(|alone| translates(&alone.lower))
-        && mechanism.legs.iter().all(|leg| Freedom::of_leg(leg).len() == lambda)
+        && mechanism.legs.iter().all(|leg| Freedom::of_leg(leg).len() == report.lambda)
     {
         return vec![alone];
     }
-    let sharing = search(mechanism, lambda, mobility, 1).0;
-    let apart = || search(mechanism, lambda, mobility, 0).0;
+    let sharing = search(mechanism, report, 1).0;
+    let apart = || search(mechanism, report, 0).0;
     if sharing.iter().all(|pair| has(pair, translates))
         && let Some(alone) = alone()
     {

@@ -49,6 +49,7 @@ pub(crate) fn mechanism(name: &str, legs: Vec<Vec<Joint>>) -> Mechanism {
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),
+        units: Default::default(),
     }
 }
 

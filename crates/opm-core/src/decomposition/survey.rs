@@ -7,8 +7,8 @@ use super::mobility::{Mobility, MobilityError, frame, mobility};
 use super::near::{elements, near_smaller};
 use super::search::candidates;
 use super::{
-    DecomposeError, Decomposition, Freedom, HeightMiss, JointMiss, NearMiss, found_or_near,
-    height_miss, list, passive,
+    DecomposeError, Decomposition, Freedom, HeightMiss, JointMiss, NearMiss, Reordered,
+    found_or_near, height_miss, list, passive,
 };
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
@@ -44,6 +44,8 @@ pub struct Survey {
     /// What the mechanism misses, if it nearly decomposes, or nearly decomposes into smaller sections
     /// than those that it has.
     pub near: Option<NearMiss>,
+    /// An order of the joints in which the mechanism decomposes, if it does not as it is.
+    pub order: Option<Reordered>,
 }
 
 /// One leg by itself.
@@ -229,14 +231,22 @@ pub fn survey(mechanism: &Mechanism) -> Result<Survey, MobilityError> {
     let chains: Vec<String> = legs.iter().map(|leg| leg.chain.clone()).collect();
     let notation = notation(&chains);
     let common_name = common_name(&notation, platform.subspace.as_ref());
-    let (applies, near) = match found_or_near(mechanism, passive(mechanism, &report)) {
+    let mut order = None;
+    let (applies, near) = match found_or_near(mechanism, &report, passive(mechanism, &report)) {
         Ok(found) => {
             let near = near_smaller(mechanism, &found);
             (Applies::Decomposed(found), near)
         }
-        Err(error) => outside(mechanism, error),
+        Err(mut error) => {
+            if let DecomposeError::SingularHome { order: better, .. }
+            | DecomposeError::NoPartialSubspaces { order: better, .. } = &mut error
+            {
+                order = better.take().map(|better| *better);
+            }
+            outside(mechanism, error)
+        }
     };
-    Ok(Survey { notation, common_name, mobility: report, legs, platform, applies, near })
+    Ok(Survey { notation, common_name, mobility: report, legs, platform, applies, near, order })
 }
 
 fn leg_survey(leg: &Leg, mechanism: &Mechanism) -> LegSurvey {

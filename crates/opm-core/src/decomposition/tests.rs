@@ -2,6 +2,7 @@ use super::samples::*;
 use super::*;
 use crate::group::screw::Screw;
 use crate::group::subspace::TOLERANCE;
+use crate::mechanism::file::LengthUnit;
 use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{DMatrix, Isometry3, Point3, Unit, Vector3};
 use proptest::prelude::*;
@@ -143,10 +144,12 @@ fn a_gough_platform_has_no_partial_subspaces() {
     let expected = DecomposeError::NoPartialSubspaces {
         lambda: 6,
         mobility: 6,
+        order: None,
         near: None,
         odd: None,
         height: None,
         subspace,
+        units: FileUnits::SI,
     };
     assert_eq!(error, expected);
     assert_eq!(
@@ -164,6 +167,9 @@ fn a_joint_that_misses_the_centre_is_named() {
     let joint = &mut mechanism.legs[1].joints[4];
     let across = joint.axis.cross(&Vector3::x()).normalize();
     joint.point += across * 4.3e-3;
+    let text = decompose(&mechanism).unwrap_err().to_string();
+    assert!(text.contains("within a tolerance of 0.0043 m") && !text.contains("mm"), "{text}");
+    mechanism.units.length = LengthUnit::Millimetre;
     let error = decompose(&mechanism).unwrap_err();
     let near = match &error {
         DecomposeError::NoPartialSubspaces { near: Some(near), .. }
@@ -176,6 +182,57 @@ fn a_joint_that_misses_the_centre_is_named() {
     assert!((miss.distance - 4.3e-3).abs() < 1e-9, "{miss}");
     let told = "joint leg2.5 of leg leg2: its axis passes the centre of the others at 4.30 mm";
     assert!(error.to_string().ends_with(told), "{error}");
+}
+
+/// Every exchange of two neighbours that matters is named, and so is a leg from platform to base: what is named makes the
+/// mechanism what it was.
+#[test]
+fn a_wrong_order_of_joints_is_named() {
+    let right = PlanoSpherical::default().mechanism();
+    let mut named = 0;
+    for leg in 0..right.legs.len() {
+        for joint in 1..right.legs[leg].joints.len() {
+            let mut wrong = right.clone();
+            wrong.legs[leg].joints.swap(joint - 1, joint);
+            let Err(error) = decompose(&wrong) else { continue };
+            let [a, b] = [joint - 1, joint].map(|i| wrong.legs[leg].joints[i].name.clone());
+            let told = format!(
+                "; leg {}: exchange {a} and {b}: then it decomposes into planar and spherical",
+                right.legs[leg].name
+            );
+            assert!(error.to_string().ends_with(&told), "{error}");
+            named += 1;
+        }
+        let mut wrong = right.clone();
+        wrong.legs[leg].joints.reverse();
+        let error = decompose(&wrong).unwrap_err().to_string();
+        assert!(error.contains(&format!("leg {}: ", right.legs[leg].name)), "{error}");
+        assert!(error.ends_with(": then it decomposes into planar and spherical"), "{error}");
+    }
+    // The planar joint and the spherical one that meet in each of three legs, and the ball in the fourth.
+    assert!(named >= 4, "{named}");
+
+    // The same slip in all legs of a kind.
+    let mut wrong = right.clone();
+    wrong.legs[..3].iter_mut().for_each(|leg| leg.joints.swap(2, 3));
+    let error = decompose(&wrong).unwrap_err();
+    let (DecomposeError::SingularHome { order: Some(order), .. }
+    | DecomposeError::NoPartialSubspaces { order: Some(order), .. }) = &error
+    else {
+        panic!("{error}")
+    };
+    let exchange = |leg: &str| OrderChange::Exchange {
+        leg: leg.to_owned(),
+        joints: [format!("{leg}.4"), format!("{leg}.3")],
+    };
+    assert_eq!(order.changes, ["leg1", "leg2", "leg3"].map(exchange));
+
+    // Two of four legs from platform to base: those, and not the other two.
+    let mut wrong = right.clone();
+    wrong.legs[..2].iter_mut().for_each(|leg| leg.joints.reverse());
+    let error = decompose(&wrong).unwrap_err().to_string();
+    let told = "leg leg1: reverse its joints, which run from base to platform; leg leg2: reverse its joints";
+    assert!(error.contains(told), "{error}");
 }
 
 /// A joint along the intersection motion may belong to either section.
@@ -250,7 +307,8 @@ fn a_loose_platform_is_reported_with_its_motion() {
     let mut mechanism = PlanoSpherical::default().mechanism();
     mechanism.legs[3].joints[1].actuated = false;
     let error = decompose(&mechanism).unwrap_err();
-    let DecomposeError::Loose { mobility: 5, actuators: 4, controlled: 4, free } = &error else {
+    let DecomposeError::Loose { mobility: 5, actuators: 4, controlled: 4, free, .. } = &error
+    else {
         panic!("{error}")
     };
     assert_eq!(free.len(), 1);
@@ -298,7 +356,7 @@ fn six_legs_of_six_joints_visit_few_splits() {
     let gough = gough(&mut Numbers::new(1));
     for (mechanism, ways) in [(&redundant, 1), (&pairs, 1), (&gough, 0)] {
         let report = crate::decomposition::mobility::mobility(mechanism).unwrap();
-        let (found, visited) = search(mechanism, report.lambda, report.mobility, 1);
+        let (found, visited) = search(mechanism, &report, 1);
         assert_eq!(found.len(), ways);
         // A leg has seven candidates; six of them are dropped at once.
         assert!(visited <= 7 * 6, "{}: {visited}", mechanism.name);

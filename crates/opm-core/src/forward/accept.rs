@@ -27,7 +27,9 @@ const SAME: f64 = 1e-9;
 pub(super) struct Place<'a> {
     /// The independent task coordinates, metres and radians.
     pub pose: &'a [f64],
-    /// The platform's displacement from home at this pose.
+    /// All task coordinates, dependent ones too.
+    pub all: &'a [f64],
+    /// The platform's displacement from home at this pose, which the legs have to reach.
     pub target: &'a Isometry3<f64>,
     pub mode: Mode,
 }
@@ -35,8 +37,6 @@ pub(super) struct Place<'a> {
 /// A solution of inverse kinematics at the place.
 #[derive(Clone, Copy)]
 pub(super) struct Solved<'a> {
-    /// The dependent coordinates, metres and radians.
-    pub dependent: &'a [f64],
     /// The values of all joint coordinates, radians and metres.
     pub joints: &'a [f64],
     /// The values of all imaginary joints, radians and metres.
@@ -79,7 +79,7 @@ impl Manipulator {
     /// does not close to rounding.
     pub(super) fn write_assembly(
         &self,
-        Place { pose, target, mode }: Place<'_>,
+        Place { pose, all, target, mode }: Place<'_>,
         solved: Solved<'_>,
         residual: f64,
         buffer: &mut ClosureBuffer,
@@ -90,7 +90,8 @@ impl Manipulator {
             to.extend_from_slice(from);
         };
         write(&mut out.pose, pose);
-        write(&mut out.dependent, solved.dependent);
+        out.dependent.clear();
+        out.dependent.extend(self.dependent.iter().flat_map(|dependent| dependent.values(all)));
         write(&mut out.joints, solved.joints);
         write(&mut out.imaginary, solved.imaginary);
         (out.mode, out.within_limits) = (mode, solved.within_limits);
@@ -107,8 +108,8 @@ pub(super) struct Outcome {
     pub assemblies: Assemblies,
     /// Former assemblies, whose memory is used again.
     spare: Vec<Assembly>,
-    /// The smallest error of a joint or a leg among the rejected candidates, in radians or shares of the size.
-    least: Option<f64>,
+    /// Whether a candidate was rejected.
+    rejected: bool,
     /// A buffer for closure errors.
     closure: ClosureBuffer,
 }
@@ -117,7 +118,7 @@ impl Outcome {
     /// No assemblies so far.
     pub fn new(manipulator: &Manipulator) -> Self {
         let closure = manipulator.closure.buffer();
-        Self { assemblies: Assemblies::default(), spare: Vec::new(), least: None, closure }
+        Self { assemblies: Assemblies::default(), spare: Vec::new(), rejected: false, closure }
     }
 
     /// Forgets what is known.
@@ -126,12 +127,12 @@ impl Outcome {
         self.spare.append(list);
         unmet.clear();
         loose.clear();
-        self.least = None;
+        self.rejected = false;
     }
 
-    /// Notes by how much the joints of a rejected candidate are off.
-    pub fn reject(&mut self, error: f64) {
-        self.least = Some(self.least.map_or(error, |least| least.min(error)));
+    /// Notes that a candidate does not close.
+    pub fn reject(&mut self) {
+        self.rejected = true;
     }
 
     /// Adds an assembly to the list, unless it does not close or is listed already.
@@ -154,7 +155,7 @@ impl Outcome {
             }
         }
         if assembly.residual.is_nan() || assembly.residual > m.largest_residual() {
-            self.reject(assembly.residual);
+            self.reject();
             self.spare.push(assembly);
             return;
         }
@@ -174,7 +175,7 @@ impl Search<'_> {
     /// Gives the reasons if there are no assemblies.
     pub(super) fn give_reasons(&mut self) {
         let Memory { outcome, deficits, .. } = &mut *self.memory;
-        let Outcome { assemblies: Assemblies { list, unmet, loose }, least, .. } = outcome;
+        let Outcome { assemblies: Assemblies { list, unmet, loose }, rejected, .. } = outcome;
         if !list.is_empty() {
             unmet.clear();
             return;
@@ -187,7 +188,12 @@ impl Search<'_> {
         if self.upper_failed {
             unmet.push(Unmet::Section(Section::Upper));
         }
-        unmet.extend(least.map(Unmet::Contradiction));
+        if *rejected {
+            unmet.push(match self.manipulator.is_redundant() {
+                true => Unmet::Contradiction,
+                false => Unmet::Together,
+            });
+        }
         // A section that can move closes at some poses, which are not listed.
         unmet.retain(|unmet| !matches!(unmet, Unmet::Section(section) if loose.contains(section)));
     }

@@ -15,8 +15,8 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct Candidates {
     /// The independent task coordinates, row after row, metres and radians.
     poses: Vec<f64>,
-    /// The dependent coordinates, row after row, metres and radians.
-    dependent: Vec<f64>,
+    /// All task coordinates where some are dependent, row after row, metres and radians.
+    all: Vec<f64>,
     /// The working mode of each row.
     modes: Vec<Mode>,
     /// The number of poses that were begun.
@@ -48,7 +48,7 @@ impl Candidates {
         const ROWS: usize = 16;
         Self {
             poses: Vec::with_capacity(ROWS * manipulator.task_coordinates().len()),
-            dependent: Vec::new(),
+            all: Vec::new(),
             modes: Vec::with_capacity(ROWS),
             begun: 0,
             numbers: Vec::with_capacity(ROWS),
@@ -68,7 +68,7 @@ impl Candidates {
     /// Forgets all rows.
     pub fn clear(&mut self) {
         self.poses.clear();
-        self.dependent.clear();
+        self.all.clear();
         self.modes.clear();
         self.begun = 0;
         self.numbers.clear();
@@ -76,10 +76,12 @@ impl Candidates {
     }
 
     /// Notes a working mode of the pose that was begun last.
-    fn note(&mut self, place: Place<'_>, dependent: impl Iterator<Item = f64>) {
-        let Place { pose, target, mode } = place;
+    fn note(&mut self, place: Place<'_>) {
+        let Place { pose, all, target, mode } = place;
         self.poses.extend_from_slice(pose);
-        self.dependent.extend(dependent);
+        if all.len() > pose.len() {
+            self.all.extend_from_slice(all);
+        }
         self.modes.push(mode);
         self.numbers.push(self.begun);
         self.targets.push(*target);
@@ -139,13 +141,17 @@ impl Candidates {
     /// A row as an assembly.
     fn row(&self, manipulator: &Manipulator, row: usize) -> (Place<'_>, Solved<'_>) {
         let of = |values, width| row_of(values, width, row);
+        let pose = of(&self.poses, manipulator.task_coordinates().len());
         let place = Place {
-            pose: of(&self.poses, manipulator.task_coordinates().len()),
+            pose,
+            all: match manipulator.dependent {
+                None => pose,
+                Some(_) => of(&self.all, manipulator.task().coordinates.len()),
+            },
             target: &self.targets[row],
             mode: self.modes[row],
         };
         let solved = Solved {
-            dependent: of(&self.dependent, manipulator.dependent_coordinates().len()),
             joints: of(&self.joints, manipulator.coordinates().len()),
             imaginary: of(&self.imaginary, manipulator.imaginary().len()),
             within_limits: self.within_limits[row],
@@ -218,7 +224,7 @@ impl Search<'_> {
         let mut found: Vec<f64> =
             solved.map(|solution| own - m.task().rise_of_leg(0.0, solution.tau)).collect();
         if found.is_empty() {
-            self.memory.outcome.reject(f64::INFINITY);
+            self.memory.outcome.reject();
         }
         found.sort_by(f64::total_cmp);
         found.dedup_by(|a, b| (*a - *b).abs() < MATCH * m.closure.size);
@@ -233,37 +239,34 @@ impl Search<'_> {
         let mut matches = std::mem::take(&mut self.memory.matches);
         m.task().write_poses(v, bs, self.rise, m.arch, &mut all);
         for (b, all) in bs.iter().zip(all.chunks_mut(m.task().coordinates.len())) {
-            if let Err(least) = self.match_legs([v, b], &mut matches) {
-                self.memory.outcome.reject(least);
+            if !self.match_legs([v, b], &mut matches) {
+                self.memory.outcome.reject();
                 continue;
             }
-            m.write_independent(all, &mut pose);
+            m.write_independent(None, all, &mut pose);
             if m.check_pose(&pose).is_ok() {
                 let place = lower * m.task().upper.isometry(b);
                 let target = m.task().raised(self.rise, place);
-                self.note_modes(&matches, &pose, &target);
+                let place = Place { pose: &pose, all, target: &target, mode: Mode::default() };
+                self.note_modes(&matches, place);
             }
         }
         (self.memory.poses, self.memory.matches) = ([all, pose], matches);
     }
 
-    /// Finds the choices with which each leg closes at a candidate; the smallest error of one that does not.
-    fn match_legs(
-        &mut self,
-        candidate: [&Displacement; 2],
-        matches: &mut [Matches],
-    ) -> Result<(), f64> {
+    /// Finds the choices with which each leg closes at a candidate. Returns `false` if one does not.
+    fn match_legs(&mut self, candidate: [&Displacement; 2], matches: &mut [Matches]) -> bool {
         for (leg, found) in matches.iter_mut().enumerate() {
             self.match_leg(leg, candidate, self.rise, found);
             if found.list.is_empty() {
-                return Err(found.least);
+                return false;
             }
         }
-        Ok(())
+        true
     }
 
-    /// Notes every combination of the legs' choices at a pose.
-    fn note_modes(&mut self, matches: &[Matches], pose: &[f64], target: &Isometry3<f64>) {
+    /// Notes every combination of the legs' choices at a place.
+    fn note_modes(&mut self, matches: &[Matches], place: Place<'_>) {
         self.memory.candidates.begun += 1;
         let count: usize = matches.iter().map(|of_leg| of_leg.list.len()).product();
         for combination in 0..count {
@@ -273,9 +276,9 @@ impl Search<'_> {
                 rest /= list.len();
                 mode.with(own)
             });
-            let place = Place { pose, target, mode };
+            let place = Place { mode, ..place };
             match &self.manipulator.dependent {
-                None => self.memory.candidates.note(place, std::iter::empty()),
+                None => self.memory.candidates.note(place),
                 Some(dependent) => self.note_completed(dependent, place),
             }
         }
@@ -284,18 +287,19 @@ impl Search<'_> {
     /// Notes a working mode with the choices of dependent coordinates that give the pose's displacement, if there are any;
     /// that of the place has the choices of the legs.
     fn note_completed(&mut self, dependent: &Dependent, place: Place<'_>) {
-        let (m, Place { pose, target, mode: legs }) = (self.manipulator, place);
+        let (m, Place { pose, all, mode: legs, .. }) = (self.manipulator, place);
+        // The displacement of what is given as the pose: the legs are held against that.
+        let target = &m.task().displacement(all);
         let modes = dependent.step_modes().map(|steps| legs.with(steps));
         let completed = modes.filter_map(|mode| Some((mode, m.completed(pose, mode).ok()?)));
         let off = |all: &[f64]| m.apart(&m.task().displacement(all), target);
-        let errors = completed.map(|(mode, all)| (off(&all), mode, all));
-        let Some((error, mode, all)) = errors.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+        let errors = completed.map(|(mode, all)| (off(&all), mode));
+        let Some((error, mode)) = errors.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
         if error > APART {
-            self.memory.outcome.reject(error);
+            self.memory.outcome.reject();
             return;
         }
-        let values = dependent.coordinates.iter().map(|&number| all[number]);
-        self.memory.candidates.note(Place { mode, ..place }, values);
+        self.memory.candidates.note(Place { mode, target, ..place });
     }
 
     /// Checks all candidates, and accepts those that are assemblies.
@@ -311,7 +315,7 @@ impl Search<'_> {
         for row in 0..candidates.modes.len() {
             let error = candidates.errors[row];
             if error > most {
-                outcome.reject(error);
+                outcome.reject();
             } else if !candidates.has_better(m, row) {
                 let (place, solved) = candidates.row(m, row);
                 outcome.accept(held, place, solved, candidates.residuals[row]);

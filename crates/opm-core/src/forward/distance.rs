@@ -1,10 +1,55 @@
-//! The distance between two poses of the platform, and assemblies in its order.
+//! Where the platform is in an assembly, the distance between two poses of it, and assemblies in that order.
 
 use super::Assembly;
-use crate::manipulator::Manipulator;
+use super::accept::APART;
+use crate::manipulator::{Manipulator, Mode};
 use nalgebra::Isometry3;
 
 impl Manipulator {
+    /// All task coordinates of an assembly.
+    fn all_of(&self, assembly: &Assembly) -> Vec<f64> {
+        let Some(dependent) = &self.dependent else { return assembly.pose.clone() };
+        let mut all = vec![0.0; self.task().coordinates.len()];
+        dependent.merge([&assembly.pose, &assembly.dependent], &mut all);
+        all
+    }
+
+    /// The platform's displacement from home in an assembly, base coordinates: that of its pose, dependent coordinates too.
+    pub fn displacement_of(&self, assembly: &Assembly) -> Isometry3<f64> {
+        self.task().displacement(&self.all_of(assembly))
+    }
+
+    /// The same assembly with the coordinates that it has in another working mode; `None` where it is none of that mode.
+    ///
+    /// Where coordinates are dependent, two triples of angles may give one orientation, and the others may follow from each
+    /// in modes of its own: one pose of the platform, and one set of joints, then has a name in each of these modes.
+    pub fn assembly_in(&self, assembly: &Assembly, mode: Mode) -> Option<Assembly> {
+        if assembly.mode == mode {
+            return Some(assembly.clone());
+        }
+        let dependent = self.dependent.as_ref()?;
+        if !dependent.differ_in_steps(assembly.mode, mode) {
+            return None;
+        }
+        let (mut all, mut pose) = (self.all_of(assembly), Vec::new());
+        self.write_independent(Some(mode), &mut all, &mut pose);
+        let completed = self.completed(&pose, mode).ok()?;
+        let displacements = [&completed, &all].map(|all| self.task().displacement(all));
+        let same = self.apart(&displacements[0], &displacements[1]) <= APART;
+        same.then(|| Assembly {
+            pose,
+            dependent: dependent.values(&all).collect(),
+            mode,
+            ..assembly.clone()
+        })
+    }
+
+    /// Keeps the assemblies of one working mode, with the coordinates that they have in it:
+    /// [`Manipulator::assembly_in`].
+    pub fn keep_assemblies_in(&self, list: &mut Vec<Assembly>, mode: Mode) {
+        *list = list.iter().filter_map(|assembly| self.assembly_in(assembly, mode)).collect();
+    }
+
     /// How far two poses of the platform in SE(3) are apart ([`Manipulator::platform_pose`]): the angle between their
     /// orientations, in radians, plus the distance of their reference points over the mechanism's size. The
     /// residual of an assembly is measured in the same way. Task coordinates are not compared: many mechanisms have
@@ -18,9 +63,8 @@ impl Manipulator {
     /// Equal distances stay in their order.
     pub fn sort_assemblies(&self, list: &mut Vec<Assembly>, seed: &Isometry3<f64>) {
         let measured = list.drain(..).map(|assembly| {
-            let place = self.displacement_in(&assembly.pose, assembly.mode);
-            let place = place.map(|displacement| self.platform_at(&displacement));
-            (place.map_or(f64::INFINITY, |place| self.platform_distance(seed, &place)), assembly)
+            let place = self.platform_at(&self.displacement_of(&assembly));
+            (self.platform_distance(seed, &place), assembly)
         });
         let mut measured: Vec<(f64, Assembly)> = measured.collect();
         measured.sort_by(|(a, _), (b, _)| a.total_cmp(b));

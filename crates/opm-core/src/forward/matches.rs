@@ -23,14 +23,12 @@ const ROUNDING: f64 = 1e-13;
 pub(super) struct Matches {
     /// Each as a mode with plus for all other choices.
     pub list: Vec<Mode>,
-    /// The smallest error of an actuated joint with other choices, in radians or shares of the size.
-    pub least: f64,
 }
 
 impl Matches {
     /// A buffer.
     pub fn new() -> Self {
-        Self { list: Vec::with_capacity(4), least: f64::INFINITY }
+        Self { list: Vec::with_capacity(4) }
     }
 
     /// Notes choices, if the actuated joints then have their values.
@@ -38,8 +36,6 @@ impl Matches {
     fn note(&mut self, mode: Mode, error: f64) {
         if error <= MATCH {
             self.list.push(mode);
-        } else {
-            self.least = self.least.min(error);
         }
     }
 }
@@ -52,8 +48,6 @@ pub(super) struct LowerSection {
     tau: Option<JointDisplacement>,
     /// The τ of the solution on each branch.
     branches: [Option<JointDisplacement>; 2],
-    /// The smallest error of an actuated joint of the others, in radians or shares of the size.
-    least: f64,
 }
 
 impl LowerSection {
@@ -61,7 +55,7 @@ impl LowerSection {
     pub fn new() -> Self {
         let v = SubspaceKind::Identity.identity();
         let tau = Some(JointDisplacement::Value(f64::NAN));
-        Self { v, tau, branches: [None; 2], least: f64::INFINITY }
+        Self { v, tau, branches: [None; 2] }
     }
 
     /// The branches of the solutions, with their τ.
@@ -136,7 +130,6 @@ impl Search<'_> {
         found: &mut Matches,
     ) {
         found.list.clear();
-        found.least = f64::INFINITY;
         let compiled = &self.held.legs[leg];
         match self.memory.known[leg] {
             KnownLeg::Closed(choices) => {
@@ -193,7 +186,7 @@ impl Search<'_> {
         rise: f64,
         found: &mut Matches,
     ) {
-        // Near a singularity τ is less certain. Another τ only tells by how much a leg that does not close is off.
+        // Near a singularity τ is less certain.
         for expected in [true, false] {
             for &branch in self.held.legs[leg].upper.branches() {
                 let compiled = &self.held.legs[leg];
@@ -232,7 +225,6 @@ impl Search<'_> {
     ) {
         self.solve_lower(leg, v, Some(tau));
         let [section, _] = &self.memory.lowers[leg];
-        found.least = found.least.min(section.least);
         for (lower, _) in section.solutions() {
             found.note(self.manipulator.leg_mode(leg, LegBranches { lower, upper }), error);
         }
@@ -250,7 +242,6 @@ impl Search<'_> {
         self.solve_lower(leg, v, None);
         let (compiled, [section, _]) = (&self.held.legs[leg], &self.memory.lowers[leg]);
         let tested = compiled.upper.has_choice() || compiled.upper.driven;
-        found.least = section.least;
         for (lower, tau) in section.solutions() {
             // U = exp(−I τ) · b
             let step = tau.inverse();
@@ -293,7 +284,7 @@ impl Search<'_> {
         let lower = &compiled.lower;
         let along = &self.manipulator.task().lower_intersection;
         let target = tau.map_or(*v, |tau| along.after(v, tau));
-        let mut section = LowerSection { v: *v, tau, branches: [None; 2], least: f64::INFINITY };
+        let mut section = LowerSection { v: *v, tau, branches: [None; 2] };
         for (solved, &branch) in section.branches.iter_mut().zip(lower.branches()) {
             let Ok(displacements) = lower.inverse(&target, branch) else { continue };
             let error = self.section_error(lower, &displacements);
@@ -301,8 +292,6 @@ impl Search<'_> {
                 // L · exp(I c) = v, with c the imaginary joint's displacement: τ = −c.
                 let step = || compiled.unwound(compiled.step(&displacements), 0.0);
                 *solved = Some(tau.unwrap_or_else(|| step().inverse()));
-            } else {
-                section.least = section.least.min(error);
             }
         }
         section

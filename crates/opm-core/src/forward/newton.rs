@@ -385,7 +385,7 @@ impl Newton<'_> {
             m.close_displaced(self.mode, &mut at.tried)
         } else {
             m.task().write_pose(v, b, rise, &mut at.all);
-            m.write_independent(&mut at.all, &mut at.pose);
+            m.write_independent(Some(self.mode), &mut at.all, &mut at.pose);
             m.close(&at.pose, self.mode, &mut at.tried).map_err(|_| Stop::Stalled)?
         };
         match reached {
@@ -402,21 +402,25 @@ impl Newton<'_> {
         if m.dependent_coordinates().is_empty() {
             pose.copy_from_slice(&at.all);
         }
-        m.write_independent(&mut at.all, &mut at.pose);
+        m.write_independent(Some(self.mode), &mut at.all, &mut at.pose);
     }
 
     /// Writes the assembly at the present pose.
     fn assemble(&self, at: &mut NearBuffer) {
         let m = self.manipulator;
         self.write_pose(at);
-        let NearBuffer { displacements, pose, solution, closure, assembly, .. } = at;
+        let NearBuffer { displacements, all, pose, solution, closure, assembly, .. } = at;
         m.write_closed(solution);
         m.set_actuated(displacements, &mut solution.joints);
-        let target = solution.displacement(m);
+        // The start may have had other angles than those that are written. So its own dependent coordinates are no use, and
+        // the legs are held against the pose as it is written.
+        let target = match &m.dependent {
+            None => solution.displacement(m),
+            Some(_) => m.task().displacement(all),
+        };
         let residual = m.closure.residual(&solution.joints, &target);
-        let place = Place { pose, target: &target, mode: self.mode };
+        let place = Place { pose, all, target: &target, mode: self.mode };
         let solved = Solved {
-            dependent: solution.dependent(),
             joints: solution.joints(),
             imaginary: solution.imaginary(),
             within_limits: solution.within_limits(),

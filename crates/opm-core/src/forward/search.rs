@@ -102,7 +102,7 @@ impl<'a> Search<'a> {
         let (m, plan) = (self.manipulator, self.held.plan);
         let apart = self.held.contradiction_of_heights();
         if apart > MATCH && !m.shares_height() {
-            self.memory.outcome.reject(apart);
+            self.memory.outcome.reject();
             return;
         }
         let mut known = vec![None; m.legs.len()];

@@ -11,13 +11,13 @@ use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 /// use opm_core::group::{Subspace, SubspaceKind};
 /// use std::f64::consts::FRAC_PI_2;
 ///
-/// // Planar motion in a level plane at z = 2 m, about a reference point above (1, 0, 0).
+/// // Planar motion in a level plane at z = 2 m, about a centre above (1, 0, 0).
 /// let origin = Point3::new(1.0, 0.0, 2.0);
 /// let axes = Matrix3::identity();
 /// let plane =
 ///     Subspace { kind: SubspaceKind::Planar, origin, axes, measured_from: Point3::origin() };
 /// assert_eq!(plane.dimension(), 3);
-/// // A quarter revolution about the reference point, as a displacement in base coordinates.
+/// // A quarter revolution about the centre, as a displacement in base coordinates.
 /// let quarter = plane.kind.exponential(&Vector3::new(FRAC_PI_2, 0.0, 0.0));
 /// let moved = plane.isometry(&quarter) * Point3::new(2.0, 0.0, 2.0);
 /// assert!((moved - Point3::new(1.0, 1.0, 2.0)).norm() < 1e-15);
@@ -26,7 +26,7 @@ use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 pub struct Subspace {
     /// The kind of subspace: which subgroup its displacements form.
     pub kind: SubspaceKind,
-    /// The frame's origin, in base coordinates and metres: the reference point at home, about which angles
+    /// The frame's centre at home, in base coordinates and metres: the point that lengths move, and about which angles
     /// are measured.
     pub origin: Point3<f64>,
     /// The frame's three directions in base coordinates, as columns. The third is the normal of a plane,
@@ -38,7 +38,7 @@ pub struct Subspace {
 }
 
 impl Subspace {
-    /// The reference point at home, along the frame's directions and relative to the point that lengths are
+    /// The centre at home, along the frame's directions and relative to the point that lengths are
     /// measured from.
     pub(crate) fn home(&self) -> Vector3<f64> {
         self.axes.tr_mul(&(self.origin - self.measured_from))

@@ -235,6 +235,12 @@ impl Dependent {
         })
     }
 
+    /// Whether two modes differ in no other choices than the steps' own.
+    pub fn differ_in_steps(&self, one: Mode, other: Mode) -> bool {
+        let own = self.steps.iter().filter_map(|step| step.bit).fold(0, |own, bit| own | 1 << bit);
+        (one.0 ^ other.0) & !own == 0
+    }
+
     /// The constraints that only repeat others, as the legs and sections that they belong to.
     pub fn checked(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
         self.checks.iter().map(|check| (check.leg, check.section))

@@ -114,7 +114,20 @@ impl Manipulator {
     /// # Errors
     /// As [`Manipulator::locate`].
     pub fn locate_platform(&self, platform: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
-        self.locate(&(platform * self.home_placement().inverse()))
+        self.locate_platform_in(platform, self.home_mode)
+    }
+
+    /// The same with the angles of a working mode, if the platform gets there in that mode. Where coordinates are dependent,
+    /// two triples of angles may give one orientation, each in modes of its own.
+    ///
+    /// # Errors
+    /// As [`Manipulator::locate`].
+    pub fn locate_platform_in(
+        &self,
+        platform: &Isometry3<f64>,
+        mode: Mode,
+    ) -> Result<Vec<f64>, OutsideMotion> {
+        self.locate_in(&(platform * self.home_placement().inverse()), mode)
     }
 
     /// The platform's pose in SE(3) for its displacement from home: see [`Manipulator::platform_pose`].
@@ -133,22 +146,37 @@ impl Manipulator {
     /// # Errors
     /// The displacement is outside the motion `A · B`: by how much, in which direction, and the nearest pose.
     pub fn locate(&self, displacement: &Isometry3<f64>) -> Result<Vec<f64>, OutsideMotion> {
+        self.locate_in(displacement, self.home_mode)
+    }
+
+    fn locate_in(
+        &self,
+        displacement: &Isometry3<f64>,
+        mode: Mode,
+    ) -> Result<Vec<f64>, OutsideMotion> {
         let Some(dependent) = &self.dependent else { return self.locate_all(displacement) };
         let all = self.locate_all(displacement).unwrap_or_else(|outside| outside.nearest);
-        let pose = self.independent_of(&all);
         let length = self.characteristic_length();
-        // The mode in which the dependent coordinates come nearest.
-        let completed = (0..dependent.combinations())
-            .filter_map(|number| self.completed(&pose, dependent.mode(number)).ok());
         let off = |all: &[f64]| self.miss(displacement, all, 1.0 / length).norm();
-        let nearest = completed.min_by(|a, b| off(a).total_cmp(&off(b)));
-        let nearest = nearest.unwrap_or_else(|| self.task.home());
-        if off(&nearest) < ON {
-            return Ok(pose);
+        // The given mode, then the one in which the dependent coordinates come nearest.
+        let others = (0..dependent.combinations()).map(|number| dependent.mode(number));
+        let mut nearest: Option<(f64, Vec<f64>, Mode)> = None;
+        for mode in std::iter::once(mode).chain(others) {
+            let pose = self.independent_in(&all, mode);
+            let Ok(completed) = self.completed(&pose, mode) else { continue };
+            let off = off(&completed);
+            if off < ON {
+                return Ok(pose);
+            }
+            if nearest.as_ref().is_none_or(|(least, ..)| off < *least) {
+                nearest = Some((off, completed, mode));
+            }
         }
+        let (nearest, mode) =
+            nearest.map_or_else(|| (self.task.home(), mode), |(_, pose, mode)| (pose, mode));
         let miss = self.miss(displacement, &nearest, 1.0);
         Err(OutsideMotion {
-            nearest: self.independent_of(&nearest),
+            nearest: self.independent_in(&nearest, mode),
             rotation: miss.fixed_rows::<3>(0).into(),
             translation: miss.fixed_rows::<3>(3).into(),
         })

@@ -71,6 +71,10 @@ impl CompileError {
         };
         match self {
             Self::Decompose(
+                DecomposeError::SingularHome { order: Some(order), .. }
+                | DecomposeError::NoPartialSubspaces { order: Some(order), .. },
+            ) => order.changes.first().and_then(|change| of_leg(change.leg())),
+            Self::Decompose(
                 DecomposeError::NoFreedom { near: Some(near), .. }
                 | DecomposeError::SingularHome { near: Some(near), .. }
                 | DecomposeError::NoPartialSubspaces { near: Some(near), .. },

@@ -2,7 +2,7 @@
 
 use crate::group::screw::Screw;
 use crate::mechanism::joint::{Joint, JointCoordinate, ValueCountError};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use std::fmt;
 
 /// Name, origin and sign of a leg's imaginary joint, where the mechanism has a convention for them.
@@ -42,6 +42,22 @@ pub struct Leg {
     /// The convention for the imaginary joint. Without one, the joint is called `tau.NAME` and is
     /// zero at home.
     pub imaginary: Option<ImaginaryLabel>,
+}
+
+/// Puts sliders that have no place of their own on their leg: where the next joint is that has one, or else the one before. In
+/// a leg without such a joint they stay at the platform. Each joint comes with whether it has a place.
+pub(crate) fn placed(joints: Vec<(Joint, bool)>) -> Vec<Joint> {
+    let place = |joint: &(Joint, bool)| joint.1.then_some(joint.0.point);
+    let places: Vec<Option<Point3<f64>>> = (0..joints.len())
+        .map(|i| {
+            let after = joints[i..].iter().find_map(place);
+            after.or_else(|| joints[..i].iter().rev().find_map(place))
+        })
+        .collect();
+    let moved = joints.into_iter().zip(places);
+    moved
+        .map(|((joint, _), place)| Joint { point: place.unwrap_or(joint.point), ..joint })
+        .collect()
 }
 
 impl Leg {

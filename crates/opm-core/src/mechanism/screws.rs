@@ -2,8 +2,10 @@
 
 use super::{BodyMasses, Mechanism, Shapes, TaskHints};
 use crate::group::screw::Screw;
+use crate::group::subspace::{Frame, TOLERANCE};
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
-use crate::mechanism::leg::Leg;
+use crate::mechanism::leg::{Leg, placed};
 use nalgebra::{Point3, Unit, Vector3};
 
 /// A joint with one freedom, given by its screw at home.
@@ -34,13 +36,12 @@ pub enum ScrewError {
     Component(f64),
 }
 
-/// Farther than the axis of any real joint, metres. A screw whose axis is farther away is a
-/// translation, and its angular part is left over from rounding.
+/// The largest component, metres.
 const FARTHEST: f64 = 1e9;
 
-/// Rounding may turn a zero pitch into one of this size, as a share of the mechanism's size. It is far
-/// below the pitch that the decomposition still takes for zero ([`TOLERANCE`](crate::group::subspace::TOLERANCE)).
-const ROUNDING: f64 = 1e-9;
+/// Farther than the axis of any real joint, metres. A screw whose axis is farther away is a
+/// translation, and its angular part is left over from rounding, of numbers in single precision too.
+const AWAY: f64 = 1e6;
 
 impl Screw {
     /// The advance along the axis in metres per radian: `ω·v / ω²`.
@@ -69,7 +70,7 @@ impl Screw {
         // Scaled to numbers near one first: their squares neither vanish nor overflow.
         let Self { angular, linear } = Self::from_vector(&(components / largest));
         let (angle, slide) = (angular.norm(), linear.norm());
-        Ok(if angle * FARTHEST < slide {
+        Ok(if angle * AWAY < slide {
             Self { angular: Vector3::zeros(), linear: linear / slide }
         } else {
             Self { angular: angular / angle, linear: linear / angle }
@@ -81,7 +82,9 @@ impl Mechanism {
     /// Builds a mechanism from named legs, each a list of joints of one freedom from base to platform.
     ///
     /// A screw does not say where on its axis the joint is: it is put at the axis's point nearest to
-    /// the origin. A prismatic joint is put at the platform's reference point.
+    /// the origin. A prismatic joint is put where the next joint of its leg is that is none, or else where the one before is;
+    /// in a leg of prismatic joints alone, at the platform's reference point. A pitch that the decomposition
+    /// takes for zero ([`TOLERANCE`] of the mechanism's size) is rounding: that joint is revolute.
     ///
     /// # Errors
     /// The index of the leg, the index of the joint in it, and why its screw is not one of a joint.
@@ -91,22 +94,24 @@ impl Mechanism {
         platform: Point3<f64>,
     ) -> Result<Self, (usize, usize, ScrewError)> {
         let mut legs: Vec<_> = legs.into_iter().collect();
-        let mut size: f64 = 0.0;
+        let mut axes = Vec::new();
         for (leg, (_, joints)) in legs.iter_mut().enumerate() {
             for (number, joint) in joints.iter_mut().enumerate() {
                 joint.screw = joint.screw.normalized().map_err(|error| (leg, number, error))?;
                 if joint.screw.angular != Vector3::zeros() {
-                    size = size.max(joint.screw.linear.norm());
+                    axes.push((joint.screw, Point3::from(joint.screw.foot())));
                 }
             }
         }
+        let least = TOLERANCE * Frame::of(&axes).length;
         let build = |joint: ScrewJoint| {
             let ScrewJoint { name, screw, actuated, home, limits } = joint;
-            let (axis, kind, point) = if screw.angular == Vector3::zeros() {
+            let slides = screw.angular == Vector3::zeros();
+            let (axis, kind, point) = if slides {
                 (screw.linear, JointKind::Prismatic, platform)
             } else {
                 let pitch = screw.pitch();
-                let kind = match pitch.abs() <= ROUNDING * size {
+                let kind = match pitch.abs() <= least {
                     true => JointKind::Revolute,
                     false => JointKind::Helical { pitch },
                 };
@@ -114,15 +119,16 @@ impl Mechanism {
             };
             let built = Joint::new(name, kind, Unit::new_unchecked(axis), point);
             let built = built.at(home).within(limits);
-            if actuated { built.actuated() } else { built }
+            (if actuated { built.actuated() } else { built }, !slides)
         };
         let legs = legs
             .into_iter()
-            .map(|(name, joints)| Leg::new(name, joints.into_iter().map(build).collect()))
+            .map(|(name, joints)| Leg::new(name, placed(joints.into_iter().map(build).collect())))
             .collect();
         let (task, bodies) = (TaskHints::default(), BodyMasses::default());
         let shapes = Shapes::default();
-        Ok(Self { name: name.into(), legs, platform, task, bodies, shapes })
+        let units = FileUnits::SI;
+        Ok(Self { name: name.into(), legs, platform, task, bodies, shapes, units })
     }
 }
 
@@ -178,6 +184,28 @@ mod tests {
         let built = from(&[revolute, prismatic]).unwrap();
         let kinds: Vec<_> = built.joints().map(|joint| joint.kind).collect();
         assert_eq!(kinds, [JointKind::Revolute, JointKind::Prismatic]);
+    }
+
+    /// Screws in single precision, and with six digits: joints keep their kinds, and pitches are deliberate ones.
+    #[test]
+    fn rounded_screws_keep_their_kinds() {
+        for example in examples::EXAMPLES {
+            let mechanism = file::read(example.text).unwrap().mechanism;
+            let joints: Vec<_> = mechanism.joints().filter(|j| j.freedoms() == 1).collect();
+            let single = |c: f64| f64::from(c as f32);
+            let six_digits = |c: f64| format!("{c:.5e}").parse().unwrap();
+            for round in [single as fn(f64) -> f64, six_digits] {
+                let screws = joints.iter().map(|j| {
+                    // Of no particular length, so that all numbers are rounded.
+                    Screw::from_vector(&(j.screws()[0].to_vector() * 0.7).map(round))
+                });
+                let built = from(&screws.collect::<Vec<_>>()).unwrap();
+                for (built, joint) in built.joints().zip(&joints) {
+                    let kinds = [built.kind, joint.kind].map(|kind| std::mem::discriminant(&kind));
+                    assert_eq!(kinds[0], kinds[1], "{}: {}", example.name, joint.name);
+                }
+            }
+        }
     }
 
     #[test]

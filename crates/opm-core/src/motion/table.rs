@@ -12,17 +12,68 @@
 //! Angles are unwrapped first: each angle is shifted by multiples of 2π to within π of the previous
 //! line. A table that wraps around at ±π then continues and does not rotate back. An angle whose
 //! full revolutions matter, because a helical joint follows it, is not unwrapped.
+//!
+//! A table of somebody else may have other columns, other names and other times: [`TableOptions`] says which columns are
+//! read, and whether times count from the first row.
 
+use super::clock::Clock;
 use super::columns::is_column;
 use super::points::{through, wraps};
 use super::{Ends, PlatformMotion};
 use crate::manipulator::Manipulator;
 use crate::mechanism::file::{FileErrors, FileUnits, Heading, LARGEST, Problem};
 use crate::numeric::{Quantity, angle::near};
+use crate::table::{
+    ColumnNames, Line, Lines, Plausible, Suggestion, hint, hint_of_row, not_commas,
+};
+use crate::text::quoted;
 
 /// The largest number of problems that are listed one by one. A file with more of them is probably
 /// not a table of poses.
 const MOST_PROBLEMS: usize = 100;
+
+/// How a table of poses is read.
+#[derive(Clone, Copy, Debug)]
+pub struct TableOptions<'a> {
+    /// How the spline starts and ends.
+    pub ends: Ends,
+    /// Which columns are read; `None` for all of them, by their own names.
+    pub columns: Option<&'a ColumnNames>,
+    /// Whether times count from that of the first row.
+    pub relative_time: bool,
+    /// The units of the mechanism's file, which a doubtful number was probably meant in.
+    pub units: FileUnits,
+    /// How the caller's user asks for other columns and other times.
+    pub advice: Advice,
+}
+
+/// How the user of a caller asks for something else, in that caller's words.
+#[derive(Clone, Copy, Debug)]
+pub struct Advice {
+    /// How columns are chosen, with a suggestion; an empty text if they cannot be.
+    pub columns: fn(&Suggestion) -> String,
+    /// What counts times from the first row; empty if nothing does.
+    pub relative_time: &'static str,
+}
+
+impl Default for TableOptions<'_> {
+    /// All columns, by their own names, and nothing to ask for.
+    fn default() -> Self {
+        let advice = Advice { columns: |_| String::new(), relative_time: "" };
+        let (ends, units) = (Ends::default(), FileUnits::SI);
+        Self { ends, columns: None, relative_time: false, units, advice }
+    }
+}
+
+/// A table of poses that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseTable {
+    /// The motion through its poses.
+    pub motion: PlatformMotion,
+    /// The columns without a unit whose numbers look as if they were meant in another one: the line of the first such
+    /// number, and what to say.
+    pub doubts: Vec<(u64, String)>,
+}
 
 /// Reads the text of a table of poses, in the task coordinates of `manipulator`. The motion gets
 /// the name `name`.
@@ -34,12 +85,12 @@ pub fn read(
     text: &str,
     name: &str,
     manipulator: &Manipulator,
-    ends: Ends,
-) -> Result<PlatformMotion, FileErrors> {
+    options: &TableOptions<'_>,
+) -> Result<PoseTable, FileErrors> {
     let mut problems = Problems::default();
-    let motion = read_table(text, Given { name, ends }, manipulator, &mut problems);
-    match motion {
-        Some(motion) if problems.list.is_empty() => Ok(motion),
+    let table = read_table(text, Given { name, options }, manipulator, &mut problems);
+    match table {
+        Some(table) if problems.list.is_empty() => Ok(table),
         _ => Err(problems.into_errors()),
     }
 }
@@ -73,52 +124,57 @@ impl Problems {
     }
 }
 
-/// The cells of a line with their columns, counted in characters from 1.
-fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut column = 1;
-    line.split(',').map(move |cell| {
-        let blank = cell.chars().take_while(|c| c.is_whitespace()).count();
-        let at = column + blank;
-        column += cell.chars().count() + 1;
-        let text = cell.trim();
-        let quoted = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
-        (at, quoted.map_or(text, str::trim))
-    })
-}
-
 /// What a table of poses does not have in its text.
+#[derive(Clone, Copy)]
 struct Given<'a> {
     /// The name of the motion.
     name: &'a str,
-    ends: Ends,
+    options: &'a TableOptions<'a>,
 }
 
 fn read_table(
     text: &str,
-    Given { name, ends }: Given<'_>,
+    given: Given<'_>,
     manipulator: &Manipulator,
     problems: &mut Problems,
-) -> Option<PlatformMotion> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line));
-    let mut lines = lines.filter(|(_, line)| !line.trim().is_empty());
-    let expected = || {
-        let names: Vec<_> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
-        format!("expected a header of t and of task coordinates ({})", names.join(", "))
+) -> Option<PoseTable> {
+    let Given { name, options } = given;
+    let mut lines = Lines::new(Box::new(text.as_bytes()));
+    // Text in memory can be read; a line may be too long.
+    let mut next = |problems: &mut Problems,
+                    last: usize,
+                    take: &mut dyn FnMut(Line<'_>, &mut Problems) -> bool| {
+        match lines.next() {
+            Ok(Some(line)) => take(line, problems),
+            Ok(None) => false,
+            Err(error) => {
+                problems.report(last + 1, 1, error.to_string());
+                false
+            }
+        }
     };
-    let Some((number, header)) = lines.next() else {
-        problems.report(1, 1, format!("the file is empty, {}", expected()));
+    let mut columns = None;
+    let mut header = None;
+    next(problems, 0, &mut |line, problems| {
+        header = Some(line.number as usize);
+        columns = Header { line, manipulator, options }.columns(problems);
+        true
+    });
+    let Some(number) = header else {
+        if problems.list.is_empty() {
+            let expected = expected(manipulator);
+            problems.report(1, 1, format!("the file is empty, {expected}"));
+        }
         return None;
     };
-    let columns = read_header(number, header, manipulator, problems, &expected)?;
-
-    let mut times: Vec<f64> = Vec::new();
-    let mut values: Vec<Vec<f64>> = vec![Vec::new(); manipulator.task_coordinates().len()];
+    let columns = columns?;
+    let mut rows = Rows::new(&columns, manipulator, options);
     let mut last = number;
-    for (number, line) in lines {
-        last = number;
-        read_row(Row { number, line, columns: &columns }, &mut times, &mut values, problems);
-    }
+    while next(problems, last, &mut |line, problems| {
+        last = line.number as usize;
+        rows.take(line, problems)
+    }) {}
+    let Rows { times, mut values, doubts, .. } = rows;
     if !problems.list.is_empty() {
         return None;
     }
@@ -129,18 +185,25 @@ fn read_table(
     }
     let units = |number: usize| {
         let column = columns.iter().find(|column| column.holds == Holds::Coordinate(number));
-        column.map_or(FileUnits::SI, |column| column.units)
+        column.and_then(|column| column.units).unwrap_or(FileUnits::SI)
     };
-    let motion = through(name, times, values, ends, manipulator, units);
-    motion.map_err(|error| problems.report(last, 1, error.to_string())).ok()
+    let motion = through(name, times, values, options.ends, manipulator, units);
+    let motion = motion.map_err(|error| problems.report(last, 1, error.to_string())).ok()?;
+    Some(PoseTable { motion, doubts: doubts.into_iter().flatten().collect() })
 }
 
-/// What a column holds, and the units of its values.
+/// What a header is expected to be.
+fn expected(manipulator: &Manipulator) -> String {
+    let names: Vec<_> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
+    format!("expected a header of t and of task coordinates ({})", names.join(", "))
+}
+
+/// What a column holds, and the units of its values if its heading names any.
 #[derive(Clone, Copy)]
 struct Column {
     holds: Holds,
     quantity: Quantity,
-    units: FileUnits,
+    units: Option<FileUnits>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -148,13 +211,8 @@ enum Holds {
     Time,
     /// The task coordinate with this index.
     Coordinate(usize),
-    /// What follows from the pose, and is not read.
+    /// What follows from the pose or was not asked for, and is not read.
     Other,
-}
-
-/// Whether a table has columns of joints: then `opm` wrote it, with what follows from the poses beside them.
-fn has_joints(header: &str, manipulator: &Manipulator) -> bool {
-    cells(header).any(|(_, cell)| is_joint(Heading::parse(cell).name, manipulator))
 }
 
 fn is_joint(name: &str, manipulator: &Manipulator) -> bool {
@@ -167,101 +225,214 @@ fn follows(name: &str, manipulator: &Manipulator) -> bool {
     is_column(name) || is_joint(name, manipulator) || manipulator.refuse_following(name).is_err()
 }
 
-fn read_header(
-    number: usize,
-    header: &str,
-    manipulator: &Manipulator,
-    problems: &mut Problems,
-    expected: &dyn Fn() -> String,
-) -> Option<Vec<Column>> {
-    let coordinates = manipulator.task_coordinates();
-    let written = has_joints(header, manipulator);
-    let mut columns: Vec<Column> = Vec::new();
-    for (at, cell) in cells(header) {
-        let heading = Heading::parse(cell);
-        let found = coordinates.iter().position(|c| c.name == heading.name);
-        let (holds, quantity) = match (found, heading.name, heading.unit) {
-            (Some(number), ..) => (Holds::Coordinate(number), coordinates[number].quantity),
-            (None, "t", None | Some("s")) => (Holds::Time, Quantity::Length),
-            (None, name, _) if name != "t" && written && follows(name, manipulator) => {
-                (Holds::Other, Quantity::Length)
+/// The first line of a table.
+#[derive(Clone, Copy)]
+struct Header<'a> {
+    line: Line<'a>,
+    manipulator: &'a Manipulator,
+    options: &'a TableOptions<'a>,
+}
+
+impl Header<'_> {
+    /// What the columns hold; `None` with a problem.
+    fn columns(&self, problems: &mut Problems) -> Option<Vec<Column>> {
+        let Self { line, manipulator, options } = *self;
+        let number = line.number as usize;
+        if let Some(problem) = not_commas(line) {
+            problems.report(number, 1, problem);
+            return None;
+        }
+        let cells: Vec<_> = line.fields().map(String::from_utf8_lossy).collect();
+        let cells: Vec<&str> = cells.iter().map(|cell| &**cell).collect();
+        if cells.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+            problems.report(number, 1, format!("no header, {}", expected(manipulator)));
+            return None;
+        }
+        if let Some((name, heading)) = options.columns.and_then(|c| c.missing(&cells)) {
+            let headings =
+                cells.iter().map(|cell| quoted(cell).to_string()).collect::<Vec<_>>().join(", ");
+            let problem = format!("no column {heading:?} for {name}, the table has {headings}");
+            problems.report(number, 1, problem);
+            return None;
+        }
+        // With columns of joints it is a table that `opm` wrote, with what follows from the poses beside them.
+        let written = cells.iter().any(|cell| is_joint(Heading::parse(cell).name, manipulator));
+        let (mut columns, mut unknown) = (Vec::new(), Vec::new());
+        for (field, cell) in cells.iter().enumerate() {
+            let at = line.column(field);
+            let mut heading = Heading::parse(cell);
+            let named = options.columns.map(|columns| columns.name_of(heading, cell)).transpose();
+            let named = match named {
+                Ok(named) => named,
+                Err(problem) => {
+                    problems.report(number, at, format!("{}: {problem}", quoted(cell)));
+                    continue;
+                }
+            };
+            if let Some(Some(name)) = named {
+                heading.name = name;
             }
-            (None, name, _) => {
-                let problem = match (name, manipulator.refuse_following(name)) {
-                    ("t", _) => format!("{cell:?}, expected t or t [s]"),
-                    (name, Ok(())) => format!("no coordinate {name:?}, {}", expected()),
-                    (_, Err(follows)) => follows.to_string(),
-                };
-                problems.report(number, at, problem);
+            match self.column(heading, named.is_some_and(|name| name.is_none()), written) {
+                Ok(Some(column)) => {
+                    let twice = |other: &Column| other.holds == column.holds;
+                    if column.holds != Holds::Other && columns.iter().any(twice) {
+                        let name = heading.name;
+                        let expected = expected(manipulator);
+                        let problem = format!("two columns are called {name}, {expected}");
+                        problems.report(number, at, problem);
+                    }
+                    columns.push(column);
+                }
+                Ok(None) => unknown.push((at, *cell)),
+                Err(problem) => problems.report(number, at, problem),
+            }
+        }
+        let known = |holds| columns.iter().any(|column| column.holds == holds);
+        let first = unknown.first().map(|(at, _)| *at);
+        let what = match first {
+            Some(_) => {
+                let names: Vec<_> =
+                    unknown.iter().map(|(_, cell)| quoted(cell).to_string()).collect();
+                format!("no coordinate {}", names.join(", "))
+            }
+            None if !known(Holds::Time) && problems.list.is_empty() => "no column t".to_owned(),
+            None => String::new(),
+        };
+        if !what.is_empty() {
+            let names = manipulator.task_coordinates().iter().map(|c| c.name);
+            let suggestion = Suggestion::new(["t"].into_iter().chain(names), &cells);
+            let advice = (options.advice.columns)(&suggestion);
+            let problem = format!("{what}, {}{advice}", expected(manipulator));
+            problems.report(number, first.unwrap_or(1), problem);
+        }
+        problems.list.is_empty().then_some(columns)
+    }
+
+    /// What a column holds; `None` if its name is unknown.
+    fn column(
+        &self,
+        heading: Heading<'_>,
+        passed_over: bool,
+        written: bool,
+    ) -> Result<Option<Column>, String> {
+        let coordinates = self.manipulator.task_coordinates();
+        let other = Column { holds: Holds::Other, quantity: Quantity::Length, units: None };
+        if passed_over {
+            return Ok(Some(other));
+        }
+        let found = coordinates.iter().position(|c| c.name == heading.name);
+        match (found, heading.name, heading.unit) {
+            (Some(number), ..) => {
+                let quantity = coordinates[number].quantity;
+                let units = heading.units(quantity)?;
+                Ok(Some(Column { holds: Holds::Coordinate(number), quantity, units }))
+            }
+            (None, "t", None | Some("s")) => Ok(Some(Column { holds: Holds::Time, ..other })),
+            (None, "t", Some(unit)) => Err(format!("\"t [{unit}]\", expected t or t [s]")),
+            (None, name, _) if written && follows(name, self.manipulator) => Ok(Some(other)),
+            (None, name, _) => match self.manipulator.refuse_following(name) {
+                Err(follows) => Err(follows.to_string()),
+                Ok(()) => Ok(None),
+            },
+        }
+    }
+}
+
+/// The rows of a table that were read so far.
+struct Rows<'a> {
+    columns: &'a [Column],
+    clock: Clock<'a>,
+    times: Vec<f64>,
+    /// A column for each task coordinate; empty if it is not in the table.
+    values: Vec<Vec<f64>>,
+    /// For each column, what its values should look like if it names no unit, and by which name.
+    plausible: Vec<Option<(&'static str, Plausible)>>,
+    /// For each column, the doubt about it.
+    doubts: Vec<Option<(u64, String)>>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(columns: &'a [Column], manipulator: &Manipulator, options: &TableOptions<'a>) -> Self {
+        let coordinates = manipulator.task_coordinates();
+        let size = manipulator.characteristic_length();
+        let plausible = |column: &Column| match (column.holds, column.units) {
+            (Holds::Coordinate(number), None) => {
+                let c = &coordinates[number];
+                Some((c.name, Plausible::new(c.quantity, c.home, size, options.units)))
+            }
+            (Holds::Coordinate(_), Some(_)) | (Holds::Time | Holds::Other, _) => None,
+        };
+        Self {
+            columns,
+            clock: Clock::new(options.relative_time, options.advice.relative_time),
+            times: Vec::new(),
+            values: vec![Vec::new(); coordinates.len()],
+            plausible: columns.iter().map(plausible).collect(),
+            doubts: vec![None; columns.len()],
+        }
+    }
+
+    /// Reads a row. Returns whether it makes sense to read on: a table that is none of plain numbers tells the same of every
+    /// row.
+    fn take(&mut self, line: Line<'_>, problems: &mut Problems) -> bool {
+        let number = line.number as usize;
+        let first = problems.list.is_empty();
+        let (given, expected) = (line.fields().len(), self.columns.len());
+        if given != expected {
+            let cells = if given == 1 { "cell" } else { "cells" };
+            let hint = hint_of_row(line, expected);
+            let problem = format!("{given} {cells}, expected {expected} as in the header{hint}");
+            problems.report(number, 1, problem);
+            return hint.is_empty() || !first;
+        }
+        for (field, (cell, column)) in line.fields().zip(self.columns).enumerate() {
+            if column.holds == Holds::Other {
                 continue;
             }
-        };
-        let units = match holds {
-            Holds::Coordinate(_) => heading.units(quantity).map(Option::unwrap_or_default),
-            Holds::Time | Holds::Other => Ok(FileUnits::SI),
-        };
-        let units = units.unwrap_or_else(|problem| {
-            problems.report(number, at, problem);
-            FileUnits::SI
-        });
-        if holds != Holds::Other && columns.iter().any(|column| column.holds == holds) {
-            let problem = format!("two columns are called {}, {}", heading.name, expected());
-            problems.report(number, at, problem);
-        }
-        columns.push(Column { holds, quantity, units });
-    }
-    if columns.iter().all(|column| column.holds != Holds::Time) && problems.list.is_empty() {
-        problems.report(number, 1, format!("no column t, {}", expected()));
-    }
-    problems.list.is_empty().then_some(columns)
-}
-
-/// A line of the table, with the meaning of its columns.
-#[derive(Clone, Copy)]
-struct Row<'a> {
-    number: usize,
-    line: &'a str,
-    columns: &'a [Column],
-}
-
-fn read_row(row: Row<'_>, times: &mut Vec<f64>, values: &mut [Vec<f64>], problems: &mut Problems) {
-    let Row { number, line, columns } = row;
-    let mut found = 0;
-    for (at, cell) in cells(line) {
-        let Some(column) = columns.get(found) else {
-            found += 1;
-            continue;
-        };
-        found += 1;
-        if column.holds == Holds::Other {
-            continue;
-        }
-        let value: f64 = cell.parse().unwrap_or(f64::NAN);
-        if value.is_nan() || value.abs() > LARGEST {
-            let expected = format!("expected a finite number of at most {LARGEST:e}");
-            problems.report(number, at, format!("{cell:?}, {expected}"));
-            continue;
-        }
-        match column.holds {
-            Holds::Coordinate(coordinate) => {
-                values[coordinate].push(column.units.si(value, column.quantity));
-            }
-            Holds::Other => {}
-            Holds::Time => {
-                if let Some(&before) = times.last()
-                    && value <= before
-                {
-                    let problem = format!("t is {value} after {before}, expected a later time");
-                    problems.report(number, at, problem);
+            let at = line.column(field);
+            let cell = String::from_utf8_lossy(cell);
+            let value: f64 = cell.parse().unwrap_or(f64::NAN);
+            let time = column.holds == Holds::Time;
+            if value.is_nan() || value.abs() > LARGEST && !time {
+                let hint = hint(&cell);
+                let expected = format!("expected a finite number of at most {LARGEST:e}{hint}");
+                problems.report(number, at, format!("{}, {expected}", quoted(&cell)));
+                if time && first && !hint.is_empty() {
+                    return false;
                 }
-                times.push(value);
+                continue;
+            }
+            match column.holds {
+                Holds::Coordinate(coordinate) => {
+                    if let Some((name, plausible)) = &self.plausible[field]
+                        && self.doubts[field].is_none()
+                        && !plausible.holds(value)
+                    {
+                        self.doubts[field] = Some((line.number, plausible.column(name, value)));
+                    }
+                    let units = column.units.unwrap_or(FileUnits::SI);
+                    self.values[coordinate].push(units.si(value, column.quantity));
+                }
+                Holds::Other => {}
+                Holds::Time => match self.clock.seconds(&cell, value) {
+                    Ok(time) => {
+                        if let Some(&before) = self.times.last()
+                            && time <= before
+                        {
+                            let problem =
+                                format!("t is {time} after {before}, expected a later time");
+                            problems.report(number, at, problem);
+                        }
+                        self.times.push(time);
+                    }
+                    Err(problem) => {
+                        problems.report(number, at, problem);
+                        return !first;
+                    }
+                },
             }
         }
-    }
-    if found != columns.len() {
-        let (cells, expected) = (if found == 1 { "cell" } else { "cells" }, columns.len());
-        let problem = format!("{found} {cells}, expected {expected} as in the header");
-        problems.report(number, 1, problem);
+        true
     }
 }
 

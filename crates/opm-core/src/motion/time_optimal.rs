@@ -34,6 +34,9 @@ const ROUNDS: usize = 24;
 /// The largest number of intervals.
 const MOST_INTERVALS: usize = 1 << 20;
 
+/// Where rates and accelerations of an interval are compared with their limits.
+const QUARTERS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
 /// The ends of an interval are evaluated this share of it inside (far less than [`ROOM`]), because second derivatives may jump between intervals.
 const INSET: f64 = 1e-9;
 
@@ -137,8 +140,7 @@ impl PlatformMotion {
             grid.refine(&mut joints, &excesses)?;
             round += 1;
         }
-        // A clock that is slower by the factor k divides rates by k and accelerations by k². Between the quarters of an
-        // interval there is less above them than between its ends, of which the quarters tell.
+        // A clock that is slower by the factor k divides rates by k and accelerations by k².
         squares.iter_mut().for_each(|square| *square /= 1.0 + excess + EXCESS);
         let timing = Timing::new(grid.points.clone(), &squares, self.start)
             .map_err(|knot| TimingError::Singular { time: grid.points[knot] })?;
@@ -354,15 +356,17 @@ impl Grid {
         strips.retain(|strip| strip.c.is_finite());
     }
 
-    /// For each interval, by which share a square of a rate or an acceleration is above its limit, at the quarters.
+    /// For each interval, by which share a square of a rate or an acceleration is above its limit: at the quarters, and
+    /// between them where it has its peak there.
     fn excesses(&self, joints: &mut Joints<'_>, squares: &[f64]) -> Result<Vec<f64>, TimingError> {
         let mut excesses = Vec::with_capacity(self.intervals.len());
+        // Shares of the limits of each joint: of the square of its rate, and of its acceleration.
+        let mut shares = vec![[[0.0; QUARTERS.len()]; 2]; joints.limits.len()];
         for (i, Interval(ends)) in self.intervals.iter().enumerate() {
             let [from, to] = [self.points[i], self.points[i + 1]];
             let [x, y] = [squares[i], squares[i + 1]];
             let u = (y - x) / (2.0 * (to - from));
-            let mut excess = 0.0_f64;
-            for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            for (place, share) in QUARTERS.into_iter().enumerate() {
                 let square = x + share * (y - x);
                 let between;
                 let derivatives = match share {
@@ -373,13 +377,15 @@ impl Grid {
                         &between
                     }
                 };
-                for (limit, [first, second]) in joints.limits.iter().zip(derivatives) {
+                let each = joints.limits.iter().zip(derivatives).zip(&mut shares);
+                for ((limit, [first, second]), shares) in each {
                     let rate = first / limit.rate;
-                    let acceleration = (first * u + second * square) / limit.acceleration;
-                    excess = excess.max(rate * rate * square - 1.0).max(acceleration.abs() - 1.0);
+                    shares[0][place] = rate * rate * square;
+                    shares[1][place] = (first * u + second * square) / limit.acceleration;
                 }
             }
-            excesses.push(excess);
+            let most = shares.as_flattened().iter().map(peak).fold(0.0, f64::max);
+            excesses.push((most - 1.0).max(0.0));
         }
         Ok(excesses)
     }
@@ -404,6 +410,19 @@ impl Grid {
         (self.points, self.intervals) = (points, intervals);
         Ok(())
     }
+}
+
+/// The largest size of what has these values at equal distances: of the values, and of the peaks of the parabolas through
+/// three of them.
+fn peak(values: &[f64; QUARTERS.len()]) -> f64 {
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    values.windows(3).fold(largest, |largest, three| {
+        let (rise, bend) = (three[2] - three[0], three[2] - 2.0 * three[1] + three[0]);
+        match rise.abs() < 2.0 * bend.abs() {
+            true => largest.max((three[1] - rise * rise / (8.0 * bend)).abs()),
+            false => largest,
+        }
+    })
 }
 
 impl Interval {

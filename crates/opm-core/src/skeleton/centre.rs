@@ -1,7 +1,7 @@
 //! Where on its axis a joint is drawn.
 //!
 //! A joint is drawn at the point that the mechanism gives, with two exceptions. A slider is drawn
-//! at the joint that it carries. Axes through one centre (the joints of a spherical section) are
+//! at the joint that it carries, if that joint is on its line or was given the same point. Axes through one centre (the joints of a spherical section) are
 //! drawn at equal distances from the centre, because otherwise their links would have no length.
 
 use crate::decomposition::mobility::frame;
@@ -57,13 +57,22 @@ pub(super) fn centres(mechanism: &Mechanism, size: f64) -> Vec<Vec<Point3<f64>>>
                 centres[i] = joint.point + if behind { -out } else { out };
             }
         }
-        for i in (0..leg.joints.len().saturating_sub(1)).rev() {
-            let joint = &leg.joints[i];
-            if joint.kind == JointKind::Prismatic {
-                let foot = foot(joint, &centres[i + 1]);
-                if (foot - centres[i + 1]).norm() <= touch {
-                    centres[i] = foot;
-                }
+        let slides = |i: usize| leg.joints[i].kind == JointKind::Prismatic;
+        let meets = |i: usize, j: usize| (given[number][i] - given[number][j]).norm() <= touch;
+        let count = leg.joints.len();
+        for i in (0..count.saturating_sub(1)).rev().filter(|&i| slides(i)) {
+            let foot = foot(&leg.joints[i], &centres[i + 1]);
+            if (foot - centres[i + 1]).norm() <= touch {
+                centres[i] = foot;
+            } else if meets(i, i + 1) {
+                centres[i] = centres[i + 1];
+            }
+        }
+        // Sliders that carry the platform alone are drawn at the joint that carries them.
+        let outer = (0..count).rposition(|i| !slides(i)).map_or(count, |last| last + 1);
+        for i in outer..count {
+            if meets(i, outer - 1) {
+                centres[i] = centres[outer - 1];
             }
         }
     }

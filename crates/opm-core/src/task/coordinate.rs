@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 /// have it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CoordinateKind {
-    /// `x`: the reference point along a plane's first direction.
+    /// `x`: the frame's centre along a plane's first direction.
     X,
-    /// `y`: the reference point along a plane's second direction.
+    /// `y`: the frame's centre along a plane's second direction.
     Y,
     /// `z`: along a cylinder's axis; the height of a Schoenflies section; along the third direction of a translational
     /// space.
@@ -142,7 +142,7 @@ impl TaskCoordinate {
     }
 }
 
-/// The coordinates of `v`. The values of lengths at home are the coordinates of the reference point.
+/// The coordinates of `v`. The values of lengths at home are the coordinates of the frame's centre.
 pub(super) fn of_lower(frame: &Subspace, shared: Option<MotionType>) -> Vec<TaskCoordinate> {
     use CoordinateKind::{Mu, Nu, Psi, Theta, X, Xi, Y, Z, Zeta};
     let at = frame.home();
@@ -163,7 +163,7 @@ pub(super) fn of_lower(frame: &Subspace, shared: Option<MotionType>) -> Vec<Task
     }
 }
 
-/// The coordinates of `b`. The values of lengths at home are the coordinates of the reference point.
+/// The coordinates of `b`. The values of lengths at home are the coordinates of the frame's centre.
 pub(super) fn of_upper(frame: &Subspace, shared: Option<MotionType>) -> Vec<TaskCoordinate> {
     use CoordinateKind::{H, Phi, Psi, W, X, Xi, Y, Z, Zeta};
     let at = frame.home();
@@ -184,7 +184,7 @@ pub(super) fn of_upper(frame: &Subspace, shared: Option<MotionType>) -> Vec<Task
     }
 }
 
-/// The coordinate that tells the height of a section, and its place: after those that move the reference point in the
+/// The coordinate that tells the height of a section, and its place: after those that move the centre in the
 /// plane. `lower` has the coordinates of the lower section.
 pub(super) fn of_height(
     frame: &Subspace,

@@ -20,8 +20,8 @@ impl Meeting {
         self.intersection.as_ref().map(IntersectionAxis::motion_type)
     }
 
-    /// The reference point: on the axis of the intersection motion where that is a line, else the platform's own.
-    fn reference(&self) -> Point3<f64> {
+    /// The platform's reference point, moved onto the axis of the intersection motion where that is a line.
+    fn centre(&self) -> Point3<f64> {
         match &self.intersection {
             Some(IntersectionAxis { direction, point: Some(p) }) => {
                 p + direction.into_inner() * direction.dot(&(self.platform - p))
@@ -43,22 +43,20 @@ pub(super) fn lay(
     meeting: &Meeting,
     hints: &FrameHints,
 ) -> Result<Subspace, TaskError> {
-    let (reference, shared) = (meeting.reference(), meeting.shared());
+    let (centre, shared) = (meeting.centre(), meeting.shared());
     let rotation = shared == Some(MotionType::Rotation);
     let (kind, at_home, normal) = match class {
-        SubspaceClass::Identity => (SubspaceKind::Identity, reference, Vector3::z_axis()),
+        SubspaceClass::Identity => (SubspaceKind::Identity, centre, Vector3::z_axis()),
         // A Schoenflies section is a planar one at a height.
-        SubspaceClass::Planar { normal } | SubspaceClass::Schoenflies { axis: normal } => (
-            SubspaceKind::Planar,
-            reference,
-            if rotation { meeting.third(*normal) } else { *normal },
-        ),
-        SubspaceClass::Spherical { centre } => {
+        SubspaceClass::Planar { normal } | SubspaceClass::Schoenflies { axis: normal } => {
+            (SubspaceKind::Planar, centre, if rotation { meeting.third(*normal) } else { *normal })
+        }
+        SubspaceClass::Spherical { centre: middle } => {
             let pole = hints.axis.map_or(Vector3::z_axis(), Unit::new_normalize);
-            (SubspaceKind::Spherical, *centre, meeting.third(pole))
+            (SubspaceKind::Spherical, *middle, meeting.third(pole))
         }
         SubspaceClass::Cylindrical { axis: line, point } => {
-            let on_axis = point + line.into_inner() * line.dot(&(reference - point));
+            let on_axis = point + line.into_inner() * line.dot(&(centre - point));
             let hinted = match hints.axis {
                 Some(hint) if hint.dot(line) < 0.0 => -*line,
                 Some(_) => *line,
@@ -67,11 +65,11 @@ pub(super) fn lay(
             (SubspaceKind::Cylindrical, on_axis, meeting.third(hinted))
         }
         SubspaceClass::TranslationalPlane { normal } => {
-            (SubspaceKind::TranslationalPlane, reference, *normal)
+            (SubspaceKind::TranslationalPlane, centre, *normal)
         }
         SubspaceClass::TranslationalSpace => {
             let third = hints.axis.map_or(Vector3::z_axis(), Unit::new_normalize);
-            (SubspaceKind::TranslationalSpace, reference, meeting.third(third))
+            (SubspaceKind::TranslationalSpace, centre, meeting.third(third))
         }
         SubspaceClass::Rotation { .. }
         | SubspaceClass::Translation { .. }
@@ -99,9 +97,15 @@ pub(super) fn lay(
             let third = given.unwrap_or_else(|| standing(normal, beside(&normal)));
             triad(Unit::new_normalize(w.cross(&third)), third)
         } else {
-            let first = hints.perpendicular(TaskKey::X(section), normal)?;
-            let first = first.unwrap_or_else(|| beside(&normal));
             let free = flat && !rotation;
+            let hint = hints.perpendicular(TaskKey::X(section), normal)?;
+            // The third direction of a free plane is chosen with the first one; a cylinder has no coordinate along that.
+            let fixed = (rotation && kind != SubspaceKind::Cylindrical)
+                || kind == SubspaceKind::TranslationalSpace;
+            let first = hint.unwrap_or_else(|| match fixed {
+                true => beside_upright(&normal),
+                false => beside(&normal),
+            });
             let third = if free { standing(normal, first) } else { normal };
             triad(first, given.unwrap_or(third))
         };
@@ -121,6 +125,13 @@ fn beside(third: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
     const STEEP: f64 = 0.995;
     let base = if third.x.abs() > STEEP { Vector3::y() } else { Vector3::x() };
     Unit::new_normalize(base - third.into_inner() * third.dot(&base))
+}
+
+/// The same, in that of its two senses for which the sum of the third and the second direction points up: where the plane is
+/// upright, the second direction does. The third direction has its sense already.
+fn beside_upright(third: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
+    let first = beside(third);
+    if points_up(&(third.into_inner() + third.cross(&first))) { first } else { -first }
 }
 
 /// The right-handed frame with this first and third direction, which must be perpendicular.

@@ -210,6 +210,33 @@ impl Task {
         }
     }
 
+    /// Replaces the angles of which this coordinate is the second one by the others with which the pose is the same:
+    /// `zeta + π`, `-xi`, `psi + π`; or `mu + π`, `π - nu`. There are no others of a coordinate of another kind.
+    pub(crate) fn take_other_angles(&self, second: usize, pose: &mut [f64]) {
+        let home = |i: usize| self.coordinates[i].home;
+        match self.coordinates[second].kind() {
+            CoordinateKind::Xi | CoordinateKind::Tilt => {
+                let numbers = [second - 1, second, second + 1];
+                let euler = other_triple(self.angles.to_euler(numbers.map(|i| pose[i])));
+                for (i, angle) in numbers.into_iter().zip(self.angles.of_euler(euler)) {
+                    pose[i] = near(angle, home(i));
+                }
+            }
+            CoordinateKind::Nu => {
+                let [mu, nu] = [second - 1, second];
+                let angles = [pose[mu] + PI, home(nu) + PI - (pose[nu] - home(nu))];
+                // Rx(mu + π) Ry(π - nu) = Rx(mu) Ry(nu) Rz(π): the upper section takes the half turn back.
+                let (v, b) = self.sections(pose);
+                let b = self.upper_intersection.before(&b, JointDisplacement::Value(-PI));
+                let mut other = Vec::with_capacity(pose.len());
+                self.append(&(v, b, self.rise(pose)), |r, home| self.angles(r, home), &mut other);
+                pose.copy_from_slice(&other);
+                [pose[mu], pose[nu]] = [near(angles[0], home(mu)), near(angles[1], home(nu))];
+            }
+            _ => {}
+        }
+    }
+
     /// Replaces a negative tilt by the opposite azimuth.
     pub(crate) fn make_tilt_positive(&self, pose: &mut [f64]) {
         let tilt = self.coordinates.iter().position(|c| c.kind() == CoordinateKind::Tilt);
@@ -348,6 +375,12 @@ fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
     nearer_triple(with_sine(r, sine), home)
 }
 
+/// The other triple of Euler angles `zeta xi psi` of the same rotation.
+#[inline(always)]
+pub(crate) fn other_triple([zeta, xi, psi]: [f64; 3]) -> [f64; 3] {
+    [zeta + PI, -xi, psi + PI]
+}
+
 /// Of the two triples of Euler angles of a rotation, of which one is given, the one nearest to `home`.
 #[inline(always)]
 fn nearer_triple([zeta, xi, psi]: [f64; 3], home: [f64; 3]) -> [f64; 3] {
@@ -356,7 +389,7 @@ fn nearer_triple([zeta, xi, psi]: [f64; 3], home: [f64; 3]) -> [f64; 3] {
         let [a, b, c] = [angles[0] - home[0], angles[1] - home[1], angles[2] - home[2]];
         a * a + b * b + c * c
     };
-    let (plain, other) = (placed([zeta, xi, psi]), placed([zeta + PI, -xi, psi + PI]));
+    let (plain, other) = (placed([zeta, xi, psi]), placed(other_triple([zeta, xi, psi])));
     let nearer = distance(&other) < distance(&plain);
     let chosen = |i: usize| if nearer { other[i] } else { plain[i] };
     [chosen(0), chosen(1), chosen(2)]

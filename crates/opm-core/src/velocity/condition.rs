@@ -3,7 +3,7 @@
 use super::weighted::{Metric, Weighted};
 use super::{Jacobians, SingularCause, SingularLeg};
 use crate::manipulator::Manipulator;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector3};
 
 /// A singular value below this share of the largest counts as zero: the rounding of the few dozen operations
 /// that lead to it.
@@ -14,6 +14,11 @@ const RANK: f64 = 1e-13;
 /// The velocity of the platform's reference point and the rates of sliders are divided by the
 /// characteristic length. So both numbers have no unit. They do not depend on the coordinates that the
 /// pose is written in, on where the mechanism stands, nor on how large it is.
+///
+/// In a five-bar the platform is one of the forearms, and its rotation follows from where the hand is. Then the velocity
+/// of a point stands for the platform's twist, so that both arms are seen alike: of the reference point in a plane, and
+/// on the axis of the joint that joins the forearms on a sphere. More exactly, these are the mechanisms in one planar
+/// subspace whose pose is `x` and `y` alone, and those of two driven legs in one spherical subspace with two freedoms.
 ///
 /// ```
 /// use opm_core::Manipulator;
@@ -99,13 +104,17 @@ impl Manipulator {
         jacobians: &Jacobians,
         length: f64,
     ) -> Conditioning {
-        let platform =
-            std::array::from_fn(|i| std::array::from_fn(|k| [jacobians.platform[(k, i)]]));
-        let metric = Metric::<N, 1>::new(&platform, length.recip());
-        let mut weighted = Weighted::new(&metric);
         let entries = |matrix: &DMatrix<f64>, row: usize| {
             std::array::from_fn(|column| [matrix[(row, column)]])
         };
+        let mut platform: [[[f64; 1]; 6]; N] =
+            std::array::from_fn(|i| std::array::from_fn(|k| [jacobians.platform[(k, i)]]));
+        let scale = length.recip();
+        if let Some(offset) = &self.judged_at {
+            of_point(&mut platform, offset, &entries(&jacobians.locked, 0), scale);
+        }
+        let metric = Metric::<N, 1>::new(&platform, scale);
+        let mut weighted = Weighted::new(&metric);
         for &coordinate in self.actuated() {
             let quantity = self.coordinates()[coordinate].quantity;
             weighted.push(entries(&jacobians.joints, coordinate), quantity);
@@ -113,5 +122,30 @@ impl Manipulator {
         let locked = (0..jacobians.locked.nrows()).map(|row| entries(&jacobians.locked, row));
         let [found] = weighted.conditioning(locked);
         found
+    }
+}
+
+/// Turns the platform's twists `(ω; v)` for the components of the section twist into what stands for them: the velocity of
+/// a point. With the rate of the joint that the constraining leg lacks beside it, all components count. That rate is zero
+/// wherever the platform can move, so that its scale does not matter; it is that of the velocities.
+#[inline(always)]
+pub(super) fn of_point<const N: usize, const L: usize>(
+    platform: &mut [[[f64; L]; 6]; N],
+    offset: &Vector3<f64>,
+    locked: &[[f64; L]; N],
+    scale: f64,
+) {
+    for lane in 0..L {
+        let (mut velocities, mut rates) = (0.0, 0.0);
+        for (column, locked) in platform.iter_mut().zip(locked) {
+            let of = |first: usize| Vector3::from_fn(|k, _| column[first + k][lane]);
+            let velocity = of(3) + of(0).cross(offset);
+            let all = [locked[lane], 0.0, 0.0, velocity.x, velocity.y, velocity.z];
+            column.iter_mut().zip(all).for_each(|(to, value)| to[lane] = value);
+            velocities += velocity.norm_squared();
+            rates += locked[lane] * locked[lane];
+        }
+        let weight = scale * (velocities / rates).sqrt();
+        platform.iter_mut().for_each(|column| column[0][lane] *= weight);
     }
 }

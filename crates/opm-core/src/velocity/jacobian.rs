@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, Matrix6xX, Point3, Vector3};
 ///   motion is a translation, the component along it is left out.
 /// * `lower`: the twist `v⁻¹ v̇` of the lower section, in the frame of [`Task::lower`] as it has
 ///   moved with `v`, of the same form. Where the intersection motion is a rotation, the
-///   component along it is left out. In a plane that is the velocity of the reference point.
+///   component along it is left out. In a plane that is the velocity of the frame's centre.
 /// * the rate of the height, if one of the two is a Schoenflies section.
 ///
 /// Rates are those of the coordinates as they are reported: rad/s and m/s.

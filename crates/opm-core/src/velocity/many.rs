@@ -8,6 +8,7 @@
 mod leg;
 mod platform;
 
+use super::condition::of_point;
 use super::jacobian::Basis;
 use super::weighted::{Metric, Weighted};
 use crate::chain::Chain;
@@ -15,6 +16,7 @@ use crate::manipulator::batch::Batch;
 use crate::manipulator::batch::lanes::{Column, LANES, Lanes, Mask};
 use crate::manipulator::{Choices, LARGEST, Manipulator, Mode};
 use leg::{BranchRows, LegRows, RowJoint, locked};
+use nalgebra::Vector3;
 use platform::PlatformColumns;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
@@ -276,7 +278,11 @@ impl Conditions<'_> {
         let scale = self.query.length.recip();
         let mut metric = None;
         for start in (0..self.count).step_by(L) {
-            // The platform's twist depends on the upper section alone.
+            // The platform's twist depends on the upper section alone; which motions a leg lets it make, on the branch.
+            if RESTRICTED && let Some(offset) = &self.manipulator.judged_at {
+                self.combine_by_point::<N, L>(start, offset, scale);
+                continue;
+            }
             if metric.is_none() || !self.batch.block.one_upper() {
                 let Work { platform, basis, .. } = &*self.work;
                 metric = Some(Metric::new(&platform.chunk::<N, L>(basis, start), scale));
@@ -296,6 +302,46 @@ impl Conditions<'_> {
                 }
             }
         }
+    }
+
+    /// Combines the branches of a chunk where the velocity of a point stands for the platform's twist.
+    #[inline(always)]
+    fn combine_by_point<const N: usize, const L: usize>(
+        &mut self,
+        start: usize,
+        offset: &Vector3<f64>,
+        scale: f64,
+    ) {
+        self.work.choice.fill(0);
+        loop {
+            let (mask, any) = self.asked::<L>(start);
+            if any {
+                let Work { platform, basis, locked, .. } = &*self.work;
+                let mut twists = platform.chunk::<N, L>(basis, start);
+                of_point(&mut twists, offset, &self.rates_of(&locked[0], start), scale);
+                let found = self.conditions(&Metric::new(&twists, scale), start, locked);
+                self.admit(start, &mask, &found);
+            }
+            if !self.work.choose_next() {
+                break;
+            }
+        }
+    }
+
+    /// The rates of a row in the present mode, for each component of the section twist.
+    #[inline(always)]
+    fn rates_of<const N: usize, const L: usize>(
+        &self,
+        &(leg, row): &(usize, usize),
+        start: usize,
+    ) -> [[f64; L]; N] {
+        let Work { branches, choice, .. } = &*self.work;
+        let found = &branches[leg][choice[leg]].rows[row].rates;
+        let mut rates = [[0.0; L]; N];
+        for (rates, found) in rates.iter_mut().zip(found) {
+            rates.copy_from_slice(&found[start..start + L]);
+        }
+        rates
     }
 
     /// Which poses of a chunk the present mode reaches that are still asked for, and whether there are any.
@@ -325,14 +371,7 @@ impl Conditions<'_> {
         locked: &[(usize, usize)],
     ) -> [f64; L] {
         let Work { branches, choice, places, .. } = &*self.work;
-        let rates_of = |&(leg, row): &(usize, usize)| {
-            let found = &branches[leg][choice[leg]].rows[row].rates;
-            let mut rates = [[0.0; L]; N];
-            for (rates, found) in rates.iter_mut().zip(found) {
-                rates.copy_from_slice(&found[start..start + L]);
-            }
-            rates
-        };
+        let rates_of = |place: &(usize, usize)| self.rates_of(place, start);
         let mut weighted = Weighted::new(metric);
         for (&coordinate, place) in self.manipulator.actuated().iter().zip(places) {
             weighted.push(rates_of(place), self.manipulator.coordinates()[coordinate].quantity);

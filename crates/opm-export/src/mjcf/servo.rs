@@ -13,7 +13,7 @@ use opm_core::skeleton::{Body, Mass};
 use std::f64::consts::TAU;
 
 /// The natural frequency of a servo on its load, radians per second: 20 Hz.
-const FREQUENCY: f64 = 20.0 * TAU;
+pub const FREQUENCY: f64 = 20.0 * TAU;
 /// A reference that is this many seconds ahead makes up for the lag of a servo: its damping over its stiffness.
 pub const LEAD: f64 = 2.0 / FREQUENCY;
 /// The inertia of a motor, as a share of its load.

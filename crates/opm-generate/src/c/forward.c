@@ -1,39 +1,31 @@
 int NAME_forward(const NAME_geometry *g, const NAME_real actuated[], unsigned mode, NAME_real pose[], NAME_real *residual)
 {
-    DRIVEN
-    UNITS
-    const int width = NAME_COORDINATES + 1;
-    real values[NAME_ACTUATED], off[NAME_ACTUATED], next[NAME_COORDINATES], step[NAME_COORDINATES];
-    real jacobian[NAME_JOINTS * NAME_COORDINATES], a[NAME_ACTUATED * (NAME_COORDINATES + 1)];
-    int i, j, iteration, closer = 1;
+    real values[NAME_ACTUATED], off[NAME_ACTUATED], next[NAME_COORDINATES], a[ROWS * WIDTH], step[UNKNOWNS];
+    STATE
+    int j, iteration, closer = 1;
     int status = NAME_numbers(actuated, NAME_ACTUATED);
     *residual = (real)INFINITY;
     RETURN
     status = NAME_actuated(g, pose, mode, values);
     RETURN
+    START
     *residual = NAME_off(g, actuated, values, off);
     for (iteration = 0; iteration < 50 && closer && *residual > NAME_REACH; ++iteration) {
-        real share = 1;
+        real longest = 0, share;
         int halvings;
-        status = NAME_jacobian(g, pose, mode, jacobian);
+        status = NAME_linearise(g, pose, mode, off, QUERIED a);
         RETURN
-        for (i = 0; i < NAME_ACTUATED; ++i) {
-            const real size = g->joint[driven[i]].size;
-            for (j = 0; j < NAME_COORDINATES; ++j) {
-                a[i * width + j] = jacobian[driven[i] * NAME_COORDINATES + j] * unit[j] / size;
-            }
-            a[i * width + NAME_COORDINATES] = off[i] / size;
-        }
-        if (NAME_eliminate(a, NAME_ACTUATED, NAME_COORDINATES, 1, step)) {
+        if (NAME_eliminate(a, ROWS, UNKNOWNS, 1, step)) {
             return 2 * NAME_LEGS + 1;
         }
-        /* Half of the step, until it leads closer. */
+        for (j = 0; j < UNKNOWNS; ++j) {
+            longest = NAME_max(longest, NAME_abs(step[j]));
+        }
+        /* Half of the step, until it leads closer. A long one leads astray. */
+        share = (real)0.5 / NAME_max(longest, (real)0.5);
         closer = 0;
         for (halvings = 0; halvings < 30 && !closer; ++halvings) {
-            for (j = 0; j < NAME_COORDINATES; ++j) {
-                next[j] = pose[j] + share * unit[j] * step[j];
-            }
-            if (NAME_actuated(g, next, mode, values) == 0) {
+            STEP
                 const real distance = NAME_off(g, actuated, values, off);
                 if (distance < *residual) {
                     closer = 1;

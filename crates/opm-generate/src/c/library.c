@@ -1180,6 +1180,73 @@ static inline NAME_screws NAME_euler_screws(real zeta, real xi)
     return s;
 }
 
+/* The rotation of a rotation vector. */
+static inline NAME_rotation NAME_rotation_by(NAME_vector w)
+{
+    return NAME_rotation_about(NAME_normal_vector(w), NAME_unit(NAME_sqrt(NAME_dot(w, w))));
+}
+
+/* Replaces three columns of rates, from the first on, which belong to rotations about the directions of a frame, by those of
+   three angles with these screws. */
+static void NAME_by_angles(real rates[], int rows, int columns, int first, NAME_vector s1, NAME_vector s2, NAME_vector s3)
+{
+    int i;
+    for (i = 0; i < rows; ++i) {
+        const int at = i * columns + first;
+        const NAME_vector rate = NAME_vector_of(rates[at], rates[at + 1], rates[at + 2]);
+        rates[at] = NAME_dot(s1, rate);
+        rates[at + 1] = NAME_dot(s2, rate);
+        rates[at + 2] = NAME_dot(s3, rate);
+    }
+}
+
+/* The Euler angles of a rotation of which the second one is not negative. Where it is zero or half a revolution, to within
+   rounding, the first one is free, and given. */
+static NAME_vector NAME_euler_angles(NAME_rotation r, real first)
+{
+    const real sine = NAME_sqrt(r.z.x * r.z.x + r.z.y * r.z.y);
+    const NAME_complex z = sine < 4 * NAME_REACH ? NAME_unit(first) : NAME_normal(NAME_complex_of(r.z.x, r.z.y));
+    /* The third one is what the first one leaves. */
+    const NAME_complex rest = NAME_complex_of(z.re * r.y.y - z.im * r.y.x, z.re * r.x.y - z.im * r.x.x);
+    return NAME_vector_of(NAME_angle(z), NAME_atan2(sine, r.z.z), NAME_angle(rest));
+}
+
+/* One of the two triples of Euler angles of a rotation, 0 or 1, with the revolutions nearest to others. */
+static NAME_vector NAME_euler_in(NAME_rotation r, NAME_vector near, int chart)
+{
+    const NAME_vector a = NAME_euler_angles(r, chart > 0 ? near.x + NAME_PI : near.x);
+    const NAME_vector b = chart > 0 ? NAME_vector_of(a.x + NAME_PI, -a.y, a.z + NAME_PI) : a;
+    return NAME_vector_of(NAME_near(b.x, near.x), NAME_near(b.y, near.y), NAME_near(b.z, near.z));
+}
+
+/* The Euler angles of a rotation nearest to others. */
+static NAME_vector NAME_euler_near(NAME_rotation r, NAME_vector near)
+{
+    const NAME_vector a = NAME_euler_in(r, near, 0), b = NAME_euler_in(r, near, 1);
+    const NAME_vector of_a = NAME_add(a, -1, near), of_b = NAME_add(b, -1, near);
+    return NAME_dot(of_b, of_b) < NAME_dot(of_a, of_a) ? b : a;
+}
+
+/* The same for azimuth, tilt and torsion, which is the sum of the first and the third Euler angle. */
+static NAME_vector NAME_torsion_in(NAME_rotation r, NAME_vector near, int chart)
+{
+    const NAME_vector a = NAME_euler_in(r, NAME_vector_of(near.x, near.y, near.z - near.x), chart);
+    return NAME_vector_of(a.x, a.y, NAME_near(a.x + a.z, near.z));
+}
+
+/* The azimuth, the tilt, which is not negative, and the torsion of a rotation, nearest to others. */
+static NAME_vector NAME_torsion_near(NAME_rotation r, NAME_vector near)
+{
+    const NAME_vector a = NAME_euler_angles(r, near.x);
+    return NAME_vector_of(NAME_near(a.x, near.x), a.y, NAME_near(a.x + a.z, near.z));
+}
+
+/* How far two rotations are apart: four times the square of the sine of half the angle between them. */
+static real NAME_apart(NAME_rotation r, NAME_rotation s)
+{
+    return 3 - NAME_dot(r.x, s.x) - NAME_dot(r.y, s.y) - NAME_dot(r.z, s.z);
+}
+
 /* Solves linear equations in unknowns, with right sides behind the coefficients in each row, by elimination with complete
    pivoting. There are at least as many equations as unknowns; those that are left over must follow from the others. Row i of x
    has unknown i for each right side. Coefficients are compared with one. It returns 1 where the unknowns are not determined. */

@@ -6,6 +6,7 @@
 //! coordinates that follow from the others ([`follow`]).
 
 mod follow;
+mod motions;
 mod screws;
 
 use super::Writer;
@@ -15,6 +16,16 @@ use super::pose::{kind, numbers, word};
 use opm_core::manipulator::Section;
 use screws::ZERO;
 use std::fmt::Write;
+
+/// What the columns of rates belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Columns {
+    /// The coordinates.
+    Coordinates,
+    /// The same, but for the Euler angles, which are singular: in their place are the rotations about the directions of
+    /// the section's frame.
+    Motions,
+}
 
 /// The rates of one leg: its function, how it is called, and how many joints it lacks.
 struct LegRates {
@@ -26,6 +37,7 @@ struct LegRates {
 impl Writer<'_> {
     /// The functions of the Jacobian and of the rates.
     pub fn rates(&self) -> String {
+        let columns = if self.turns() { Columns::Motions } else { Columns::Coordinates };
         let mut first_lacking = 0;
         let mut legs = Vec::new();
         for number in 0..self.forms.legs.len() {
@@ -38,12 +50,19 @@ impl Writer<'_> {
         let all = self.task.coordinates.len();
         let mut body = format!("    NAME_displacements at;\n    NAME_twists t[{all}];\n");
         if self.dependent() {
-            let _ = writeln!(body, "    real locked[{}];", (first_lacking * all).max(1));
+            if !self.turns() {
+                let _ = writeln!(body, "    real locked[{}];", (first_lacking * all).max(1));
+            }
             body += UNMET;
         }
-        let columns = self.columns();
+        let columns = self.columns(columns);
         let complete = format!("    status = NAME_complete(g, pose, mode, q, unmet);\n{RETURN}");
-        body += &self.prelude(&calls, &complete);
+        let prelude = self.prelude(&calls, &complete);
+        // The motions are given together with the coordinates that they start from.
+        body += &match self.turns() {
+            true => prelude.replacen(&format!("    real q[{all}];\n"), "", 1),
+            false => prelude,
+        };
         let _ = write!(body, "    status = NAME_close(g, pose, mode, &at);\n{RETURN}");
         body += &match self.dependent() {
             true => columns,
@@ -59,24 +78,32 @@ impl Writer<'_> {
                 );
             }
         }
-        let dependent = self.dependent();
-        if dependent {
+        let (dependent, turns) = (self.dependent(), self.turns());
+        if dependent && !turns {
             body += &self.eliminated(first_lacking);
-        } else {
+        } else if !turns {
             body = body.replace(", all", ", jacobian");
         }
         let unused = if uses(&calls, "at") { "" } else { "    (void)at;\n" };
-        let output = if dependent { "all" } else { "jacobian" };
-        let none = match calls.is_empty() {
+        let output = if dependent || turns { "all" } else { "jacobian" };
+        let mut none = match calls.is_empty() {
             true => format!("    (void)t;\n    (void){output};\n"),
             false => String::new(),
         };
-        let body = format!("{body}{unused}{none}    return 0;\n");
+        if dependent && turns && first_lacking == 0 {
+            none += "    (void)locked;\n";
+        }
+        let mut body = format!("{body}{unused}{none}    return 0;\n");
         let head = "int NAME_jacobian(const NAME_geometry *g, const NAME_real pose[], unsigned mode,\n                 \
              NAME_real jacobian[NAME_JOINTS * NAME_COORDINATES])\n";
+        let mut motions = String::new();
+        if turns {
+            motions = self.motions(&body);
+            body = self.by_coordinates(first_lacking);
+        }
         let jacobian = match dependent {
-            true => self.of_independent(head, &body),
-            false => format!("{head}{{\n{body}}}\n\n"),
+            true => motions + &self.of_independent(head, &body),
+            false => format!("{motions}{head}{{\n{body}}}\n\n"),
         };
         format!(
             "{functions}{jacobian}\
@@ -90,13 +117,13 @@ impl Writer<'_> {
         )
     }
 
-    /// Statements that give the twists `t` of the sections for a unit rate of each coordinate.
-    pub fn columns(&self) -> String {
+    /// Statements that give the twists `t` of the sections for a unit of each column.
+    pub fn columns(&self, of: Columns) -> String {
         let mut text = String::new();
         let count = self.task.coordinates.len();
         let mut twists = vec![[ZERO.to_owned(), ZERO.to_owned(), "0".to_owned()]; count];
         for (place, section) in [Section::Lower, Section::Upper].into_iter().enumerate() {
-            let screws = self.coordinate_screws(section, &mut text);
+            let screws = self.coordinate_screws(section, of, &mut text);
             for (number, screw) in numbers(self.task, &self.forms, section).into_iter().zip(screws)
             {
                 twists[number][place] = screw;

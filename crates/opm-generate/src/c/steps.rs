@@ -459,6 +459,6 @@ fn placed(text: &str, section: Section) -> String {
     text.replace(MISSED, "missed")
 }
 
-fn indented(text: &str) -> String {
+pub fn indented(text: &str) -> String {
     text.lines().map(|line| format!("    {line}\n")).collect()
 }

@@ -3,6 +3,7 @@
 use super::Writer;
 use super::interface::{RETURN, UNMET, with_unused};
 use super::pose::kind;
+use super::rates::Columns;
 use opm_core::group::SubspaceKind;
 use opm_core::manipulator::Section;
 use std::fmt::Write;
@@ -47,7 +48,7 @@ impl Writer<'_> {
                 "    status = NAME_differentiate(g, pose, mode, joints, follow);\n{RETURN}"
             );
         }
-        let columns = self.columns();
+        let columns = self.columns(Columns::Coordinates);
         body += &if dependent { columns } else { columns.replace("q[", "pose[") };
         body += &self.places(upper, height);
         let _ = writeln!(body, "    for (i = 0; i < {count}; ++i) {{");

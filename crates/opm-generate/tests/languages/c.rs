@@ -1,13 +1,13 @@
 //! Generated C, compiled and compared with `opm-core`.
 
 use crate::comparison::{
-    compare_all, float_closes_every_leg, reach_ends_where_it_does_for_opm, unit,
+    compare_all, float_closes_every_leg, forward_leads_from_home, reach_ends_where_it_does_for_opm,
 };
-use crate::compiled::{Compiled, Real, compiled_by, compilers_with, linuxcnc, programs_of};
+use crate::compiled::{Compiled, Real, compiled_by, compilers_with, programs_of};
 use crate::drawn::{Drawn, covering, shipped};
 use crate::program::Program;
 use fastrand::Rng;
-use opm_core::{Manipulator, Mode, Quantity};
+use opm_core::{Manipulator, Mode};
 
 /// Poses of each shipped mechanism, and of each random one: 10⁵ with those of the other languages.
 const POSES: [usize; 2] = [3_000, 200];
@@ -21,6 +21,7 @@ fn shipped_mechanisms_are_solved_as_by_opm() {
     let Some(program) = Compiled::new(&all, Real::Double, &["-O2"]) else { return };
     compare_all(&program, &all, POSES[0], 1);
     reach_ends_where_it_does_for_opm(&program, &all, 60);
+    forward_leads_from_home(&program, &all, 400, 5);
 }
 
 /// Of every pair of subspaces, with limits, spherical and universal joints, leaning lifts, and legs that constrain.
@@ -29,6 +30,7 @@ fn random_mechanisms_are_solved_as_by_opm() {
     let all = covering(2, EVERY);
     let Some(program) = Compiled::new(&all, Real::Double, &["-O0"]) else { return };
     compare_all(&program, &all, POSES[1], 3);
+    forward_leads_from_home(&program, &all, 100, 6);
 }
 
 #[test]
@@ -144,50 +146,4 @@ fn every_compiler_accepts_the_code() {
             assert_eq!(told, "", "{compiler}");
         }
     }
-}
-
-/// The module for LinuxCNC gives opm's actuated joints, in millimetres and degrees, and finds the pose again.
-#[test]
-fn linuxcnc_moves_as_opm_does() {
-    let mut modules = 0;
-    for m in shipped() {
-        let code = opm_generate::c(&m).unwrap();
-        if code.linuxcnc.is_none() {
-            continue;
-        }
-        modules += 1;
-        let mut pose = m.home_pose();
-        let mut axes = [0.0; 9];
-        let (mut angles, mut lengths) = (3..6, 6..9);
-        for (value, c) in pose.iter_mut().zip(m.task_coordinates()) {
-            *value += 0.02 * unit(&m, c.quantity);
-            let axis = match (c.quantity, ["x", "y", "z"].iter().position(|name| *name == c.name)) {
-                (Quantity::Length, Some(axis)) => axis,
-                (Quantity::Length, None) => lengths.next().unwrap(),
-                (Quantity::Angle, _) => angles.next().unwrap(),
-            };
-            axes[axis] = match c.quantity {
-                Quantity::Length => *value * 1e3,
-                Quantity::Angle => value.to_degrees(),
-            };
-        }
-        let name = &m.mechanism().name;
-        let Some(answer) = linuxcnc(&code, axes) else { return };
-        let mut at = m.solution();
-        let at = m.inverse(&pose, m.home_mode(), &mut at).unwrap();
-        let at = at.unwrap_or_else(|| panic!("{name} does not reach a pose near home"));
-        assert_eq!(answer[0], 0.0, "{name}");
-        for (place, &joint) in m.actuated().iter().enumerate() {
-            let expected = match m.coordinates()[joint].quantity {
-                Quantity::Length => at.joints()[joint] * 1e3,
-                Quantity::Angle => at.joints()[joint].to_degrees(),
-            };
-            assert!((answer[1 + place] - expected).abs() < 1e-8, "{name}: {answer:?}");
-        }
-        assert_eq!(answer[17], 0.0, "{name}: {answer:?}");
-        for (axis, expected) in axes.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-            assert!((answer[18 + axis] - expected).abs() < 1e-6, "{name}: {answer:?} {axes:?}");
-        }
-    }
-    assert!(modules > 8, "{modules}");
 }

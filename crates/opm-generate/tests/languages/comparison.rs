@@ -43,6 +43,30 @@ impl<'a> Comparison<'a> {
         Self { manipulator, at, near, actuated, jacobians, reached, missed, regular, found }
     }
 
+    /// Whether a pose is reached in the mode at home, far from singularities.
+    fn is_regular(&mut self, pose: &[f64]) -> bool {
+        let m = self.manipulator;
+        let question = Question { mode: m.home_mode(), pose: pose.to_vec(), next: pose.to_vec() };
+        if m.inverse(pose, question.mode, &mut self.at).unwrap().is_none()
+            || m.actuated().is_empty()
+        {
+            return false;
+        }
+        let (gain, _) = self.differences(&question);
+        if gain > 30.0 || !m.differentiate(&self.at, &mut self.jacobians).unwrap() {
+            return false;
+        }
+        let mut measured = m.singularities();
+        m.measure_singularities(&self.jacobians, &mut measured);
+        measured.whole.parallel.is_some_and(|parallel| parallel.abs() > REGULAR)
+    }
+
+    /// Whether Euler angles are singular at a pose.
+    fn has_singular_angles(&self, pose: &[f64]) -> bool {
+        let mut angles = self.manipulator.task_coordinates().iter().zip(pose);
+        angles.any(|(c, value)| ["xi", "tilt"].contains(&c.name) && value.sin().abs() < 1e-9)
+    }
+
     fn compare(&mut self, question: &Question, answer: &Answer) {
         let m = self.manipulator;
         let name = &m.mechanism().name;
@@ -339,6 +363,65 @@ pub fn compare_all(program: &impl Program, manipulators: &[Manipulator], poses: 
     );
     assert!(reached > missed / 4 && missed > 0, "{reached} {missed}");
     assert!(regular > reached / 2 && found[0] > found[1] / 10 * 9, "{regular} {found:?}");
+}
+
+/// From the home pose, forward kinematics find home itself, and poses about it: the platform is where the actuated joints were
+/// computed from, and its angles are near home's. In many mechanisms the Euler angles are singular at home.
+pub fn forward_leads_from_home(
+    program: &impl Program,
+    manipulators: &[Manipulator],
+    poses: usize,
+    seed: u64,
+) {
+    let mut rng = Rng::with_seed(seed);
+    let (mut mechanisms, mut singular) = (0, 0);
+    let (mut asked, mut same) = (0, 0);
+    for (number, m) in manipulators.iter().enumerate() {
+        let (home, mode, name) = (m.home_pose(), m.home_mode(), &m.mechanism().name);
+        let mut comparison = Comparison::new(m);
+        if !comparison.is_regular(&home) {
+            continue;
+        }
+        let mut questions = Vec::new();
+        for i in 0..=poses {
+            let far = if i == 0 { 0.0 } else { 0.05 };
+            let pose: Vec<f64> = (m.task_coordinates().iter().zip(&home))
+                .map(|(c, home)| home + far * unit(m, c.quantity) * (2.0 * rng.f64() - 1.0))
+                .collect();
+            if comparison.is_regular(&pose) {
+                questions.push(Question { mode, pose, next: home.clone() });
+            }
+        }
+        let answers = program.ask(number, &questions);
+        let (mut of_one, mut found) = (0, 0);
+        for (question, answer) in questions.iter().zip(&answers) {
+            let Some(forward) = &answer.forward else { continue };
+            of_one += 1;
+            if forward.status != 0.0 {
+                continue;
+            }
+            let [to, wanted] = [&forward.pose, &question.pose]
+                .map(|pose| m.platform_at(&m.displacement_in(pose, mode).unwrap()));
+            let near = (m.task_coordinates().iter().zip(&forward.pose).zip(&home)).all(
+                |((c, q), home)| c.quantity == Quantity::Length || (q - home).abs() < PI + 1e-9,
+            );
+            assert!(near, "{name}: {:?} from {home:?}", forward.pose);
+            found += usize::from(m.platform_distance(&to, &wanted) < 1e-7);
+        }
+        if of_one > 0 {
+            mechanisms += 1;
+            singular += usize::from(comparison.has_singular_angles(&home));
+            asked += of_one;
+            same += found;
+            let first = answers[0].forward.as_ref().map(|forward| forward.status);
+            assert_eq!(first, Some(0.0), "{name}: home from home");
+            assert!(10 * found >= 8 * of_one, "{name}: {found} of {of_one}");
+        }
+    }
+    println!(
+        "{mechanisms} mechanisms, {singular} with singular angles at home: {same} of {asked} poses found from there"
+    );
+    assert!(singular > 0 && 100 * same > 98 * asked, "{singular} {same} {asked}");
 }
 
 /// Joints in `float` close every leg. Poses that may be on either side of the boundary of reach are left out.

@@ -3,13 +3,12 @@
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use tempfile::TempDir;
 
 /// What every compiler accepts without a word.
-const STRICT: [&str; 7] = [
+pub const STRICT: [&str; 7] = [
     "-std=c99",
     "-Wall",
     "-Wextra",
@@ -264,99 +263,4 @@ pub fn compiled_by(
     let told = String::from_utf8_lossy(&done.stderr).into_owned();
     assert_eq!(done.status.success(), told.is_empty(), "{told}");
     Some(told)
-}
-
-/// What the module for LinuxCNC includes, and what it needs of it: declarations alone.
-const LINUXCNC: [(&str, &str); 4] = [
-    (
-        "kinematics.h",
-        "typedef struct { double x, y, z; } PmCartesian;
-         typedef struct EmcPose { PmCartesian tran; double a, b, c, u, v, w; } EmcPose;
-         typedef enum { KINEMATICS_IDENTITY = 1, KINEMATICS_FORWARD_ONLY, KINEMATICS_INVERSE_ONLY, KINEMATICS_BOTH } KINEMATICS_TYPE;
-         typedef unsigned long int KINEMATICS_FORWARD_FLAGS;
-         typedef unsigned long int KINEMATICS_INVERSE_FLAGS;
-         extern int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATICS_FORWARD_FLAGS *fflags,
-                                      KINEMATICS_INVERSE_FLAGS *iflags);
-         extern int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *iflags,
-                                      KINEMATICS_FORWARD_FLAGS *fflags);
-         extern KINEMATICS_TYPE kinematicsType(void);
-         extern int kinematicsSwitchable(void);
-         extern int kinematicsSwitch(int type);
-         #define KINS_NOT_SWITCHABLE int kinematicsSwitchable(void) { return 0; } int kinematicsSwitch(int type) { (void)type; return 0; }
-         ",
-    ),
-    ("hal.h", "int hal_init(const char *name);\nint hal_ready(int id);\nint hal_exit(int id);\n"),
-    ("rtapi.h", "#define RTAPI_MP_INT(name, text) extern const int name##_is_a_parameter\n"),
-    (
-        "rtapi_app.h",
-        "#define EXPORT_SYMBOL(name) extern const int name##_is_exported\n#define MODULE_LICENSE(text) extern const int is_licensed\n\
-         int rtapi_app_main(void);\nvoid rtapi_app_exit(void);\n",
-    ),
-];
-
-/// Asks the module for the joints of a pose in LinuxCNC's order of axes, then for the pose of these joints.
-const ASK_LINUXCNC: &str = "
-#include <stdio.h>
-#include \"kinematics.h\"
-#include \"hal.h\"
-#include \"rtapi_app.h\"
-int hal_init(const char *name) { return name[0] ? 7 : -1; }
-int hal_ready(int id) { return id - 7; }
-int hal_exit(int id) { return id - 7; }
-int main(void)
-{
-    double p[9], joints[16] = { 0 };
-    struct EmcPose world, near;
-    KINEMATICS_FORWARD_FLAGS forward = 0;
-    KINEMATICS_INVERSE_FLAGS inverse = 0;
-    int i, status;
-    if (rtapi_app_main() != 0 || kinematicsType() != KINEMATICS_BOTH) return 2;
-    for (i = 0; i < 9; ++i) if (scanf(\"%lf\", &p[i]) != 1) return 3;
-    world.tran.x = p[0]; world.tran.y = p[1]; world.tran.z = p[2];
-    world.a = p[3]; world.b = p[4]; world.c = p[5];
-    world.u = p[6]; world.v = p[7]; world.w = p[8];
-    status = kinematicsInverse(&world, joints, &inverse, &forward);
-    printf(\"%d\", status);
-    for (i = 0; i < 16; ++i) printf(\" %.17g\", joints[i]);
-    near = world;
-    near.tran.x += 1; near.tran.y -= 1; near.tran.z += 1;
-    near.a += 0.5; near.b -= 0.5; near.c += 0.5;
-    near.u += 1; near.v -= 1; near.w += 1;
-    status = kinematicsForward(joints, &near, &forward, &inverse);
-    printf(\" %d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\\n\", status, near.tran.x, near.tran.y, near.tran.z,
-           near.a, near.b, near.c, near.u, near.v, near.w);
-    rtapi_app_exit();
-    return 0;
-}
-";
-
-/// What a mechanism's module for LinuxCNC answers for a pose of nine axes: a status, sixteen joints, a status, nine axes.
-pub fn linuxcnc(code: &opm_generate::CCode, axes: [f64; 9]) -> Option<Vec<f64>> {
-    let compiler = compiler()?;
-    let folder = tempfile::tempdir().expect("a directory for temporary files");
-    let write = |name: &str, text: &str| {
-        std::fs::write(folder.path().join(name), text).expect("a file in it");
-    };
-    code.files().iter().for_each(|(name, text)| write(name, text));
-    LINUXCNC.iter().for_each(|(name, text)| write(name, text));
-    write("ask.c", ASK_LINUXCNC);
-    let module = format!("{}_linuxcnc.c", code.name);
-    let built = Command::new(&compiler)
-        .args(STRICT)
-        .args(["-Werror", "-I.", "-o", "ask", "ask.c", &module, "-lm"])
-        .current_dir(folder.path())
-        .output()
-        .expect("a compiler that runs");
-    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let mut child = Command::new(folder.path().join("ask"))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("it runs");
-    let text: String = axes.iter().map(|axis| format!("{axis:?} ")).collect();
-    child.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("it reads");
-    let done = child.wait_with_output().expect("it ends");
-    assert!(done.status.success(), "{}", done.status);
-    let told = String::from_utf8_lossy(&done.stdout).into_owned();
-    Some(told.split_whitespace().map(|number| number.parse().expect("a number")).collect())
 }

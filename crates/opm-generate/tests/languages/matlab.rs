@@ -1,6 +1,6 @@
 //! Generated MATLAB, run by Octave and compared with `opm-core`.
 
-use crate::comparison::{compare_all, reach_ends_where_it_does_for_opm};
+use crate::comparison::{compare_all, forward_leads_from_home, reach_ends_where_it_does_for_opm};
 use crate::drawn::{random_mechanisms, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
@@ -83,6 +83,7 @@ fn matlab_solves_shipped_mechanisms_as_opm() {
         shipped().into_iter().filter(|m| names.contains(&&*m.mechanism().name)).collect();
     let Some(program) = Packages::new(&all) else { return };
     compare_all(&program, &all, 40, 41);
+    forward_leads_from_home(&program, &all, 20, 42);
     reach_ends_where_it_does_for_opm(&program, &all, 30);
 }
 

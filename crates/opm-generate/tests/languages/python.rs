@@ -1,6 +1,6 @@
 //! Generated Python, run by the interpreter at hand and compared with `opm-core`.
 
-use crate::comparison::{compare_all, reach_ends_where_it_does_for_opm};
+use crate::comparison::{compare_all, forward_leads_from_home, reach_ends_where_it_does_for_opm};
 use crate::drawn::{covering, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
@@ -67,6 +67,7 @@ fn python_solves_shipped_mechanisms_as_opm() {
     let all = shipped();
     let Some(program) = Modules::new(&all) else { return };
     compare_all(&program, &all, 1_000, 31);
+    forward_leads_from_home(&program, &all, 300, 32);
     reach_ends_where_it_does_for_opm(&program, &all, 30);
 }
 
@@ -75,6 +76,7 @@ fn python_solves_random_mechanisms_as_opm() {
     let all = covering(2, 500);
     let Some(program) = Modules::new(&all) else { return };
     compare_all(&program, &all, 200, 33);
+    forward_leads_from_home(&program, &all, 100, 34);
 }
 
 /// The test beside the code accepts it, and finds a changed joint.

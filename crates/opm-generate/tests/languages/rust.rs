@@ -1,6 +1,8 @@
 //! Generated Rust, compiled by the compiler at hand and compared with `opm-core`.
 
-use crate::comparison::{compare_all, float_closes_every_leg, reach_ends_where_it_does_for_opm};
+use crate::comparison::{
+    compare_all, float_closes_every_leg, forward_leads_from_home, reach_ends_where_it_does_for_opm,
+};
 use crate::drawn::{covering, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
@@ -91,6 +93,7 @@ fn rust_solves_shipped_mechanisms_as_opm() {
     let all = shipped();
     let Some(program) = Compiled::new(&all, "f64") else { return };
     compare_all(&program, &all, 1_000, 21);
+    forward_leads_from_home(&program, &all, 300, 22);
     reach_ends_where_it_does_for_opm(&program, &all, 30);
 }
 
@@ -99,6 +102,7 @@ fn rust_solves_random_mechanisms_as_opm() {
     let all = covering(2, 500);
     let Some(program) = Compiled::new(&all, "f64") else { return };
     compare_all(&program, &all, 300, 23);
+    forward_leads_from_home(&program, &all, 100, 24);
 }
 
 #[test]

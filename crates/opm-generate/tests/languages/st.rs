@@ -9,7 +9,7 @@ mod machine;
 mod parser;
 mod words;
 
-use crate::comparison::{compare_all, reach_ends_where_it_does_for_opm};
+use crate::comparison::{compare_all, forward_leads_from_home, reach_ends_where_it_does_for_opm};
 use crate::drawn::{covering, shipped};
 use crate::program::{Answer, Forward, Program, Question, Shape};
 use machine::{Instance, Machine};
@@ -170,13 +170,16 @@ fn st_solves_shipped_mechanisms_as_opm() {
     let all = shipped();
     let program = Texts::new(&all);
     compare_all(&program, &all, 1_000, 51);
+    forward_leads_from_home(&program, &all, 200, 52);
     reach_ends_where_it_does_for_opm(&program, &all, 30);
 }
 
 #[test]
 fn st_solves_random_mechanisms_as_opm() {
     let all = covering(2, 500);
-    compare_all(&Texts::new(&all), &all, 200, 53);
+    let program = Texts::new(&all);
+    compare_all(&program, &all, 200, 53);
+    forward_leads_from_home(&program, &all, 60, 54);
 }
 
 /// The test beside the code accepts it, one pose in each cycle, and finds a changed joint.

@@ -2,7 +2,7 @@
 
 use crate::color::{Color, INK};
 use crate::drawing::{Anchor, Path, Pen, Rect, Shape};
-use crate::font::CAPITALS;
+use crate::font::{CAPITALS, label};
 use crate::frame::TICK;
 
 /// The side of a box, the gap behind it, and the gap between entries.
@@ -24,7 +24,7 @@ impl<'a> Legend<'a> {
         let mut lines: Vec<Vec<(f64, &(String, Color))>> = vec![];
         let mut x = 0.0;
         for entry in entries {
-            let width = BOX + BEHIND + TICK.width(&entry.0);
+            let width = BOX + BEHIND + TICK.width(&label(&entry.0));
             if x > 0.0 && x + width > room || lines.is_empty() {
                 lines.push(vec![]);
                 x = 0.0;
@@ -52,7 +52,7 @@ impl<'a> Legend<'a> {
                 shapes.push(Shape::Area(Path::rect(place), *color));
                 shapes.push(Shape::Line(Path::rect(place), Pen::new(INK, 0.8)));
                 let base = y + 0.5 * (BOX + CAPITALS * TICK.size);
-                shapes.push(TICK.text(&**name, [place.right() + BEHIND, base], Anchor::Start));
+                shapes.push(TICK.text(label(name), [place.right() + BEHIND, base], Anchor::Start));
             }
         }
         Shape::Group { kind: "legend", label: String::new(), shapes }

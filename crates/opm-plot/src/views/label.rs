@@ -4,12 +4,14 @@ use super::Named;
 use super::camera::Camera;
 use crate::color::{FAINT, INK};
 use crate::drawing::{Anchor, Path, Pen, Rect, Shape, Step, Style};
-use crate::font::{CAPITALS, Face};
+use crate::font::{CAPITALS, Face, label, shortened};
 use std::f64::consts::TAU;
 
 const STYLE: Style = Style { size: 10.0, face: Face::Regular, color: INK };
 /// The height of a label, from the top of its capitals to the end of its descenders, in sizes of the font.
 const LINE: f64 = 1.0;
+/// The longest label of several places, in characters.
+const LONGEST: usize = 200;
 /// Places that are nearer than this, in pixels, share one label.
 const SAME: f64 = 4.0;
 /// The distances of a label from its place that are tried, and the number of directions.
@@ -32,15 +34,16 @@ pub fn names(names: &[Named], camera: &Camera, solids: &[Shape], view: Rect) -> 
         match groups.iter_mut().find(|(other, _)| near(other)) {
             Some((_, text)) => {
                 text.push_str(", ");
-                text.push_str(&named.name);
+                text.push_str(&label(&named.name));
             }
-            None => groups.push((at, named.name.clone())),
+            None => groups.push((at, label(&named.name).into_owned())),
         }
     }
     let drawn = Drawn::new(solids, view);
     let mut taken: Vec<Rect> = Vec::new();
     let mut shapes = Vec::new();
     for (at, text) in groups {
+        let text = shortened(&text, LONGEST);
         let size = [STYLE.width(&text), STYLE.size * LINE];
         let mut best =
             (f64::INFINITY, Rect { x: at[0], y: at[1], width: size[0], height: size[1] });

@@ -1,12 +1,12 @@
-//! The largest ball and the largest box about a given centre. Both are exact for the union of cells.
+//! The largest ball and the largest box about a given centre. Both are exact for the union of the cells that are inside.
 
 use super::cells::{Cells, Found};
 
 /// The distances from the centre to the nearer ends of the grid; infinite across a layer alone.
 fn ends(cells: &Cells, centre: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| match axis < cells.dimension() {
-        true => (centre[axis] - cells.start[axis]).min(cells.end(axis) - centre[axis]),
-        false => f64::INFINITY,
+    std::array::from_fn(|axis| {
+        let [low, high] = cells.ends[axis];
+        (centre[axis] - low).min(high - centre[axis])
     })
 }
 

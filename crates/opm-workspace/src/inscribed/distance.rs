@@ -1,9 +1,11 @@
-//! The largest disc or ball with a free centre, by an exact Euclidean distance transform.
+//! The largest disc or ball with a free centre: an exact Euclidean distance transform finds where its centre can be, and
+//! branch and bound on the distance where it is.
 
 use super::cells::{Cells, Found};
+use super::search::{Best, Search};
 
-/// The largest disc or ball, with its centre on the lattice of half steps.
-pub(super) fn largest_ball(cells: &Cells) -> Option<Found> {
+/// The largest disc or ball, and by how much its radius may be smaller than the largest.
+pub(super) fn largest_ball(cells: &Cells) -> Option<(Found, f64)> {
     let dimension = cells.dimension();
     // One layer has no lattice across it.
     let counts: [usize; 3] = std::array::from_fn(|axis| match axis < dimension {
@@ -21,16 +23,29 @@ pub(super) fn largest_ball(cells: &Cells) -> Option<Found> {
         }
         stride *= count;
     }
-    let mut best = (0.0, 0);
-    for (number, &square) in squares.iter().enumerate() {
-        if square > best.0 {
-            best = (square, number);
-        }
+    let place = |number: usize| -> [f64; 3] {
+        let at =
+            [number % counts[0], number / counts[0] % counts[1], number / counts[0] / counts[1]];
+        std::array::from_fn(|axis| if axis < dimension { cells.at(axis, at[axis]) } else { 0.0 })
+    };
+    let first = (0..squares.len()).max_by(|&a, &b| {
+        // Of equal ones the first.
+        squares[a].total_cmp(&squares[b]).then(b.cmp(&a))
+    })?;
+    let radius = squares[first].sqrt();
+    if radius == 0.0 {
+        return None;
     }
-    let (square, number) = best;
-    let at = [number % counts[0], number / counts[0] % counts[1], number / counts[0] / counts[1]];
-    let centre = std::array::from_fn(|axis| cells.at(axis, at[axis]));
-    (square > 0.0).then(|| (centre, [square.sqrt(); 3]))
+    let mut search = Search::new(cells, Best { centre: place(first), radius });
+    // From a point of the lattice, a better centre is at most half of its steps away.
+    let mut open: Vec<usize> =
+        (0..squares.len()).filter(|&number| search.may_hold(squares[number].sqrt())).collect();
+    open.sort_by(|&a, &b| squares[b].total_cmp(&squares[a]).then(a.cmp(&b)));
+    for number in open {
+        search.around(place(number), squares[number].sqrt());
+    }
+    let Best { centre, radius } = search.best;
+    Some(((centre, [radius; 3]), search.short))
 }
 
 /// Zero at the points of the lattice that touch a cell outside, infinity elsewhere.

@@ -1,11 +1,11 @@
 //! Legs as chains of unit freedoms in the normalised frame: loop closure, ranks and displaced
 //! poses.
 
-use super::{MAX_FREEDOMS, MobilityError, frame};
+use super::{MAX_FREEDOMS, MobilityError, absolute_values, frame};
 use crate::group::screw::Screw;
 use crate::group::subspace::Frame;
 use crate::mechanism::Mechanism;
-use crate::numeric::svd;
+use crate::numeric::svd::{self, Svd};
 use nalgebra::{DMatrix, Isometry3, Vector6};
 
 /// A mechanism as screws in its normalised frame: freedom by freedom, leg by leg.
@@ -23,17 +23,26 @@ pub(crate) struct Pose {
     tips: Vec<Isometry3<f64>>,
 }
 
-/// The ranks of the first-order kinematics in a pose.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Ranks {
-    /// Dimension of the span of all screws.
-    pub lambda: usize,
-    /// The number of independent first-order motions.
-    pub mobility: usize,
-    /// The number of independent first-order motions with the actuators locked.
-    pub locked: usize,
-    /// Dimension of the span of each leg's screws.
-    pub legs: Vec<usize>,
+/// The first-order kinematics in a pose, by singular values. A list of them is sorted, largest first, and divided by
+/// its largest.
+pub(crate) struct FirstOrder {
+    /// Of all screws together.
+    pub all: Vec<f64>,
+    /// Of each leg's screws.
+    pub legs: Vec<Vec<f64>>,
+    /// Of the loop closure.
+    pub closure: Vec<f64>,
+    /// The right singular vectors of the loop closure, in the order of its singular values: the last ones are the
+    /// motions.
+    vectors: DMatrix<f64>,
+}
+
+impl FirstOrder {
+    /// The motions `(q̇, t)`, orthonormal columns, of a mechanism that has this many.
+    pub fn motions(&self, mobility: usize) -> DMatrix<f64> {
+        let columns = self.vectors.ncols();
+        self.vectors.columns(columns - mobility, mobility).into_owned()
+    }
 }
 
 /// The loop-closure matrix of unit screws: six rows per leg, one column per screw (leg by leg), and
@@ -115,40 +124,46 @@ impl Linkage {
         Pose { screws, tips }
     }
 
+    /// The rows of the actuated freedoms among those of all freedoms.
+    pub fn actuated_rows(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.actuated.len()).filter(|&row| self.actuated[row])
+    }
+
+    /// The singular values of the actuated freedoms' rates in motions that are orthonormal columns, largest first.
+    pub fn controls(&self, motions: &DMatrix<f64>) -> Vec<f64> {
+        let rows: Vec<usize> = self.actuated_rows().collect();
+        absolute_values(motions.select_rows(&rows))
+    }
+
     /// The unit screws of a pose, leg by leg.
     pub fn units(&self, pose: &Pose) -> Vec<Vec<Vector6<f64>>> {
         let unit = |screw: &Screw| screw.to_vector().normalize();
         pose.screws.iter().map(|leg| leg.iter().map(unit).collect()).collect()
     }
 
-    /// The unit screws of the passive freedoms, leg by leg.
-    pub fn passive(&self, units: &[Vec<Vector6<f64>>]) -> Vec<Vec<Vector6<f64>>> {
-        let mut actuated = self.actuated.iter();
-        let keep = |leg: &Vec<Vector6<f64>>| {
-            leg.iter().zip(&mut actuated).filter(|(_, a)| !**a).map(|(unit, _)| *unit).collect()
-        };
-        units.iter().map(keep).collect()
-    }
-
-    /// The ranks in a pose. Singular values below `tolerance` of the largest count as zero.
-    pub fn ranks(&self, pose: &Pose, tolerance: f64) -> Ranks {
+    /// The first-order kinematics in a pose.
+    pub fn first_order(&self, pose: &Pose) -> FirstOrder {
         let units = self.units(pose);
-        let nullity = |legs: &[Vec<Vector6<f64>>]| {
-            let closure = loop_closure(legs);
-            let columns = closure.ncols();
-            columns - svd::rank(closure, tolerance)
+        let closure = Svd::new(loop_closure(&units));
+        let of = |vectors: &[Vector6<f64>]| {
+            let mut values =
+                svd::singular_values(DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j]));
+            values.sort_by(|a, b| b.total_cmp(a));
+            relative(values)
         };
-        Ranks {
-            lambda: rank(&units.concat(), tolerance),
-            mobility: nullity(&units),
-            locked: nullity(&self.passive(&units)),
-            legs: units.iter().map(|leg| rank(leg, tolerance)).collect(),
+        FirstOrder {
+            all: of(&units.concat()),
+            legs: units.iter().map(|leg| of(leg)).collect(),
+            closure: relative(closure.values),
+            vectors: closure.right,
         }
     }
 }
 
-fn rank(vectors: &[Vector6<f64>], tolerance: f64) -> usize {
-    svd::rank(DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j]), tolerance)
+/// Singular values, largest first, divided by the largest.
+fn relative(values: Vec<f64>) -> Vec<f64> {
+    let largest = values.first().copied().filter(|&v| v > 0.0).unwrap_or(1.0);
+    values.into_iter().map(|value| value / largest).collect()
 }
 
 impl Pose {

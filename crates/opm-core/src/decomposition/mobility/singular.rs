@@ -1,15 +1,15 @@
 //! Singularity of the home pose: its ranks compared with those of assembled poses nearby.
 //!
 //! Ranks drop in special poses and never rise, so a pose is singular if a pose nearby has a higher
-//! rank. Such a pose is found by a first-order motion of finite size, which is projected back onto
+//! rank. A singular value that drops to a small share of what it is nearby is regular still. Such a pose is found by a first-order motion of finite size, which is projected back onto
 //! the loop closure by Levenberg-Marquardt steps with the remaining gap as damping. They converge
 //! quadratically even if the closure's rank is deficient (Fan and Yuan, Computing 74, 2005), as it
 //! is in every overconstrained mechanism.
 
-use super::linkage::{Linkage, Pose, Ranks};
+use super::linkage::{FirstOrder, Linkage, Pose};
+use super::{absolute_values, loose_twists, platform};
 use crate::group::screw::Screw;
-use crate::group::subspace::TOLERANCE;
-use crate::mechanism::Mechanism;
+use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, DVector, Isometry3, Vector6};
 use std::fmt;
@@ -32,9 +32,13 @@ const STALLED: f64 = 0.99;
 /// A singular value that is zero at home, but not in general, grows with the distance from home.
 /// One of this size is neither rounding nor the zero at home itself.
 const CLEARLY_NONZERO: f64 = 3.0 * TOLERANCE;
+/// A singular value at home below this share of what it is nearby is zero. A home that is off a singular pose by an
+/// angle of 1e-4 has a share of some 3e-4, since poses nearby are off by some 0.3; what is rounded to nine digits has
+/// less than 1e-7.
+const VANISHED: f64 = 1e-5;
 
 /// One respect in which the home pose is more degenerate than assembled poses nearby.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum HomeSingularity {
     /// Serial singularity: the joint screws of a leg are linearly dependent. The leg cannot move
     /// the platform in some direction, and two of its working modes meet.
@@ -52,6 +56,9 @@ pub enum HomeSingularity {
         home: usize,
         /// The number of freedoms nearby with the actuators locked.
         nearby: usize,
+        /// The motions of the platform at home with the actuators locked: independent twists, each given as the motion
+        /// that it generates.
+        loose: Vec<SubspaceClass>,
     },
     /// Constraint singularity: the mobility `N` at home is larger than nearby.
     Constraint {
@@ -83,7 +90,7 @@ impl fmt::Display for HomeSingularity {
                 "serial: the joints of leg {leg:?} have {home} independent screws at home, \
                  {nearby} nearby"
             ),
-            Self::Parallel { home, nearby } => write!(
+            Self::Parallel { home, nearby, .. } => write!(
                 f,
                 "parallel: with the actuators locked, mobility is {home} at home, {nearby} nearby"
             ),
@@ -100,58 +107,156 @@ impl fmt::Display for HomeSingularity {
     }
 }
 
-/// Every respect in which home, with the given `ranks`, is singular.
-pub(super) fn singularities(
-    linkage: &Linkage,
-    ranks: &Ranks,
-    mechanism: &Mechanism,
+/// Assembled poses near home, each with its coordinates; none if no pose nearby closes.
+pub(super) struct Nearby {
+    pub poses: Vec<(Vec<f64>, FirstOrder)>,
+    pub generic: Option<Generic>,
+}
+
+/// What is true at poses near home, but for special ones among them.
+pub(super) struct Generic {
+    all: Vec<f64>,
+    legs: Vec<Vec<f64>>,
+    closure: Vec<f64>,
+    /// Mobility `N`.
+    pub mobility: usize,
+    controls: Vec<f64>,
+    /// How many of the freedoms the actuators control.
+    pub controlled: usize,
+    /// How many motions the platform has with the actuators locked.
+    pub loose: usize,
+    /// How many motions do not move the platform.
+    pub idle: usize,
+}
+
+/// Ranks at home.
+pub(super) struct HomeRanks {
+    pub lambda: usize,
+    pub legs: Vec<usize>,
+    pub mobility: usize,
+}
+
+impl Nearby {
+    /// Poses near home, whose first-order kinematics are `home`.
+    pub fn new(linkage: &Linkage, home: &FirstOrder) -> Self {
+        let columns = home.closure.len();
+        let first = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
+        let samples = if first.is_empty() { 0 } else { SAMPLES };
+        let found = (0..samples).filter_map(|sample| {
+            let (coordinates, pose) = nearby(linkage, &first, sample)?;
+            Some((coordinates, linkage.first_order(&pose)))
+        });
+        let poses: Vec<(Vec<f64>, FirstOrder)> = found.collect();
+        let largest = |of: &dyn Fn(&FirstOrder) -> Vec<f64>| {
+            poses.iter().map(|(_, pose)| of(pose)).reduce(|a, b| {
+                let larger = |(x, y): (&f64, &f64)| x.max(*y);
+                a.iter().zip(&b).map(larger).collect()
+            })
+        };
+        let generic = largest(&|pose| pose.closure.clone()).map(|closure| {
+            let mobility = columns - clear(&closure);
+            let controls = largest(&|pose| linkage.controls(&pose.motions(mobility)));
+            let controls = controls.unwrap_or_default();
+            let loose = poses.iter().map(|(_, pose)| {
+                let motions = pose.motions(mobility);
+                let rank = clear(&linkage.controls(&motions));
+                loose_twists(linkage, &motions, rank).dimension()
+            });
+            let idle = poses.iter().map(|(_, pose)| mobility - platform(&pose.motions(mobility)));
+            let of_leg = |leg: usize| largest(&|pose| pose.legs[leg].clone()).unwrap_or_default();
+            Generic {
+                all: largest(&|pose| pose.all.clone()).unwrap_or_default(),
+                legs: (0..home.legs.len()).map(of_leg).collect(),
+                mobility,
+                controlled: clear(&controls),
+                loose: loose.min().unwrap_or_default(),
+                idle: idle.min().unwrap_or_default(),
+                controls,
+                closure,
+            }
+        });
+        Self { poses, generic }
+    }
+
+    /// The ranks at home, whose first-order kinematics are `home`.
+    pub fn ranks(&self, home: &FirstOrder) -> HomeRanks {
+        let generic = |of: fn(&Generic) -> &[f64]| self.generic.as_ref().map_or(&[][..], of);
+        let of_leg = |(number, own): (usize, &Vec<f64>)| {
+            rank(own, self.generic.as_ref().map_or(&[], |generic| &generic.legs[number]))
+        };
+        HomeRanks {
+            lambda: rank(&home.all, generic(|g| &g.all)),
+            legs: home.legs.iter().enumerate().map(of_leg).collect(),
+            mobility: home.closure.len() - rank(&home.closure, generic(|g| &g.closure)),
+        }
+    }
+
+    /// How many of the freedoms the actuators control at home, where these are the singular values of what they
+    /// control.
+    pub fn controlled(&self, home: &[f64]) -> usize {
+        rank(home, self.generic.as_ref().map_or(&[], |generic| &generic.controls))
+    }
+
+    /// Whether the other actuated freedoms control as much without some of them, at every pose nearby.
+    pub fn spares(&self, linkage: &Linkage, without: &[usize]) -> bool {
+        let Some(generic) = &self.generic else { return false };
+        let rest: Vec<usize> =
+            linkage.actuated_rows().filter(|row| !without.contains(row)).collect();
+        self.poses.iter().all(|(_, pose)| {
+            let motions = pose.motions(generic.mobility).select_rows(&rest);
+            clear(&absolute_values(motions)) == generic.controlled
+        })
+    }
+}
+
+/// The number of values that are clearly not zero.
+fn clear(values: &[f64]) -> usize {
+    values.iter().filter(|&&value| value > CLEARLY_NONZERO).count()
+}
+
+/// A rank at home, by singular values there and nearby.
+fn rank(home: &[f64], nearby: &[f64]) -> usize {
+    let regular = clear(nearby);
+    let counts = |(i, &value): (usize, &f64)| {
+        value > TOLERANCE || (i < regular && value > VANISHED * nearby[i])
+    };
+    home.iter().enumerate().filter(|&(i, value)| counts((i, value))).count()
+}
+
+/// Every respect in which home, with the given `ranks`, is singular, the parallel one excepted. `legs` are the legs'
+/// names.
+pub(super) fn singularities<'a>(
+    nearby: &Nearby,
+    ranks: &HomeRanks,
+    legs: impl Iterator<Item = &'a str>,
 ) -> Vec<HomeSingularity> {
     if ranks.mobility == 0 {
         return vec![];
     }
-    let Some(generic) = generic_ranks(linkage) else {
+    let Some(generic) = &nearby.generic else {
         return vec![HomeSingularity::Isolated { mobility: ranks.mobility }];
     };
     let mut found = vec![];
-    for (i, leg) in mechanism.legs.iter().enumerate() {
-        let (home, nearby) = (ranks.legs[i], generic.legs[i]);
+    for (i, leg) in legs.enumerate() {
+        let (home, nearby) = (ranks.legs[i], clear(&generic.legs[i]));
         if home < nearby {
-            found.push(HomeSingularity::Serial { leg: leg.name.clone(), home, nearby });
+            found.push(HomeSingularity::Serial { leg: leg.to_owned(), home, nearby });
         }
-    }
-    if ranks.locked > generic.locked {
-        let (home, nearby) = (ranks.locked, generic.locked);
-        found.push(HomeSingularity::Parallel { home, nearby });
     }
     if ranks.mobility > generic.mobility {
         let (home, nearby) = (ranks.mobility, generic.mobility);
         found.push(HomeSingularity::Constraint { home, nearby });
     }
-    if ranks.lambda < generic.lambda {
-        let (home, nearby) = (ranks.lambda, generic.lambda);
-        found.push(HomeSingularity::Span { home, nearby });
+    let nearby = clear(&generic.all);
+    if ranks.lambda < nearby {
+        found.push(HomeSingularity::Span { home: ranks.lambda, nearby });
     }
     found
 }
 
-/// The least degenerate ranks found nearby; `None` if no pose nearby closes.
-fn generic_ranks(linkage: &Linkage) -> Option<Ranks> {
-    let regular = |a: Ranks, b: Ranks| Ranks {
-        lambda: a.lambda.max(b.lambda),
-        mobility: a.mobility.min(b.mobility),
-        locked: a.locked.min(b.locked),
-        legs: a.legs.iter().zip(&b.legs).map(|(x, y)| *x.max(y)).collect(),
-    };
-    let kernel = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
-    (0..SAMPLES)
-        .filter_map(|sample| nearby(linkage, &kernel, sample))
-        .map(|pose| linkage.ranks(&pose, CLEARLY_NONZERO))
-        .reduce(regular)
-}
-
 /// An assembled pose at some distance from home, found with a first-order motion in `kernel`. Each
 /// sample is another pose.
-fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<Pose> {
+fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<(Vec<f64>, Pose)> {
     // Fixed coefficients without a pattern: multiples of the golden ratio modulo one.
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let coefficient =
@@ -160,9 +265,9 @@ fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<Pos
     NEARBY.iter().find_map(|size| project(linkage, &(&motion * (size / motion.amax()))))
 }
 
-/// The assembled pose nearest to given coordinates and a platform twist, stacked; `None` if there
+/// The assembled pose nearest to given coordinates and a platform twist, stacked, and its coordinates; `None` if there
 /// is none, or if it is home.
-fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<Pose> {
+fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<(Vec<f64>, Pose)> {
     let n = linkage.actuated.len();
     let mut q = start.rows(0, n).into_owned();
     let away = AWAY * q.amax();
@@ -187,7 +292,7 @@ fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<Pose> {
             break;
         }
     }
-    (gaps.norm() <= TOLERANCE && q.amax() >= away).then_some(pose)
+    (gaps.norm() <= TOLERANCE && q.amax() >= away).then(|| (q.as_slice().to_vec(), pose))
 }
 
 fn displacement(twist: &DVector<f64>) -> Isometry3<f64> {

@@ -81,10 +81,11 @@ fn links_in_line_are_a_parallel_singularity() {
         mechanism.legs[0].joints[1].point = pin.into();
     }
     let singular = report(&mechanism).singular;
-    assert_eq!(singular, [HomeSingularity::Parallel { home: 1, nearby: 0 }]);
-    let error = decompose(&mechanism).unwrap_err();
-    let text = "parallel: with the actuators locked, mobility is 1 at home, 0 nearby";
-    assert!(error.to_string().contains(text), "{error}");
+    assert!(
+        matches!(&singular[..], [HomeSingularity::Parallel { home: 1, nearby: 0, loose }] if loose.len() == 1),
+        "{singular:?}"
+    );
+    assert!(decompose(&mechanism).is_ok());
 }
 
 /// The link a1 is perpendicular to its slider and the leg is stretched: its joints are dependent.
@@ -125,7 +126,11 @@ fn three_forces_through_a_point_are_a_parallel_singularity() {
     let meeting =
         wrists.map(|[x, y]| [[3.0 * x - 2.0 * y, 3.0 * y + 2.0 * x], [3.0 * x, 3.0 * y], [x, y]]);
     let singular = report(&planar(meeting)).singular;
-    assert_eq!(singular, [HomeSingularity::Parallel { home: 1, nearby: 0 }]);
+    let [HomeSingularity::Parallel { home: 1, nearby: 0, loose }] = &singular[..] else {
+        panic!("{singular:?}")
+    };
+    let [SubspaceClass::Rotation { axis, point }] = loose[..] else { panic!("{loose:?}") };
+    assert!((axis.z - 1.0).abs() < 1e-12 && point.coords.norm() < 1e-9, "{singular:?}");
     // With the elbows off the radii, the mechanism is regular.
     let apart = meeting.map(|[base, [x, y], wrist]| [base, [x - 0.5 * y, y + 0.5 * x], wrist]);
     let report = report(&planar(apart));
@@ -241,7 +246,8 @@ fn the_choice_of_points_does_not_matter() {
             joint.point += joint.axis.into_inner() * (3.0 * (i as f64).sin());
         }
     }
-    assert_eq!(report(&moved), report(&mechanism));
+    let without_pose = |mechanism| Mobility { nearby: None, ..report(mechanism) };
+    assert_eq!(without_pose(&moved), without_pose(&mechanism));
     let (a, b) = (frame(&mechanism), frame(&moved));
     assert!((a.length / b.length - 1.0).abs() < 1e-12);
 }

@@ -3,8 +3,10 @@
 use crate::decomposition::Freedom;
 use crate::decomposition::element::{Element, Offset};
 use crate::group::subspace::SubspaceClass;
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::Joint;
 use crate::mechanism::leg::{Leg, Section};
+use crate::numeric::Quantity;
 use std::fmt;
 
 /// An angle (radians) or a distance (metres) too small to be worth a word beside the other one.
@@ -27,6 +29,8 @@ pub struct JointMiss {
     pub angle: f64,
     /// The distance of the joint's axis from the point or line that it should pass through, metres.
     pub distance: f64,
+    /// The units of the mechanism's file, which [`reason`](Self::reason) is given in.
+    pub units: FileUnits,
     element: Option<Element>,
 }
 
@@ -56,8 +60,14 @@ impl JointMiss {
             subspace,
             angle: largest(|o| o.angle),
             distance: largest(|o| o.distance),
+            units: FileUnits::SI,
             element: worst.map(|(element, _)| *element),
         }
+    }
+
+    /// The same, with messages in the units of the mechanism's file.
+    pub(in crate::decomposition) fn in_units(self, units: FileUnits) -> Self {
+        Self { units, ..self }
     }
 
     /// The larger one of angle and distance, in radians and characteristic lengths.
@@ -68,12 +78,15 @@ impl JointMiss {
     /// What is wrong with the joint, without its name.
     pub fn reason(&self) -> String {
         use SubspaceClass as Class;
-        let angle = || format!("{} deg", number(self.angle.to_degrees()));
-        let distance = || format!("{} mm", number(self.distance * 1e3));
+        let angle = || shown(self.angle, Quantity::Angle, self.units);
+        let distance = || shown(self.distance, Quantity::Length, self.units);
         let other =
             || format!("it does not move in the {} subspace of the others", self.subspace.name());
         if !self.angle.is_finite() {
             return other();
+        }
+        if let Some(reason) = self.pitch_reason() {
+            return reason;
         }
         match (self.element, &self.subspace) {
             (Some(Element::Ball { .. }), _) => {
@@ -119,15 +132,54 @@ impl JointMiss {
     }
 }
 
+impl JointMiss {
+    /// What is wrong with a helical joint, if it is the pitch more than the place of its axis.
+    fn pitch_reason(&self) -> Option<String> {
+        use SubspaceClass as Class;
+        let Some(Element::Helix { pitch, .. }) = self.element else { return None };
+        let (Class::Helical { pitch: common, .. } | Class::PlanarHelical { pitch: common, .. }) =
+            self.subspace
+        else {
+            return None;
+        };
+        let off = (pitch - common).abs();
+        (off > UNTOLD_DISTANCE && off >= self.distance).then(|| {
+            let tilted = match self.angle > UNTOLD_ANGLE {
+                true => format!(
+                    ", and its axis is {} off",
+                    shown(self.angle, Quantity::Angle, self.units)
+                ),
+                false => String::new(),
+            };
+            let off = shown(off, Quantity::Length, self.units);
+            format!("its pitch differs from that of the others by {off}/rad{tilted}")
+        })
+    }
+}
+
 impl fmt::Display for JointMiss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {} of leg {}: {}", self.joint, self.leg, self.reason())
     }
 }
 
-/// A number with two decimals, or with an exponent if it is too small for that.
-pub(in crate::decomposition) fn number(value: f64) -> String {
-    if value == 0.0 || value >= 0.01 { format!("{value:.2}") } else { format!("{value:.1e}") }
+/// A positive number of an SI unit in that of a file: with two decimals and at least two significant digits; with an
+/// exponent if it is very small.
+pub(in crate::decomposition) fn shown(value: f64, quantity: Quantity, units: FileUnits) -> String {
+    /// From here on down, zeros are hard to count.
+    const SMALL: f64 = 1e-4;
+    let (value, unit) = (value / units.factor(quantity), units.symbol(quantity));
+    if value == 0.0 || value >= 1.0 {
+        return format!("{value:.2} {unit}");
+    }
+    let two_digits = format!("{value:.1e}");
+    match two_digits.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()) {
+        Some(exponent) if value >= SMALL => {
+            let decimals = usize::try_from(1 - exponent).unwrap_or(2);
+            format!("{value:.decimals$} {unit}")
+        }
+        _ => format!("{two_digits} {unit}"),
+    }
 }
 
 /// The misses of the joints of a leg that have freedoms in a section.

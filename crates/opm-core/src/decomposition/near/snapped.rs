@@ -35,7 +35,7 @@ pub(super) fn snapped(
             }
             if miss.relative(length) > EXACT {
                 corrected.joints[joint] = moved(&leg.joints[joint], &groups, length);
-                misses.push(miss);
+                misses.push(miss.in_units(mechanism.units));
             }
         }
     }

@@ -3,9 +3,14 @@ use crate::Manipulator;
 use crate::decomposition::samples::{Numbers, displaced, gough};
 use crate::group::subspace::Frame;
 use crate::mechanism::examples::EXAMPLES;
-use crate::mechanism::file;
+use crate::mechanism::file::{self, AngleUnit, FileUnits, LengthUnit};
 use crate::mechanism::joint::{Joint, JointKind};
+use crate::numeric::Quantity;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
+
+/// The units that messages are in here.
+const MILLIMETRES: FileUnits =
+    FileUnits { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
 
 /// Rounding of exact numbers, relative to the mechanism's size.
 const ROUNDED: f64 = 1e-12;
@@ -267,4 +272,87 @@ fn incomplete_mechanisms_are_refused() {
     mechanism.legs[0].joints[1].point.x = f64::NAN;
     assert!(nearly(&mechanism).is_err());
     assert!(snap(&mechanism, 1e-3).is_err());
+}
+
+/// A mechanism that decomposes although a joint is off: the joint is named, with its true distance or angle.
+#[test]
+fn a_joint_that_is_slightly_off_is_named() {
+    for exact in shipped() {
+        assert_eq!(slightly_off(&exact), None, "{}", exact.name);
+    }
+    let exact = example("plano-spherical-5dof-joints");
+    let slipped = |change: &dyn Fn(&mut Joint), leg: usize, joint: usize| {
+        let mut off = exact.clone();
+        change(&mut off.legs[leg].joints[joint]);
+        slightly_off(&off).expect("a joint that is off")
+    };
+    // The axis of theta32 is (-0.433, 0.75, 0.5): a shift along x leaves 0.01 mm times the sine of the angle with it.
+    let near = slipped(&|joint| joint.point.x += 1e-5, 1, 4);
+    let sine = (1.0 - 0.433_012_701_892_22_f64.powi(2)).sqrt();
+    assert!((near.joints[0].distance - 1e-5 * sine).abs() < 1e-11, "{near}");
+    let told = "joint theta32 of leg leg2: its axis passes the centre of the others at 0.0090 mm";
+    assert_eq!(near.to_string(), told);
+    let near = slipped(&|joint| joint.point.z += 5e-6, 3, 2);
+    assert_eq!(
+        near.to_string(),
+        "joint s4 of leg leg4: its centre is 0.0050 mm from the centre of the others"
+    );
+    let tilt = 0.002_f64.to_radians();
+    let turned =
+        |axis: Unit<Vector3<f64>>| Unit::new_normalize(axis.into_inner() + Vector3::z() * tilt);
+    let near = slipped(&|joint| joint.axis = turned(joint.axis), 2, 0);
+    assert_eq!(
+        near.to_string(),
+        "joint S3 of leg leg3: its direction is 0.0020 deg off the plane of the others"
+    );
+    let turned =
+        |axis: Unit<Vector3<f64>>| Unit::new_normalize(axis.into_inner() + Vector3::x() * tilt);
+    let near = slipped(&|joint| joint.axis = turned(joint.axis), 0, 1);
+    let told =
+        "joint phi11 of leg leg1: its axis is 0.0020 deg off the normal of the plane of the others";
+    assert_eq!(near.to_string(), told);
+}
+
+/// Of a screw, the pitch is told where it is the pitch that differs.
+#[test]
+fn a_pitch_that_differs_is_told() {
+    let screw = |pitch, x| {
+        let point = nalgebra::Point3::new(x, 0.0, 0.0);
+        Joint::new("h", JointKind::Helical { pitch }, Vector3::z_axis(), point)
+    };
+    let (axis, point) = (Vector3::z_axis(), nalgebra::Point3::origin());
+    let planar = SubspaceClass::PlanarHelical { axis, pitch: 0.02 };
+    let helical = SubspaceClass::Helical { axis, point, pitch: 0.02 };
+    for (joint, group, told) in [
+        (screw(0.0203, 0.5), planar, "its pitch differs from that of the others by 0.30 mm/rad"),
+        (
+            screw(0.020_01, 0.0),
+            helical,
+            "its pitch differs from that of the others by 0.010 mm/rad",
+        ),
+        (screw(0.02, 1e-5), helical, "its axis passes the axis of the others at 0.010 mm"),
+    ] {
+        let leg = crate::mechanism::leg::Leg::new("leg", vec![joint]);
+        let freedoms = [crate::decomposition::Freedom { joint: 0, index: 0 }];
+        let section = crate::mechanism::leg::Section::Lower;
+        let misses = misses_of(&leg, &freedoms, section, group);
+        assert_eq!(misses[0].1.clone().in_units(MILLIMETRES).reason(), told);
+    }
+}
+
+#[test]
+fn small_numbers_keep_two_digits() {
+    for (value, text) in [
+        (0.0, "0.00"),
+        (4.3, "4.30"),
+        (123.456, "123.46"),
+        (0.5, "0.50"),
+        (0.0978, "0.098"),
+        (0.009_78, "0.0098"),
+        (0.009_999, "0.010"),
+        (1.234e-4, "0.00012"),
+        (3.2e-7, "3.2e-7"),
+    ] {
+        assert_eq!(shown(value, Quantity::Length, FileUnits::SI), format!("{text} m"));
+    }
 }

@@ -205,33 +205,41 @@ impl SubspaceClass {
     }
 }
 
-impl fmt::Display for SubspaceClass {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl SubspaceClass {
+    /// The group in words, with lengths in a unit: its size in metres, and its symbol.
+    pub fn in_unit(&self, size: f64, unit: &str) -> String {
         let triple = |v: &Vector3<f64>| {
             // Adding zero turns a rounded -0 into 0.
             let [x, y, z] = [v.x, v.y, v.z].map(|c| (c * 1e6).round() / 1e6 + 0.0);
             format!("({x}, {y}, {z})")
         };
-        write!(f, "{}", self.name())?;
-        match self {
+        let place = |point: &Point3<f64>| format!("{} {unit}", triple(&(point.coords / size)));
+        let advance = |pitch: &f64| format!("pitch {:.6} {unit}/rad", pitch / size);
+        let geometry = match self {
             Self::Rotation { axis, point } | Self::Cylindrical { axis, point } => {
-                write!(f, " about {} through {} m", triple(axis), triple(&point.coords))
+                format!(" about {} through {}", triple(axis), place(point))
             }
-            Self::Translation { axis } => write!(f, " along {}", triple(axis)),
+            Self::Translation { axis } => format!(" along {}", triple(axis)),
             Self::Helical { axis, point, pitch } => {
-                let (axis, point) = (triple(axis), triple(&point.coords));
-                write!(f, " about {axis} through {point} m, pitch {pitch:.6} m/rad")
+                format!(" about {} through {}, {}", triple(axis), place(point), advance(pitch))
             }
             Self::TranslationalPlane { normal } | Self::Planar { normal } => {
-                write!(f, " with normal {}", triple(normal))
+                format!(" with normal {}", triple(normal))
             }
-            Self::Spherical { centre } => write!(f, " about {} m", triple(&centre.coords)),
+            Self::Spherical { centre } => format!(" about {}", place(centre)),
             Self::PlanarHelical { axis, pitch } => {
-                write!(f, " about {}, pitch {pitch:.6} m/rad", triple(axis))
+                format!(" about {}, {}", triple(axis), advance(pitch))
             }
-            Self::Schoenflies { axis } => write!(f, " about {}", triple(axis)),
-            Self::Identity | Self::TranslationalSpace | Self::Full => Ok(()),
-        }
+            Self::Schoenflies { axis } => format!(" about {}", triple(axis)),
+            Self::Identity | Self::TranslationalSpace | Self::Full => String::new(),
+        };
+        self.name().to_owned() + &geometry
+    }
+}
+
+impl fmt::Display for SubspaceClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.in_unit(1.0, "m"))
     }
 }
 

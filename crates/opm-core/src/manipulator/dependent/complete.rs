@@ -87,20 +87,48 @@ impl Dependent {
         Ok(())
     }
 
-    /// The independent coordinates among all of a pose. Of the two triples of Euler angles of an orientation it takes
-    /// the one in the branch at home.
-    pub fn write_independent(
-        &self,
-        manipulator: &Manipulator,
-        all: &mut [f64],
-        pose: &mut Vec<f64>,
-    ) {
+    /// Chooses, among the angles with which all coordinates of a pose describe the same displacement, those that belong to a
+    /// mode: in the other ones the dependent coordinates may follow on another branch. Without a mode, they are those nearest
+    /// to home where a condition decides the branch.
+    pub fn choose_angles(&self, manipulator: &Manipulator, mode: Option<Mode>, all: &mut [f64]) {
         for step in &self.steps {
-            if let Closed::Joint(joint) = &step.solution {
-                joint.choose_angles(manipulator, step.sign(manipulator.home_mode()), all);
+            let sign = step.sign(mode.unwrap_or(manipulator.home_mode()));
+            match (&step.solution, mode) {
+                (Closed::Joint(joint), _) => joint.choose_angles(manipulator, sign, all),
+                (Closed::Condition { constraint, coordinate, function }, Some(mode))
+                    if step.bit.is_some() =>
+                {
+                    let Constraint { leg, section, .. } = *constraint;
+                    let Ok(tau) = manipulator.tau_before(leg, section, all, mode) else { continue };
+                    let task = manipulator.task();
+                    let target =
+                        |pose: &[f64]| target_of(task, &manipulator.legs[leg], section, tau, pose);
+                    let values = constraint.values(function.places(), *coordinate, all, target);
+                    // It rises in the one where it falls in the other, if the second angle follows from it.
+                    if sign * function.slope_at(values, all[*coordinate]) < 0.0 {
+                        task.take_other_angles(*coordinate, all);
+                    }
+                }
+                _ => {}
             }
         }
+    }
+
+    /// Writes the independent coordinates among all of a pose.
+    pub fn write_independent(&self, all: &[f64], pose: &mut Vec<f64>) {
+        pose.clear();
         pose.extend(self.independent.iter().map(|&i| all[i]));
+    }
+
+    /// Writes the independent and the dependent coordinates to their places among all.
+    pub fn merge(&self, [independent, others]: [&[f64]; 2], all: &mut [f64]) {
+        self.spread(independent, all);
+        self.coordinates.iter().zip(others).for_each(|(&i, value)| all[i] = *value);
+    }
+
+    /// The dependent coordinates among all of a pose.
+    pub fn values(&self, all: &[f64]) -> impl Iterator<Item = f64> {
+        self.coordinates.iter().map(|&i| all[i])
     }
 }
 
@@ -145,19 +173,30 @@ impl Manipulator {
         Ok(all)
     }
 
-    /// The independent coordinates among all of a pose.
-    pub(crate) fn independent_of(&self, all: &[f64]) -> Vec<f64> {
+    /// The independent coordinates among all of a pose, with the angles of a mode.
+    pub(crate) fn independent_in(&self, all: &[f64], mode: Mode) -> Vec<f64> {
         let (mut all, mut pose) = (all.to_vec(), Vec::with_capacity(self.independent.len()));
-        self.write_independent(&mut all, &mut pose);
+        self.write_independent(Some(mode), &mut all, &mut pose);
         pose
     }
 
-    /// Writes them to a buffer. In `all`, they replace others of the same displacement.
-    pub(crate) fn write_independent(&self, all: &mut [f64], pose: &mut Vec<f64>) {
-        pose.clear();
+    /// Writes them to a buffer, with the angles of a mode: see [`Dependent::choose_angles`]. In `all`, these replace others of
+    /// the same displacement.
+    pub(crate) fn write_independent(
+        &self,
+        mode: Option<Mode>,
+        all: &mut [f64],
+        pose: &mut Vec<f64>,
+    ) {
         match &self.dependent {
-            None => pose.extend_from_slice(all),
-            Some(dependent) => dependent.write_independent(self, all, pose),
+            None => {
+                pose.clear();
+                pose.extend_from_slice(all);
+            }
+            Some(dependent) => {
+                dependent.choose_angles(self, mode, all);
+                dependent.write_independent(all, pose);
+            }
         }
     }
 

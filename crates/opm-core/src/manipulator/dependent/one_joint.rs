@@ -14,9 +14,8 @@ use crate::manipulator::Manipulator;
 use crate::manipulator::leg::Section;
 use crate::numeric::Quantity;
 use crate::numeric::angle::{atan2, near, unit};
-use crate::task::Task;
+use crate::task::{Task, other_triple};
 use nalgebra::{Complex, Matrix3};
-use std::f64::consts::PI;
 
 /// An axis whose angle with the third direction has a sine below this is along that direction.
 pub(crate) const ALONG: f64 = 1e-9;
@@ -131,18 +130,24 @@ impl OneJoint {
     /// share it. Elsewhere there are two triples, and the one is chosen that belongs to the branch `sign`.
     pub fn choose_angles(&self, manipulator: &Manipulator, sign: f64, pose: &mut [f64]) {
         let task = manipulator.task();
-        let home = |i: usize| task.coordinates[self.all[i]].home;
-        match self.motion {
-            SectionMotion::None | SectionMotion::Turn(_) | SectionMotion::Slide(..) => {}
-            SectionMotion::Third => {
+        // A section of two coordinates has no other angles than these.
+        let &[first, second, third] = &self.all[..] else { return };
+        let numbers = [first, second, third];
+        let at_home = numbers.map(|i| task.coordinates[i].home);
+        let home = task.angles.to_euler(at_home);
+        let chosen = match self.motion {
+            SectionMotion::Turn(_) | SectionMotion::Slide(..) => return,
+            SectionMotion::None | SectionMotion::Third => {
                 let (v, b) = task.sections(pose);
                 let displacement = if self.section == Section::Lower { v } else { b };
-                pose[self.all[0]] = near(of_displacement(&displacement, home)[0], home(0));
+                let Displacement::Spherical(_) = displacement else { return };
+                let [zeta, ..] = of_displacement(&displacement, |i| home[i]);
+                [zeta, home[1], home[2]]
             }
             SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
-                let home = task.angles.to_euler([0, 1, 2].map(home));
-                let [zeta, xi, psi] = task.angles.to_euler([0, 1, 2].map(|i| pose[self.all[i]]));
-                let other = [near(zeta + PI, home[0]), -xi, near(psi + PI, home[2])];
+                let [zeta, xi, psi] = task.angles.to_euler(numbers.map(|i| pose[i]));
+                let [a, b, c] = other_triple([zeta, xi, psi]);
+                let other = [near(a, home[0]), b, near(c, home[2])];
                 let off = |[_, xi, psi]: [f64; 3]| {
                     let found = angles(task, &s, xi, sign);
                     found.map_or(f64::INFINITY, |found| near(found[2] - psi, 0.0).abs())
@@ -152,9 +157,12 @@ impl OneJoint {
                 // Near their singularity only the sum of the two angles is known, or their difference.
                 let follows = angles(task, &s, xi, sign).map_or(psi, |found| near(found[2], psi));
                 let rest = if xi.cos() > 0.0 { psi - follows } else { follows - psi };
-                let chosen = task.angles.of_euler([zeta + rest, xi, follows]);
-                self.all.iter().zip(chosen).for_each(|(&i, angle)| pose[i] = angle);
+                [zeta + rest, xi, follows]
             }
+        };
+        let chosen = task.angles.of_euler(chosen);
+        for ((number, angle), home) in numbers.into_iter().zip(chosen).zip(at_home) {
+            pose[number] = near(angle, home);
         }
     }
 

@@ -48,7 +48,12 @@ impl Function {
 
     /// The slope at home of the function with these values.
     pub fn slope(&self, values: [f64; 3]) -> f64 {
-        self.through(values).slope_at_zero() / self.step
+        self.through(values).slope_at(0.0) / self.step
+    }
+
+    /// The slope at a value of the coordinate of the function with these values.
+    pub fn slope_at(&self, values: [f64; 3], coordinate: f64) -> f64 {
+        self.through(values).slope_at((coordinate - self.home) / self.step) / self.step
     }
 
     /// The zero at which the function with these values rises (`sign` is positive) or falls; the only zero if there is

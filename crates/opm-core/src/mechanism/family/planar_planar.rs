@@ -190,6 +190,7 @@ impl PlanarPlanar {
             },
             bodies: BodyMasses::default(),
             shapes: Shapes::default(),
+            units: Default::default(),
         })
     }
 

@@ -158,6 +158,7 @@ impl PlanoSpherical {
             },
             bodies: BodyMasses::default(),
             shapes: Shapes::default(),
+            units: Default::default(),
         })
     }
 

@@ -127,6 +127,7 @@ impl TranslationalHelical {
             },
             bodies: BodyMasses::default(),
             shapes: Shapes::default(),
+            units: Default::default(),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! The names of columns in tables, with or without units: `x`, `x [mm]`.
+//! The names of columns in tables, with or without units: `x`, `x [mm]`, `x (mm)`.
 
 use super::units::{AngleUnit, FileUnits, LengthUnit};
 use crate::numeric::Quantity;
@@ -12,6 +12,8 @@ use crate::numeric::Quantity;
 /// let heading = Heading::parse("S1 [mm]");
 /// let units = heading.units(Quantity::Length)?.expect("a unit");
 /// assert_eq!((heading.name, units.si(12.5, Quantity::Length)), ("S1", 0.0125));
+/// assert_eq!(Heading::parse("S1(mm)"), heading);
+/// assert_eq!(Heading::parse("S1 (left)").name, "S1 (left)");
 /// assert_eq!(Heading::parse("S1").units(Quantity::Length)?, None);
 /// assert!(heading.units(Quantity::Angle).is_err());
 /// # Ok::<(), String>(())
@@ -25,9 +27,18 @@ pub struct Heading<'a> {
 }
 
 impl<'a> Heading<'a> {
-    /// Reads the text of a heading.
+    /// Reads the text of a heading. A unit may stand in parentheses, too; other words in them belong to the name.
     pub fn parse(text: &'a str) -> Self {
+        let is_unit = |unit: &str| {
+            unit == "s"
+                || LengthUnit::from_symbol(unit).is_some()
+                || AngleUnit::from_symbol(unit).is_some()
+        };
         let split = text.trim().strip_suffix(']').and_then(|text| text.split_once('['));
+        let split = split.or_else(|| {
+            let split = text.trim().strip_suffix(')').and_then(|text| text.rsplit_once('('));
+            split.filter(|(_, unit)| is_unit(unit.trim()))
+        });
         match split {
             Some((name, unit)) => Self { name: name.trim_end(), unit: Some(unit.trim()) },
             None => Self { name: text.trim(), unit: None },

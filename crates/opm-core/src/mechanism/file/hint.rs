@@ -3,6 +3,9 @@
 /// The known word that was probably meant.
 pub(in crate::mechanism) fn nearest<W: AsRef<str>>(found: &str, words: &[W]) -> Option<String> {
     let length = found.chars().count();
+    if words.iter().all(|word| length > 2 * word.as_ref().chars().count() + 2) {
+        return None;
+    }
     let best = |distance: &dyn Fn(&str) -> usize, allowed: usize| {
         let distances = words.iter().map(|word| (distance(word.as_ref()), word.as_ref()));
         let (distance, word) = distances.min_by_key(|&(distance, _)| distance)?;

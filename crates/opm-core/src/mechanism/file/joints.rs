@@ -4,7 +4,7 @@ use super::leg_name;
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
 use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
-use crate::mechanism::leg::{Leg, Section};
+use crate::mechanism::leg::{Leg, Section, placed};
 use crate::mechanism::{
     BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, Shapes, TaskHints,
     TaskKey,
@@ -144,7 +144,9 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         root.reader.report(at, problem);
     }
     let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
-    (Mechanism { name: name.to_owned(), legs, platform, task, bodies, shapes }, locations)
+    let units = root.reader.units();
+    let name = name.to_owned();
+    (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations)
 }
 
 /// Reads `[task]`: how the pose is measured. Whether it fits the geometry is checked later.
@@ -227,11 +229,17 @@ fn read_joints(
     if items.is_empty() {
         value.report("is empty, expected at least one joint");
     }
-    all(items.iter().map(|item| read_joint(item, platform, names)))
+    let joints = all(items.iter().map(|item| read_joint(item, platform, names)))?;
+    Some(placed(joints))
 }
 
 /// Reads a joint; `None` if it has no type, because the type decides what else there is to check.
-fn read_joint(value: &Value<'_>, platform: Point3<f64>, names: &mut UniqueNames) -> Option<Joint> {
+/// The second value says whether it has a place of its own.
+fn read_joint(
+    value: &Value<'_>,
+    platform: Point3<f64>,
+    names: &mut UniqueNames,
+) -> Option<(Joint, bool)> {
     let table = value.open_table()?;
     let name = table.require("name", "the joint's name").and_then(|value| value.name());
     let kind = table.require("type", "the joint's type")?.word(&TYPES)?;
@@ -241,9 +249,11 @@ fn read_joint(value: &Value<'_>, platform: Point3<f64>, names: &mut UniqueNames)
         Type::Spherical => None,
         _ => direction(&table, "axis"),
     };
-    let point = match (kind, table.get("point")) {
-        (Type::Prismatic, None) => platform,
-        _ => table
+    let given = table.get("point");
+    let has_place = kind != Type::Prismatic || given.is_some();
+    let point = match has_place {
+        false => platform,
+        true => table
             .require("point", "a point [x, y, z] of the joint at home")
             .and_then(|value| value.point())
             .map_or(platform, Point3::from),
@@ -261,7 +271,7 @@ fn read_joint(value: &Value<'_>, platform: Point3<f64>, names: &mut UniqueNames)
         }
     }
     read_coordinates(&table, &mut joint);
-    Some(joint)
+    Some((joint, has_place))
 }
 
 fn direction(table: &Table<'_>, key: &str) -> Option<Unit<Vector3<f64>>> {

@@ -86,6 +86,7 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     let coordinates = task.map(|task| joints::read_angles(&task, &mut noted)).unwrap_or_default();
     let (family, mut mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
     mechanism.task.coordinates = coordinates;
+    mechanism.units = units;
     bodies::read(root, &mut mechanism);
     mechanism.shapes.obstacles = obstacles::read(root);
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());

@@ -9,6 +9,7 @@ use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
 use crate::mechanism::joint::DriveLimit;
 use crate::numeric::Quantity;
+use crate::text::{is_unseen, quoted};
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 use toml::Spanned;
@@ -105,14 +106,21 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Reads a name: not empty, and without characters that would break it on command lines or in
-    /// headers of tables (commas, equals signs, quotes, line ends).
+    /// Reads a name: not empty, without characters that would break it on command lines or in headers of tables (commas,
+    /// equals signs, quotes), and without any that cannot be seen, which terminals obey and compilers refuse.
     pub(crate) fn name(&self) -> Option<&'a str> {
         let name = self.string()?;
-        let breaks = |c: char| c.is_control() || matches!(c, ',' | '=' | '"');
-        if name.trim().is_empty() || name.trim() != name || name.contains(breaks) {
+        let shown = quoted(name);
+        if let Some(unseen) = name.chars().find(|&c| is_unseen(c)) {
             self.report(format!(
-                "is {name:?}, expected a name: not empty, without spaces around it, and without , = \""
+                "is {shown}, expected a name without U+{:04X}, a character that is not seen",
+                u32::from(unseen)
+            ));
+            return None;
+        }
+        if name.trim().is_empty() || name.trim() != name || name.contains([',', '=', '"']) {
+            self.report(format!(
+                "is {shown}, expected a name: not empty, without spaces around it, and without , = \""
             ));
             return None;
         }
@@ -125,7 +133,7 @@ impl<'a> Value<'a> {
         let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);
         if found.is_none() {
             let names: Vec<_> = words.iter().map(|&(word, _)| word).collect();
-            self.report(format!("is {text:?}, {}", expected_one_of(text, &names)));
+            self.report(format!("is {}, {}", quoted(text), expected_one_of(text, &names)));
         }
         found
     }

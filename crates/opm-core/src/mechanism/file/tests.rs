@@ -1,5 +1,6 @@
 use super::*;
 use crate::chain::Branch;
+use nalgebra::Point3;
 
 mod fuzz;
 mod problems;
@@ -32,6 +33,10 @@ joints = [
 ]
 "#;
 
+fn r1_point(mechanism: &Mechanism) -> Point3<f64> {
+    mechanism.joints().find(|joint| joint.name == "r1").unwrap().point
+}
+
 #[test]
 fn every_kind_of_joint_is_read_in_si() {
     use crate::mechanism::joint::{JointKind, MotionLimits};
@@ -51,7 +56,11 @@ fn every_kind_of_joint_is_read_in_si() {
     let [s1, r1, h1] = &mechanism.legs[0].joints[..] else { panic!() };
     assert_eq!((s1.kind, s1.actuated), (JointKind::Prismatic, true));
     assert_eq!(s1.axis, Unit::new_normalize(Vector3::new(0.0, 0.6, 0.8)));
-    assert_eq!(s1.point, mechanism.platform, "a slider without a point is drawn at the platform");
+    assert_eq!(
+        s1.point,
+        r1_point(&mechanism),
+        "a slider without a point is where the next joint is"
+    );
     assert_eq!(s1.coordinates[0].home, 12.5 * 0.001);
     assert_eq!(s1.coordinates[0].limits, Some([-300.0 * 0.001, 300.0 * 0.001]));
     let limits = s1.coordinates[0].motion_limits;
@@ -100,11 +109,64 @@ fn a_family_keeps_its_parameters_units_and_mode() {
     let arm = &file.mechanism.legs[3].joints[1].coordinates[0];
     assert_eq!((arm.name.as_str(), arm.motion_limits.max_rate), ("phi24", None));
     assert_eq!(arm.motion_limits.max_acceleration, Some(720.0_f64.to_radians()));
-    assert_eq!(family.assemble().unwrap(), file.mechanism);
+    let assembled = Mechanism { units: file.units, ..family.assemble().unwrap() };
+    assert_eq!(assembled, file.mechanism);
 
     let lines = |key: &str| text.lines().filter(|l| !l.starts_with(key)).collect::<Vec<_>>();
     assert_eq!(read(&lines("home").join("\n")), read(text), "home is zero where it is not given");
     assert_eq!(read(&lines("mode").join("\n")), read(text), "choices are + where not given");
     let unnamed = read(&lines("name = \"leg").join("\n")).unwrap();
     assert_eq!(unnamed.mechanism, read(text).unwrap().mechanism, "legs are named by their number");
+}
+
+/// A slider without a point is on its leg: at the next joint that has one, over other sliders, or else at the one before. In a leg
+/// of sliders alone it is at the platform. One with a point stays there.
+#[test]
+fn sliders_without_points_are_on_their_legs() {
+    let slider = |name: &str, rest: &str| {
+        format!("{{ name = \"{name}\", type = \"prismatic\", axis = [1, 0, 0]{rest} }}")
+    };
+    let pivot = |name: &str, x: f64| {
+        format!(
+            "{{ name = \"{name}\", type = \"revolute\", axis = [0, 0, 1], point = [{x:?}, 2, 0] }}"
+        )
+    };
+    let legs = [
+        vec![slider("a1", ", actuated = true"), pivot("a2", 3.0), pivot("a3", 4.0)],
+        vec![slider("b1", ", actuated = true"), slider("b2", ""), pivot("b3", 5.0)],
+        vec![pivot("c1", 6.0), pivot("c2", 7.0), slider("c3", "")],
+        vec![slider("d1", ", point = [8, 2, 0]"), pivot("d2", 9.0), slider("d3", "")],
+        vec![slider("e1", ""), slider("e2", "")],
+    ];
+    let mut text = "format = 1\nname = \"sliders\"\nunits = { length = \"m\", angle = \"rad\" }\n\
+                    [platform]\npoint = [-1, 0, 0]\n"
+        .to_owned();
+    for (number, joints) in legs.iter().enumerate() {
+        text += &format!("[[leg]]\nname = \"leg{number}\"\njoints = [{}]\n", joints.join(", "));
+    }
+    let mechanism = read(&text).unwrap().mechanism;
+    let expected = [
+        ("a1", 3.0),
+        ("b1", 5.0),
+        ("b2", 5.0),
+        ("c3", 7.0),
+        ("d1", 8.0),
+        ("d3", 9.0),
+        ("e1", -1.0),
+        ("e2", -1.0),
+    ];
+    for (name, x) in expected {
+        let joint = mechanism.joints().find(|joint| joint.name == name).unwrap();
+        assert_eq!(joint.point.x, x, "{name}");
+    }
+    // They are drawn there, so that no two legs meet in one point; d1, whose line passes through d2, is drawn at that.
+    let skeleton = crate::skeleton::Skeleton::new(&mechanism, None);
+    let seats = skeleton.bodies().iter().flat_map(|body| {
+        body.seats.iter().map(|seat| (seat.joint.clone(), body.origin + seat.centre.coords))
+    });
+    for (joint, centre) in seats.filter(|(joint, _)| !joint.starts_with('e') && joint != "d1") {
+        if let Some((_, x)) = expected.iter().find(|(name, _)| *name == joint) {
+            assert!((centre - Point3::new(*x, 2.0, 0.0)).norm() < 1e-12, "{joint}: {centre}");
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! The screws of coordinates, of the joints of a section at a pose, and of the intersection motion, and their reciprocal
 //! screws.
 
+use super::Columns;
 use crate::c::Writer;
 use crate::c::leg::{Given, ball, given};
 use crate::c::pose::{intersection, kind, numbers, shared, tilt_torsion, word};
@@ -28,7 +29,12 @@ pub struct SectionRows {
 
 impl Writer<'_> {
     /// The screws of a section's coordinates, after statements that they need.
-    pub fn coordinate_screws(&self, section: Section, text: &mut String) -> Vec<String> {
+    pub fn coordinate_screws(
+        &self,
+        section: Section,
+        columns: Columns,
+        text: &mut String,
+    ) -> Vec<String> {
         let (task, numbers) = (self.task, numbers(self.task, &self.forms, section));
         let q = |i: usize| format!("q[{0}] - g->home[{0}]", numbers[i]);
         let of = |screws: &[&str]| screws.iter().map(|&screw| screw.to_owned()).collect();
@@ -48,21 +54,10 @@ impl Writer<'_> {
                 let _ = writeln!(text, "    const NAME_complex tilted = {e};");
                 vec![X.to_owned(), "NAME_vector_of(0, tilted.re, tilted.im)".to_owned()]
             }
-            SubspaceKind::Spherical => {
-                let word = word(section);
-                let _ = writeln!(
-                    text,
-                    "    const NAME_screws {word}_angles = NAME_euler_screws(q[{}], q[{}]);",
-                    numbers[0], numbers[1]
-                );
-                let [s1, s2, s3] = [1, 2, 3].map(|i| format!("{word}_angles.s{i}"));
-                // The third Euler angle is the torsion minus the azimuth.
-                let s1 = match tilt_torsion(task) {
-                    true => format!("NAME_add({s1}, -1, {s3})"),
-                    false => s1,
-                };
-                vec![s1, s2, s3]
-            }
+            SubspaceKind::Spherical => match columns {
+                Columns::Motions => of(&[X, Y, Z]),
+                Columns::Coordinates => self.angle_screws(section, text).into(),
+            },
             SubspaceKind::Cylindrical if rotates && !upper => of(&[Y]),
             SubspaceKind::Cylindrical if translates && upper => of(&[X]),
             SubspaceKind::Cylindrical => of(&[X, Y]),
@@ -71,6 +66,23 @@ impl Writer<'_> {
             SubspaceKind::TranslationalSpace if shared(task).is_some() && upper => of(&[X, Y]),
             SubspaceKind::TranslationalSpace => of(&[X, Y, Z]),
         }
+    }
+
+    /// The screws of the three angles of a section's orientation, after statements that they need.
+    pub fn angle_screws(&self, section: Section, text: &mut String) -> [String; 3] {
+        let (word, numbers) = (word(section), numbers(self.task, &self.forms, section));
+        let _ = writeln!(
+            text,
+            "    const NAME_screws {word}_angles = NAME_euler_screws(q[{}], q[{}]);",
+            numbers[0], numbers[1]
+        );
+        let [s1, s2, s3] = [1, 2, 3].map(|i| format!("{word}_angles.s{i}"));
+        // The third Euler angle is the torsion minus the azimuth.
+        let s1 = match tilt_torsion(self.task) {
+            true => format!("NAME_add({s1}, -1, {s3})"),
+            false => s1,
+        };
+        [s1, s2, s3]
     }
 
     /// The unit twist of the intersection motion in the frame of a section.

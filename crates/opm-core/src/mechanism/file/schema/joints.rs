@@ -22,7 +22,7 @@ pub fn joint_list() -> Value {
 /// What the keys of such a file mean, apart from `leg`.
 pub fn properties() -> Properties {
     let platform = "The platform at home.";
-    let reference = point("the platform's reference point, whose place the pose gives", 3);
+    let reference = point("the platform's reference point, which a pose in SE(3) places", 3);
     let reference = [("point".to_owned(), reference)].into_iter().collect();
     let task = "How the pose is measured, where the geometry leaves a choice. `opm decompose` prints the \
                 frames that result.";

@@ -8,8 +8,9 @@ use serde_json::{Value, json};
 /// Names are not empty, have no spaces around them, and none of the characters that would break them on
 /// command lines and in headers of tables.
 const NAME: &str = concat!(
-    r#"^[^\s,="\x00-\x1f\x7f-\x9f]"#,
-    r#"([^,="\x00-\x1f\x7f-\x9f]*[^\s,="\x00-\x1f\x7f-\x9f])?$"#
+    r#"^[^\s,="\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufdd0-\ufdef\ufeff\ufff9-\ufffb\ufffe\uffff]"#,
+    r#"([^,="\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufdd0-\ufdef\ufeff\ufff9-\ufffb\ufffe\uffff]*"#,
+    r#"[^\s,="\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufdd0-\ufdef\ufeff\ufff9-\ufffb\ufffe\uffff])?$"#
 );
 
 /// A name.
