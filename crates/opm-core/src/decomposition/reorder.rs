@@ -192,7 +192,7 @@ fn orders(mechanism: &Mechanism, exchanges: Exchanges) -> Vec<Changes> {
         }
     }
     if legs.len() <= MOST_LEGS {
-        // Without the choices of none and of all: all legs reversed are the inverse motion.
+        // Neither none nor all: with every leg reversed, the mechanism makes the inverse motion.
         let choices = 1..(1_usize << legs.len()) - 1;
         let mut reversed: Vec<Changes> = choices
             .map(|choice| (0..legs.len()).filter(move |leg| choice >> leg & 1 == 1))

@@ -20,7 +20,7 @@ use std::str::FromStr;
 pub struct ColumnNames(Vec<(String, String)>);
 
 impl ColumnNames {
-    /// Names, each with the heading of its column: all of it, or all but the unit.
+    /// Names, each with the heading of its column, with or without the unit.
     ///
     /// # Errors
     /// A name or a heading is empty or given twice, or there is none.

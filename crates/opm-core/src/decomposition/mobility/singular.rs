@@ -1,8 +1,8 @@
 //! Singularity of the home pose: its ranks compared with those of assembled poses nearby.
 //!
 //! Ranks drop in special poses and never rise, so a pose is singular if a pose nearby has a higher
-//! rank. A singular value that drops to a small share of what it is nearby is regular still. Such a pose is found by a first-order motion of finite size, which is projected back onto
-//! the loop closure by Levenberg-Marquardt steps with the remaining gap as damping. They converge
+//! rank. A singular value at home that is a small share of what it is nearby, but not zero, is regular still.
+//! A pose nearby is found by a first-order motion of finite size, which is projected back onto the loop closure by Levenberg-Marquardt steps with the remaining gap as damping. They converge
 //! quadratically even if the closure's rank is deficient (Fan and Yuan, Computing 74, 2005), as it
 //! is in every overconstrained mechanism.
 
