@@ -2,9 +2,9 @@
 //!
 //! Ranks drop in special poses and never rise, so a pose is singular if a pose nearby has a higher
 //! rank. A singular value at home that is a small share of what it is nearby, but not zero, is regular still.
-//! A pose nearby is found by a first-order motion of finite size, which is projected back onto the loop closure by Levenberg-Marquardt steps with the remaining gap as damping. They converge
-//! quadratically even if the closure's rank is deficient (Fan and Yuan, Computing 74, 2005), as it
-//! is in every overconstrained mechanism.
+//! A pose nearby is found by a first-order motion of finite size, which is projected back onto the loop closure by
+//! Levenberg-Marquardt steps with the remaining gap as damping. They converge quadratically even if the closure's
+//! rank is deficient (Fan and Yuan, Computing 74, 2005), as it is in every overconstrained mechanism.
 
 use super::linkage::{FirstOrder, Linkage, Pose};
 use super::{absolute_values, loose_twists, platform};
