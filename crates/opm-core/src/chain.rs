@@ -16,6 +16,7 @@
 //!   parallel sliders) is refused when it is built.
 
 // Public for the sibling crates of the workspace only.
+mod closed_form;
 #[doc(hidden)]
 pub mod condition;
 pub mod cylindrical;
@@ -42,9 +43,11 @@ pub mod surface;
 pub(crate) mod track;
 pub mod translational;
 
+pub use closed_form::{Attempt, ClosedForm, Closes, Exception};
 pub use joint::ChainJoint;
 
 use crate::group::{Displacement, JointDisplacement, Subspace, SubspaceKind};
+use crate::numbers::{self, REACH};
 use crate::numeric::Quantity;
 use cylindrical::CylindricalChain;
 use joint::{coaxial_joint, each, planar_joint, slide, spatial_slide, spherical_axis};
@@ -57,13 +60,12 @@ use spherical::{Ball, SphericalChain};
 use surface::Surface;
 use translational::TranslationalChain;
 
-/// How far beyond its reach a chain still closes, as a fraction of its size. A pose on the boundary of
-/// reach counts as inside; the rounding of such a pose is of the order of 1e-15 and must not decide.
-pub const REACH_TOLERANCE: f64 = 1e-12;
+/// How far beyond its reach a chain still closes, as a fraction of its size: [`REACH`].
+pub const REACH_TOLERANCE: f64 = REACH.share;
 
 /// A link length (as a fraction of the chain's size) or an angle between axes (radians) below this counts
 /// as zero.
-pub(crate) const DEGENERATE: f64 = 1e-9;
+pub(crate) const DEGENERATE: f64 = numbers::DEGENERATE.share;
 
 /// One of the two solutions of a two-valued choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -133,77 +135,6 @@ pub enum ChainError {
     /// A kind of joint that no chain of the subspace can have. The field names the subspace.
     #[error("a joint of a kind that a {0} chain cannot have")]
     Foreign(&'static str),
-}
-
-/// `z` as a direction; where `z` is zero compared to `size`, so that its angle is free, the direction of
-/// the angle zero.
-#[inline(always)]
-fn direction(z: Complex<f64>, size: f64) -> Complex<f64> {
-    // `z` is a product of two lengths: each may be as short as REACH_TOLERANCE.
-    let shortest = REACH_TOLERANCE * REACH_TOLERANCE * size;
-    let long = z.norm_sqr() > shortest * shortest;
-    Complex::new(if long { z.re } else { 1.0 }, if long { z.im } else { 0.0 })
-}
-
-/// The result of a closed form's general case, which does not test what kind of target it has.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Attempt {
-    /// The joints' displacements, base first. They are valid only where `holds` is true.
-    pub displacements: [JointDisplacement; 3],
-    /// Whether the target is in reach and the general case applies.
-    pub holds: bool,
-    /// Whether the target is certainly out of reach. Where neither `holds` nor `beyond` is true,
-    /// [`ClosedForm::exception`] decides.
-    pub beyond: bool,
-}
-
-impl Attempt {
-    /// The result of a closed form whose general case applies to every target in reach.
-    #[inline(always)]
-    fn decided(displacements: [JointDisplacement; 3], holds: bool) -> Self {
-        Self { displacements, holds, beyond: !holds }
-    }
-
-    /// The result for the inverse of the target and the joints in reverse order:
-    /// `(E₁E₂E₃)⁻¹ = E₃⁻¹E₂⁻¹E₁⁻¹`, each displacement with the opposite sign.
-    #[inline(always)]
-    fn backwards(self) -> Self {
-        let [a3, a2, a1] = self.displacements;
-        Self { displacements: [a1.inverse(), a2.inverse(), a3.inverse()], ..self }
-    }
-}
-
-/// A chain whose target fixes its joints up to a sign.
-pub(crate) trait ClosedForm {
-    /// The type of a displacement of the chain's subspace.
-    type Target;
-
-    /// The general case. It has no branch and no call, so that a loop over targets is vectorised. Which
-    /// variant of [`JointDisplacement`] it gives for a joint depends on the joint alone, not on the target.
-    fn attempt(&self, target: &Self::Target, branch: Branch) -> Attempt;
-
-    /// Handles a target to which the general case does not apply: computes the reach deficit, or solves the
-    /// special case. It is never called for a chain whose general case always applies.
-    fn exception(
-        &self,
-        target: &Self::Target,
-        branch: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        Ok(self.attempt(target, branch).displacements)
-    }
-
-    /// Writes the joints' displacements that move the outer link by `target`; nothing where it is out of reach.
-    #[inline(always)]
-    fn solve(
-        &self,
-        target: &Self::Target,
-        branch: Branch,
-        out: &mut [JointDisplacement; 3],
-    ) -> Result<(), ReachDeficit> {
-        let Attempt { displacements, holds, .. } = self.attempt(target, branch);
-        *out = if holds { displacements } else { self.exception(target, branch)? };
-        Ok(())
-    }
 }
 
 /// The closed form of one section of a leg.
@@ -352,7 +283,9 @@ impl Chain {
         match self {
             Self::Rigid => *out = [JointDisplacement::Value(0.0); 3],
             Self::Planar(chain) => return chain.solve(target.planar(), branch, out),
-            Self::Spherical(chain) => return chain.solve(target.spherical(), branch, out),
+            Self::Spherical(chain) => {
+                return closed_form::solve(chain, target.spherical(), branch, out);
+            }
             Self::Ball(ball) => *out = ball.inverse(target.spherical()),
             Self::Cylindrical(chain) => *out = pad(chain.inverse(target.cylindrical())),
             Self::Translational(chain) => *out = pad(chain.inverse(*target.translational())),

@@ -72,7 +72,7 @@
 //! * A pose out of reach is an answer (`None`), not an error; an error means that the input is not valid.
 //!   A pose on the boundary of reach, or on a limit, counts as inside.
 
-// Layers: text, numeric, group, chain, mechanism, decomposition, task, manipulator, velocity, forward, motion,
+// Layers: text, numeric, numbers, group, chain, mechanism, decomposition, task, manipulator, velocity, forward, motion,
 // trajectory, enclosure, linkage, skeleton. Each uses only those before it (tests/layers.rs).
 pub mod chain;
 pub mod decomposition;
@@ -85,6 +85,7 @@ pub mod linkage;
 pub mod manipulator;
 pub mod mechanism;
 pub mod motion;
+pub mod numbers;
 pub mod numeric;
 pub mod skeleton;
 pub mod table;

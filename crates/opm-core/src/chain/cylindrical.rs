@@ -3,7 +3,7 @@
 //! direction.
 
 use super::surface::Surface;
-use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, ReachDeficit};
+use super::{Attempt, ChainError, ClosedForm, DEGENERATE, Exception};
 use crate::group::{CylindricalDisplacement, JointDisplacement};
 use crate::numeric::angle::{MOST_REDUCED, sin_cos_reduced};
 use nalgebra::Complex;
@@ -117,7 +117,7 @@ impl<const NUMBER: usize> ClosedForm for WithRevolute<NUMBER> {
     type Target = CylindricalDisplacement;
 
     #[inline(always)]
-    fn attempt(&self, target: &CylindricalDisplacement, _: Branch) -> Attempt {
+    fn attempt(&self, target: &CylindricalDisplacement, _: f64) -> Attempt {
         let [first, second] = self.0.coordinates(target);
         let mut displacements = [first, second, 0.0].map(JointDisplacement::Value);
         let mut reduced = true;
@@ -131,12 +131,9 @@ impl<const NUMBER: usize> ClosedForm for WithRevolute<NUMBER> {
     }
 
     #[cold]
-    fn exception(
-        &self,
-        target: &CylindricalDisplacement,
-        _: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
+    fn exception(&self, target: &CylindricalDisplacement, _: f64) -> Exception {
         let [first, second] = self.0.inverse(target);
-        Ok([first, second, JointDisplacement::Value(0.0)])
+        let all = [first, second, JointDisplacement::Value(0.0)];
+        Exception { special: Some((true, all)), ..Exception::length(0.0) }
     }
 }

@@ -22,27 +22,42 @@ pub use rpr::Rpr;
 pub use rrp::Rrp;
 pub use rrr::Rrr;
 
+use super::closed_form::{self, Attempt, ClosedForm, Closes, Exception};
 use super::shape::Shape;
-use super::{Branch, ChainError, ClosedForm, ReachDeficit};
+use super::{Branch, ChainError, ReachDeficit};
 use crate::chain::limits::Limits;
 use crate::group::{JointDisplacement, PlanarDisplacement};
+use crate::numbers::{Joint, Over, Plane, PlaneOver, REACH, Real, Truth};
 use nalgebra::Complex;
 
 /// A joint of a planar chain at home.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PlanarJoint {
+pub enum PlanarJoint<Z: Plane = Complex<f64>> {
     /// Rotation about the point `at`; positive clockwise where `reversed`.
     Revolute {
         /// The position of the axis at home, metres.
-        at: Complex<f64>,
+        at: Z,
         /// Whether the joint's axis points against the plane's normal.
-        reversed: bool,
+        reversed: Z::Sense,
     },
     /// Translation in the direction `along`, a unit vector.
     Prismatic {
         /// The unit direction at home.
-        along: Complex<f64>,
+        along: Z,
     },
+}
+
+impl<Z: Plane> PlanarJoint<Z> {
+    /// The joint displaced by `g`.
+    pub(crate) fn carried<T: PlaneOver<Z, Sense = Z::Sense>>(
+        self,
+        g: &PlanarDisplacement<T>,
+    ) -> PlanarJoint<T> {
+        match self {
+            Self::Revolute { at, reversed } => PlanarJoint::Revolute { at: g.apply(at), reversed },
+            Self::Prismatic { along } => PlanarJoint::Prismatic { along: g.rotation * along },
+        }
+    }
 }
 
 impl PlanarJoint {
@@ -63,52 +78,146 @@ impl PlanarJoint {
     pub(super) fn is_reversed(&self) -> bool {
         matches!(self, Self::Revolute { reversed: true, .. })
     }
-
-    /// The joint displaced by `g`.
-    pub(crate) fn carried(&self, g: &PlanarDisplacement) -> Self {
-        match *self {
-            Self::Revolute { at, reversed } => Self::Revolute { at: g.apply(at), reversed },
-            Self::Prismatic { along } => Self::Prismatic { along: g.rotation * along },
-        }
-    }
 }
 
 /// A revolute joint as the closed forms need it: its position, and its sense.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Pivot {
-    at: Complex<f64>,
-    reversed: bool,
+struct Pivot<Z: Plane = Complex<f64>> {
+    at: Z,
+    reversed: Z::Sense,
 }
 
-impl Pivot {
-    fn joint(&self) -> PlanarJoint {
+impl<Z: Plane> Pivot<Z> {
+    fn joint(self) -> PlanarJoint<Z> {
         PlanarJoint::Revolute { at: self.at, reversed: self.reversed }
     }
 
     /// The joint's displacement for a rotation by the angle of `r`, counter-clockwise in the plane's frame.
     #[inline(always)]
-    fn displacement(&self, r: Complex<f64>) -> JointDisplacement {
-        JointDisplacement::Direction(Complex::new(r.re, if self.reversed { -r.im } else { r.im }))
+    fn displacement<T: Over<Z::Real>>(&self, r: T::Plane) -> T::Joint {
+        T::Joint::direction(r.in_sense(self.reversed))
+    }
+
+    /// The same for an angle.
+    #[inline(always)]
+    fn turn<T: Over<Z::Real>>(&self, angle: T) -> T::Joint {
+        T::Joint::angle(T::in_sense(angle, self.reversed))
     }
 }
 
 /// The closed form of three joints in a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PlanarChain {
+pub enum PlanarChain<Z: Plane = Complex<f64>> {
     /// Two links and a wrist.
-    Rrr(Rrr),
+    Rrr(Rrr<Z>),
     /// A slider and a link.
-    Prr(Prr),
+    Prr(Prr<Z>),
     /// A link that ends in a slider: the reverse of `Prr`.
-    Rrp(Rrp),
+    Rrp(Rrp<Z>),
     /// A telescopic link between two pivots.
-    Rpr(Rpr),
+    Rpr(Rpr<Z>),
     /// A pivot that carries two sliders.
-    Rpp(Rpp),
+    Rpp(Rpp<Z>),
     /// Two sliders that carry a pivot.
-    Ppr(Ppr),
+    Ppr(Ppr<Z>),
     /// A pivot between two sliders.
-    Prp(Prp),
+    Prp(Prp<Z>),
+}
+
+/// The same expression for each kind of chain.
+macro_rules! each {
+    ($chain:expr, $of:ident => $value:expr) => {
+        match $chain {
+            PlanarChain::Rrr($of) => $value,
+            PlanarChain::Prr($of) => $value,
+            PlanarChain::Rrp($of) => $value,
+            PlanarChain::Rpr($of) => $value,
+            PlanarChain::Rpp($of) => $value,
+            PlanarChain::Ppr($of) => $value,
+            PlanarChain::Prp($of) => $value,
+        }
+    };
+}
+
+impl<Z: Plane> PlanarChain<Z> {
+    /// The closed form of three joints, base first.
+    ///
+    /// # Panics
+    /// If all three are sliders.
+    pub(crate) fn of(joints: [PlanarJoint<Z>; 3]) -> Self {
+        use PlanarJoint::{Prismatic, Revolute};
+        let pivot = |at, reversed| Pivot { at, reversed };
+        match joints {
+            [
+                Revolute { at: p1, reversed: r1 },
+                Revolute { at: p2, reversed: r2 },
+                Revolute { at: p3, reversed: r3 },
+            ] => Self::Rrr(Rrr::new(pivot(p1, r1), pivot(p2, r2), pivot(p3, r3))),
+            [
+                Prismatic { along },
+                Revolute { at: p2, reversed: r2 },
+                Revolute { at: p3, reversed: r3 },
+            ] => Self::Prr(Prr::new(along, pivot(p2, r2), pivot(p3, r3))),
+            [
+                Revolute { at: p1, reversed: r1 },
+                Revolute { at: p2, reversed: r2 },
+                Prismatic { along },
+            ] => Self::Rrp(Rrp::new(pivot(p1, r1), pivot(p2, r2), along)),
+            [
+                Revolute { at: p1, reversed: r1 },
+                Prismatic { along },
+                Revolute { at: p3, reversed: r3 },
+            ] => Self::Rpr(Rpr::new(pivot(p1, r1), along, pivot(p3, r3))),
+            [Revolute { at, reversed }, Prismatic { along: d2 }, Prismatic { along: d3 }] => {
+                Self::Rpp(Rpp::new(pivot(at, reversed), d2, d3))
+            }
+            [Prismatic { along: d1 }, Prismatic { along: d2 }, Revolute { at, reversed }] => {
+                Self::Ppr(Ppr::new(d1, d2, pivot(at, reversed)))
+            }
+            [Prismatic { along: d1 }, Revolute { at, reversed }, Prismatic { along: d3 }] => {
+                Self::Prp(Prp::new(d1, pivot(at, reversed), d3))
+            }
+            [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
+                panic!("three sliders make no chain of a plane")
+            }
+        }
+    }
+
+    /// The joints at home, base first.
+    pub fn joints(&self) -> [PlanarJoint<Z>; 3] {
+        each!(self, chain => chain.joints())
+    }
+
+    /// Whether a target has two solutions, one on each branch.
+    pub fn has_choice(&self) -> bool {
+        matches!(self, Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_))
+    }
+
+    /// What has to hold for the joints to make a chain: no link vanishes, and no sliders are parallel.
+    pub(crate) fn regular(&self) -> [Closes<Z::Real>; 2] {
+        each!(self, chain => chain.regular())
+    }
+}
+
+impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for PlanarChain<Z>
+where
+    T::Plane: PlaneOver<Z>,
+{
+    type Target = PlanarDisplacement<T::Plane>;
+
+    #[inline(always)]
+    fn attempt(&self, target: &Self::Target, sign: T::Sign) -> Attempt<T> {
+        each!(self, chain => chain.attempt(target, sign))
+    }
+
+    #[cold]
+    fn exception(&self, target: &Self::Target, sign: T::Sign) -> Exception<T> {
+        each!(self, chain => chain.exception(target, sign))
+    }
+
+    fn closes(&self, target: &Self::Target) -> Closes<T> {
+        each!(self, chain => chain.closes(target))
+    }
 }
 
 impl PlanarChain {
@@ -117,60 +226,27 @@ impl PlanarChain {
     /// # Errors
     /// The three joints are dependent in every configuration, or are three sliders.
     pub fn new(joints: [PlanarJoint; 3]) -> Result<Self, ChainError> {
-        use PlanarJoint::{Prismatic, Revolute};
-        let pivot = |at, reversed| Pivot { at, reversed };
-        Ok(match joints {
-            [
-                Revolute { at: p1, reversed: r1 },
-                Revolute { at: p2, reversed: r2 },
-                Revolute { at: p3, reversed: r3 },
-            ] => Self::Rrr(Rrr::new(pivot(p1, r1), pivot(p2, r2), pivot(p3, r3))?),
-            [
-                Prismatic { along },
-                Revolute { at: p2, reversed: r2 },
-                Revolute { at: p3, reversed: r3 },
-            ] => Self::Prr(Prr::new(along, pivot(p2, r2), pivot(p3, r3))?),
-            [
-                Revolute { at: p1, reversed: r1 },
-                Revolute { at: p2, reversed: r2 },
-                Prismatic { along },
-            ] => Self::Rrp(Rrp::new(pivot(p1, r1), pivot(p2, r2), along)?),
-            [
-                Revolute { at: p1, reversed: r1 },
-                Prismatic { along },
-                Revolute { at: p3, reversed: r3 },
-            ] => Self::Rpr(Rpr::new(pivot(p1, r1), along, pivot(p3, r3))),
-            [Revolute { at, reversed }, Prismatic { along: d2 }, Prismatic { along: d3 }] => {
-                Self::Rpp(Rpp::new(pivot(at, reversed), d2, d3)?)
+        if joints.iter().all(|joint| matches!(joint, PlanarJoint::Prismatic { .. })) {
+            return Err(ChainError::Dependent("three sliders in one plane"));
+        }
+        let chain = Self::of(joints);
+        match chain {
+            Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) if !chain.is_regular() => {
+                Err(ChainError::Dependent("two pivots coincide: a zero-length link"))
             }
-            [Prismatic { along: d1 }, Prismatic { along: d2 }, Revolute { at, reversed }] => {
-                Self::Ppr(Ppr::new(d1, d2, pivot(at, reversed))?)
+            Self::Rpp(_) | Self::Ppr(_) if !chain.is_regular() => {
+                Err(ChainError::Dependent("two sliders are parallel"))
             }
-            [Prismatic { along: d1 }, Revolute { at, reversed }, Prismatic { along: d3 }] => {
-                Self::Prp(Prp::new(d1, pivot(at, reversed), d3))
-            }
-            [Prismatic { .. }, Prismatic { .. }, Prismatic { .. }] => {
-                return Err(ChainError::Dependent("three sliders in one plane"));
-            }
-        })
-    }
-
-    /// The joints at home, base first.
-    pub fn joints(&self) -> [PlanarJoint; 3] {
-        match self {
-            Self::Rrr(chain) => chain.joints(),
-            Self::Prr(chain) => chain.joints(),
-            Self::Rrp(chain) => chain.joints(),
-            Self::Rpr(chain) => chain.joints(),
-            Self::Rpp(chain) => chain.joints(),
-            Self::Ppr(chain) => chain.joints(),
-            Self::Prp(chain) => chain.joints(),
+            _ => Ok(chain),
         }
     }
 
-    /// Whether a target has two solutions, one on each branch.
-    pub fn has_choice(&self) -> bool {
-        matches!(self, Self::Rrr(_) | Self::Prr(_) | Self::Rrp(_) | Self::Rpr(_))
+    fn is_regular(&self) -> bool {
+        self.regular().into_iter().all(|condition| match condition {
+            Closes::Always => true,
+            Closes::Within(number, [least, most]) => number > least && number < most,
+            Closes::Outside(number, [least, most]) => number < least || number > most,
+        })
     }
 
     /// The joints' displacements that move the outer link by `target`.
@@ -196,15 +272,7 @@ impl PlanarChain {
         branch: Branch,
         out: &mut [JointDisplacement; 3],
     ) -> Result<(), ReachDeficit> {
-        match self {
-            Self::Rrr(chain) => chain.solve(target, branch, out),
-            Self::Prr(chain) => chain.solve(target, branch, out),
-            Self::Rrp(chain) => chain.solve(target, branch, out),
-            Self::Rpr(chain) => chain.solve(target, branch, out),
-            Self::Rpp(chain) => chain.solve(target, branch, out),
-            Self::Ppr(chain) => chain.solve(target, branch, out),
-            Self::Prp(chain) => chain.solve(target, branch, out),
-        }
+        each!(self, chain => closed_form::solve(chain, target, branch, out))
     }
 
     /// The translations of the target at which the chain closes within its limits; `None` where limits on
@@ -241,19 +309,4 @@ pub fn forward(
         .fold(PlanarDisplacement::IDENTITY, |g, (joint, &displacement)| {
             g.after(&joint.displacement(displacement))
         })
-}
-
-/// The third component of the cross product `a × b`.
-#[inline(always)]
-pub(super) fn cross(a: Complex<f64>, b: Complex<f64>) -> f64 {
-    a.re * b.im - a.im * b.re
-}
-
-/// The coordinates `(m, n)` of `z = m u + n v` along two unit directions that are not parallel. `m` is
-/// computed from the rounded `n`, so that the sum is `z` even where the directions are nearly parallel.
-#[inline(always)]
-pub(super) fn along(u: Complex<f64>, v: Complex<f64>, z: Complex<f64>) -> (f64, f64) {
-    let n = cross(u, z) / cross(u, v);
-    let rest = z - v * n;
-    (rest.re * u.re + rest.im * u.im, n)
 }

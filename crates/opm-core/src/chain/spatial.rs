@@ -1,7 +1,7 @@
 //! Chains of three prismatic joints in space.
 
 use super::surface::Surface;
-use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
+use super::{Attempt, ChainError, ClosedForm, DEGENERATE};
 use crate::group::JointDisplacement;
 use nalgebra::Vector3;
 
@@ -86,7 +86,7 @@ impl ClosedForm for SpatialChain {
     type Target = Vector3<f64>;
 
     #[inline(always)]
-    fn attempt(&self, target: &Vector3<f64>, _: Branch) -> Attempt {
+    fn attempt(&self, target: &Vector3<f64>, _: f64) -> Attempt {
         Attempt::decided(self.inverse(target), true)
     }
 }

@@ -3,7 +3,10 @@
 use super::limits::{Components, Limits};
 use super::shell::Shell;
 use super::surface::Surface;
-use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE, REACH_TOLERANCE, ReachDeficit};
+use super::{
+    Attempt, Branch, ChainError, ClosedForm, DEGENERATE, Exception, REACH_TOLERANCE, ReachDeficit,
+    closed_form,
+};
 use crate::group::{JointDisplacement, rotation_vector};
 use nalgebra::{Complex, Matrix3, Rotation3, Unit, Vector3};
 
@@ -66,7 +69,11 @@ impl SphericalChain {
     #[inline(always)]
     pub fn first(&self, w: &Vector3<f64>, branch: Branch) -> Result<Complex<f64>, ReachDeficit> {
         let equation = self.equation(w);
-        if equation.has_two() { Ok(equation.solve(branch)) } else { self.first_at_boundary(w) }
+        if equation.has_two() {
+            Ok(equation.solve(branch.sign()))
+        } else {
+            self.first_at_boundary(w)
+        }
     }
 
     #[inline(always)]
@@ -141,7 +148,7 @@ impl SphericalChain {
         branch: Branch,
     ) -> Result<[JointDisplacement; 3], ReachDeficit> {
         let mut found = [JointDisplacement::Value(0.0); 3];
-        self.solve(target, branch, &mut found)?;
+        closed_form::solve(self, target, branch, &mut found)?;
         Ok(found)
     }
 
@@ -251,20 +258,21 @@ impl ClosedForm for SphericalChain {
     type Target = Matrix3<f64>;
 
     #[inline(always)]
-    fn attempt(&self, target: &Matrix3<f64>, branch: Branch) -> Attempt {
+    fn attempt(&self, target: &Matrix3<f64>, sign: f64) -> Attempt {
         let equation = self.equation(&self.third_axis(target));
-        let displacements = self.with_first(target, equation.solve(branch));
+        let displacements = self.with_first(target, equation.solve(sign));
         Attempt { displacements, holds: equation.has_two(), beyond: equation.has_none() }
     }
 
     #[cold]
-    fn exception(
-        &self,
-        target: &Matrix3<f64>,
-        _: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        let q1 = self.first_at_boundary(&self.third_axis(target))?;
-        Ok(self.with_first(target, q1))
+    fn exception(&self, target: &Matrix3<f64>, _: f64) -> Exception {
+        match self.first_at_boundary(&self.third_axis(target)) {
+            Ok(q1) => Exception {
+                special: Some((true, self.with_first(target, q1))),
+                ..Exception::length(0.0)
+            },
+            Err(ReachDeficit { excess, quantity }) => Exception { excess, quantity, special: None },
+        }
     }
 }
 
@@ -292,9 +300,9 @@ impl Equation {
 
     /// The solution on a branch, as a unit vector.
     #[inline(always)]
-    fn solve(&self, branch: Branch) -> Complex<f64> {
+    fn solve(&self, sign: f64) -> Complex<f64> {
         let Self { a, b, d, square } = *self;
-        let root = branch.sign() * (square - d * d).max(0.0).sqrt();
+        let root = sign * (square - d * d).max(0.0).sqrt();
         let over = 1.0 / square;
         Complex::new((a * d + b * root) * over, (b * d - a * root) * over)
     }
@@ -311,7 +319,7 @@ impl Ball {
     /// The three components of the rotation vector of `target`, whose length is at most π.
     #[inline(always)]
     pub fn inverse(&self, target: &Matrix3<f64>) -> [JointDisplacement; 3] {
-        self.attempt(target, Branch::Plus).displacements
+        self.attempt(target, 1.0).displacements
     }
 
     /// The rotation with this rotation vector.
@@ -325,7 +333,7 @@ impl ClosedForm for Ball {
     type Target = Matrix3<f64>;
 
     #[inline(always)]
-    fn attempt(&self, target: &Matrix3<f64>, _: Branch) -> Attempt {
+    fn attempt(&self, target: &Matrix3<f64>, _: f64) -> Attempt {
         let vector = apply(&self.axes, &rotation_vector(target));
         let displacements = [
             JointDisplacement::Value(vector.x),

@@ -1,12 +1,12 @@
 //! Chains of two prismatic joints in a plane.
 
-use super::planar::{along, cross};
 use super::region::parallelogram;
 use super::shape::Shape;
 use super::surface::Surface;
-use super::{Attempt, Branch, ChainError, ClosedForm, DEGENERATE};
+use super::{Attempt, ChainError, ClosedForm, DEGENERATE};
 use crate::chain::limits::Limits;
 use crate::group::JointDisplacement;
+use crate::numbers::{Joint, Over, Plane, PlaneOver, Truth};
 use nalgebra::Complex;
 
 /// Two sliders in a plane. A target has one solution.
@@ -22,7 +22,7 @@ impl TranslationalChain {
     /// The sliders are parallel.
     pub fn new(slides: [Complex<f64>; 2]) -> Result<Self, ChainError> {
         let [u, v] = slides;
-        if cross(u, v).abs() <= DEGENERATE {
+        if Plane::cross(u, v).abs() <= DEGENERATE {
             return Err(ChainError::Dependent("two sliders are parallel"));
         }
         Ok(Self { slides })
@@ -50,8 +50,8 @@ impl TranslationalChain {
     /// The sliders' displacements that translate the outer link by `target`, metres.
     #[inline(always)]
     pub fn inverse(&self, target: Complex<f64>) -> [JointDisplacement; 2] {
-        let (first, second) = along(self.slides[0], self.slides[1], target);
-        [JointDisplacement::Value(first), JointDisplacement::Value(second)]
+        let [first, second] = self.slides;
+        target.along(first, second).map(JointDisplacement::Value)
     }
 
     /// The translation of the outer link.
@@ -60,12 +60,13 @@ impl TranslationalChain {
     }
 }
 
-impl ClosedForm for TranslationalChain {
-    type Target = Complex<f64>;
+impl<T: Over<f64>> ClosedForm<T> for TranslationalChain {
+    type Target = T::Plane;
 
     #[inline(always)]
-    fn attempt(&self, target: &Complex<f64>, _: Branch) -> Attempt {
-        let [first, second] = self.inverse(*target);
-        Attempt::decided([first, second, JointDisplacement::Value(0.0)], true)
+    fn attempt(&self, target: &T::Plane, _: T::Sign) -> Attempt<T> {
+        let [first, second] = self.slides;
+        let [first, second] = target.along_constants(first, second);
+        Attempt::decided([first, second, T::constant(0.0)].map(T::Joint::value), T::Truth::YES)
     }
 }

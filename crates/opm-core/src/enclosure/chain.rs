@@ -3,21 +3,29 @@
 
 use super::affine::{Affine, Plane, WIDE};
 use super::opening;
-use super::planar::{self, Joint};
 use super::share::Share;
 use super::target::{Enclosed, Rotation, Target, dot};
 use crate::chain::cylindrical::CoaxialJoint;
 use crate::chain::spherical::{Ball, SphericalChain};
-use crate::chain::{Branch, Chain, REACH_TOLERANCE};
+use crate::chain::{Branch, Chain, ClosedForm, Closes, REACH_TOLERANCE};
 use nalgebra::{Complex, Vector3};
 
 /// The end of a range without an end.
 const INFINITE: f64 = f64::INFINITY;
 
+/// The share for which a chain closes, by what decides that.
+pub fn share<const N: usize>(closes: &Closes<Affine<N>>) -> Share<N> {
+    match closes {
+        Closes::Always => Share::ALL,
+        Closes::Within(number, range) => Share::within(number, *range, 0.0),
+        Closes::Outside(number, range) => Share::outside(number, *range),
+    }
+}
+
 /// The share of a box of targets for which a chain closes, whatever its joints' limits.
 pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
     match chain {
-        Chain::Planar(chain) => planar::closes(&chain.joints().map(Joint::from), target.planar()),
+        Chain::Planar(chain) => share(&chain.closes(target.planar())),
         Chain::Spherical(chain) => Arcs::new(chain).closes(target.spherical()),
         // No joints reach the identity, a spherical joint reaches every rotation, and linear chains have one solution
         // everywhere.
@@ -38,9 +46,7 @@ pub fn displacements<const N: usize>(
     let none = Enclosed::Value(Affine::constant(0.0));
     match chain {
         Chain::Rigid => [none; 3],
-        Chain::Planar(chain) => {
-            planar::displacements(&chain.joints().map(Joint::from), target.planar(), branch)
-        }
+        Chain::Planar(chain) => solved(chain, target.planar(), branch),
         Chain::Spherical(chain) => spherical(chain, target.spherical(), branch),
         Chain::Ball(ball) => self::ball(ball, target.spherical()),
         Chain::Cylindrical(chain) => {
@@ -54,20 +60,20 @@ pub fn displacements<const N: usize>(
             };
             [displacement(p, q.advance, -q.rotation), displacement(q, -p.advance, p.rotation), none]
         }
-        Chain::Translational(chain) => {
-            let [m, n] = along(*chain.slides(), *target.translational());
-            [Enclosed::Value(m), Enclosed::Value(n), none]
-        }
+        Chain::Translational(chain) => solved(chain, target.translational(), branch),
         Chain::Spatial(chain) => {
             chain.coefficients().map(|row| Enclosed::Value(dot(&row, target.spatial())))
         }
     }
 }
 
-/// The coordinates `(m, n)` of `z = m u + n v`.
-fn along<const N: usize>([u, v]: [Complex<f64>; 2], z: Plane<N>) -> [Affine<N>; 2] {
-    let crossing = u.re * v.im - u.im * v.re;
-    [z.cross(Plane::constant(v)) * (1.0 / crossing), Plane::constant(u).cross(z) * (1.0 / crossing)]
+/// The displacements that a chain's closed form gives.
+pub fn solved<C: ClosedForm<Affine<N>>, const N: usize>(
+    chain: &C,
+    target: &C::Target,
+    branch: Branch,
+) -> [Enclosed<N>; 3] {
+    chain.attempt(target, branch.sign()).displacements
 }
 
 /// The two arcs of a spherical chain, whose first two joints depend on `z = a₁ · R a₃`.

@@ -1,17 +1,18 @@
 //! Chains of legs whose lift leans, over a box of heights: see [`crate::manipulator`]'s lifts.
 
 use super::affine::{Affine, Plane};
-use super::planar::{self, Joint};
+use super::chain::{share, solved};
 use super::share::Share;
 use super::target::{Enclosed, PlanarTarget};
-use crate::chain::Branch;
 use crate::chain::planar::PlanarChain;
+use crate::chain::{Branch, ClosedForm};
+use crate::group::PlanarDisplacement;
 use crate::manipulator::Lean;
 use nalgebra::Complex;
 
 /// The chain of a leg's section without its lift, which leans, and what the chain has to reach.
 pub struct RaisedChain<const N: usize> {
-    joints: [Joint<Plane<N>>; 3],
+    chain: PlanarChain<Plane<N>>,
     target: PlanarTarget<N>,
 }
 
@@ -24,35 +25,27 @@ impl<const N: usize> RaisedChain<N> {
         target: &PlanarTarget<N>,
     ) -> Self {
         let step = displacement(lean, rise);
-        let carried = |place| step.rotation * place + step.translation;
+        let still = PlanarDisplacement {
+            rotation: Plane::constant(Complex::ONE),
+            translation: Plane::constant(Complex::ZERO),
+        };
         let joints = chain.joints();
         let joints = std::array::from_fn(|number| {
-            match (Joint::from(joints[number]), number >= lean.before) {
-                (Joint::Revolute { at, reversed }, true) => {
-                    Joint::Revolute { at: carried(at), reversed }
-                }
-                (Joint::Prismatic { along }, true) => {
-                    Joint::Prismatic { along: step.rotation * along }
-                }
-                (Joint::Revolute { at, reversed }, false) => {
-                    Joint::Revolute { at: Plane::constant(at), reversed }
-                }
-                (Joint::Prismatic { along }, false) => {
-                    Joint::Prismatic { along: Plane::constant(along) }
-                }
-            }
+            joints[number].carried(if number >= lean.before { &step } else { &still })
         });
-        Self { joints, target: target.after(&step.inverse()) }
+        Self { chain: PlanarChain::of(joints), target: target.after(&step.inverse()) }
     }
 
     /// The share for which the chain exists and closes.
     pub fn closes(&self) -> Share<N> {
-        planar::makes_a_chain(&self.joints).and(planar::closes(&self.joints, &self.target))
+        let closes = ClosedForm::<Affine<N>>::closes(&self.chain, &self.target);
+        let all = self.chain.regular().into_iter().chain([closes]);
+        all.fold(Share::ALL, |all, one| all.and(share(&one)))
     }
 
     /// The joints' displacements.
     pub fn displacements(&self, branch: Branch) -> [Enclosed<N>; 3] {
-        planar::displacements(&self.joints, &self.target, branch)
+        solved(&self.chain, &self.target, branch)
     }
 }
 

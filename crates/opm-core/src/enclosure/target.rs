@@ -2,44 +2,13 @@
 
 use super::affine::{Affine, Plane};
 use crate::group::{
-    CylindricalMotion, IntersectionMotion, PlanarMotion, SpatialMotion, SphericalMotion,
-    SubspaceKind, TranslationalMotion, mismatch,
+    CylindricalMotion, IntersectionMotion, PlanarDisplacement, PlanarMotion, SpatialMotion,
+    SphericalMotion, SubspaceKind, TranslationalMotion, mismatch,
 };
 use nalgebra::{Complex, Matrix3, Vector3};
 
-/// A displacement of the plane over a box: `z ↦ rotation · z + translation`.
-#[derive(Clone, Copy, Debug)]
-pub struct PlanarTarget<const N: usize> {
-    pub rotation: Plane<N>,
-    pub translation: Plane<N>,
-}
-
-impl<const N: usize> PlanarTarget<N> {
-    /// The rotation about a point.
-    pub fn about(point: Complex<f64>, rotation: Plane<N>) -> Self {
-        Self { rotation, translation: Plane::constant(point) - rotation * point }
-    }
-
-    /// The image of the point `z`, metres.
-    pub fn apply(&self, z: Complex<f64>) -> Plane<N> {
-        self.rotation * z + self.translation
-    }
-
-    /// The displacement `other` followed by this one, as a product `self · other`.
-    pub fn after(&self, other: &Self) -> Self {
-        Self {
-            rotation: self.rotation * other.rotation,
-            translation: self.rotation * other.translation + self.translation,
-        }
-    }
-
-    /// The inverse displacement.
-    pub fn inverse(&self) -> Self {
-        let rotation = self.rotation.conj();
-        let back = rotation * self.translation;
-        Self { rotation, translation: Plane { re: -back.re, im: -back.im } }
-    }
-}
+/// A displacement of the plane over a box.
+pub type PlanarTarget<const N: usize> = PlanarDisplacement<Plane<N>>;
 
 /// A rotation over a box, row by row.
 #[derive(Clone, Copy, Debug)]

@@ -5,6 +5,7 @@
 use super::path::{Path, PlanarPath};
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{JointDisplacement, MotionType, SubspaceKind};
+use crate::numbers::{Plane, PlaneOver};
 use crate::numeric::angle::{sinc, unit};
 use nalgebra::{Complex, Rotation3, Vector3};
 
@@ -13,11 +14,49 @@ pub(crate) struct Planar;
 
 /// A displacement of the plane: `z ↦ rotation · z + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanarDisplacement {
+pub struct PlanarDisplacement<T = Complex<f64>> {
     /// The rotation, a unit complex number `e(angle)`.
-    pub rotation: Complex<f64>,
+    pub rotation: T,
     /// The translation, metres.
-    pub translation: Complex<f64>,
+    pub translation: T,
+}
+
+impl<T: Plane> PlanarDisplacement<T> {
+    /// The rotation about a point, in metres, by a unit complex number `e(angle)`.
+    #[inline]
+    pub(crate) fn about<Z: Plane>(point: Z, rotation: T) -> Self
+    where
+        T: PlaneOver<Z>,
+    {
+        Self { rotation, translation: T::from_constant(point) - rotation * point }
+    }
+
+    /// The image of the point `z`, in metres.
+    #[inline]
+    pub fn apply<Z: Plane>(&self, z: Z) -> T
+    where
+        T: PlaneOver<Z>,
+    {
+        self.rotation * z + self.translation
+    }
+
+    /// The product `self · other`: `other` is applied to points first.
+    #[inline]
+    #[must_use]
+    pub fn after(&self, other: &Self) -> Self {
+        Self {
+            rotation: self.rotation * other.rotation,
+            translation: self.rotation * other.translation + self.translation,
+        }
+    }
+
+    /// The inverse displacement.
+    #[inline]
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conj();
+        Self { rotation, translation: -(rotation * self.translation) }
+    }
 }
 
 /// A one-parameter planar motion that another subspace may share.
@@ -34,12 +73,6 @@ impl PlanarDisplacement {
     /// The displacement that leaves every point where it is.
     pub const IDENTITY: Self =
         Self { rotation: Complex::new(1.0, 0.0), translation: Complex::new(0.0, 0.0) };
-
-    /// The rotation about a point, in metres, by a unit complex number `e(angle)`.
-    #[inline]
-    pub(crate) fn about(point: Complex<f64>, rotation: Complex<f64>) -> Self {
-        Self { rotation, translation: point - rotation * point }
-    }
 
     /// The translation by a vector, in metres.
     #[inline]
@@ -69,30 +102,6 @@ impl PlanarDisplacement {
         // v = -i ω p, with ω = ±1.
         let point = quarter(linear(screw)) * screw.x;
         Self::about(point, if screw.x < 0.0 { rotation.conj() } else { rotation })
-    }
-
-    /// The image of the point `z`, in metres.
-    #[inline]
-    pub fn apply(&self, z: Complex<f64>) -> Complex<f64> {
-        self.rotation * z + self.translation
-    }
-
-    /// The product `self · other`: `other` is applied to points first.
-    #[inline]
-    #[must_use]
-    pub fn after(&self, other: &Self) -> Self {
-        Self {
-            rotation: self.rotation * other.rotation,
-            translation: self.apply(other.translation),
-        }
-    }
-
-    /// The inverse displacement.
-    #[inline]
-    #[must_use]
-    pub fn inverse(&self) -> Self {
-        let rotation = self.rotation.conj();
-        Self { rotation, translation: -(rotation * self.translation) }
     }
 }
 

@@ -17,7 +17,7 @@ impl PlanarChain {
             // E₂E₃ = E₁⁻¹ g
             0 => pair([joints[1], joints[2]], [hold, free]),
             // E₁ (E₂E₃E₂⁻¹) = g E₂⁻¹
-            1 => pair([joints[0], carried(&joints[2], &hold)], [free, hold]),
+            1 => pair([joints[0], joints[2].carried(&hold)], [free, hold]),
             // E₁E₂ = g E₃⁻¹
             _ => pair([joints[0], joints[1]], [free, hold]),
         }
@@ -93,13 +93,5 @@ fn pair(joints: [PlanarJoint; 2], [first, last]: [PlanarDisplacement; 2]) -> Sur
         [Prismatic { .. }, Prismatic { .. }] => {
             Surface::Rotation { rotation: first.rotation * last.rotation }
         }
-    }
-}
-
-/// A joint moved by a displacement.
-fn carried(joint: &PlanarJoint, by: &PlanarDisplacement) -> PlanarJoint {
-    match *joint {
-        Revolute { at, reversed } => Revolute { at: by.apply(at), reversed },
-        Prismatic { along } => Prismatic { along: by.rotation * along },
     }
 }

@@ -1,60 +1,53 @@
 //! PRR: a slider that carries a link (Eqs. 13-16 of the paper, with the division by 2 that its
 //! Eq. 16 lacks).
 
-use super::{Branch, ChainError, LinkLimits, Pivot, PlanarJoint, ReachDeficit};
+use super::{
+    Attempt, Branch, ClosedForm, Closes, Exception, Joint, LinkLimits, Over, Pivot, PlanarJoint,
+    Plane, REACH, Real,
+};
+use crate::chain::REACH_TOLERANCE;
 use crate::chain::limits::Limits;
 use crate::chain::region::{Band, Capsule, Convex, Region};
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE};
-use crate::group::{JointDisplacement, PlanarDisplacement};
+use crate::group::PlanarDisplacement;
 use nalgebra::Complex;
 
 /// A slider and a link between two pivots. The branch is `+` where the slider's root has the plus sign: the
 /// slider is ahead of the link's outer pivot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prr {
-    slide: Complex<f64>,
-    pivots: [Pivot; 2],
-    link: Complex<f64>,
-    link_square: f64,
+pub struct Prr<Z: Plane = Complex<f64>> {
+    slide: Z,
+    pivots: [Pivot<Z>; 2],
+    link: Z,
+    link_square: Z::Real,
 }
 
-impl Prr {
-    pub(super) fn new(slide: Complex<f64>, p2: Pivot, p3: Pivot) -> Result<Self, ChainError> {
-        let link = p3.at - p2.at;
-        if link.norm() == 0.0 {
-            return Err(ChainError::Dependent("two pivots coincide: a zero-length link"));
-        }
-        Ok(Self { slide, pivots: [p2, p3], link, link_square: link.norm_sqr() })
+impl<Z: Plane> Prr<Z> {
+    pub(super) fn new(slide: Z, p2: Pivot<Z>, p3: Pivot<Z>) -> Self {
+        let link = (p3.at - p2.at).named("link");
+        let link_square = link.norm_sqr().named("link_square");
+        Self { slide, pivots: [p2, p3], link, link_square }
     }
 
-    /// For the outer pivot at `outer`: its coordinate along the slide, measured from the inner pivot at
-    /// home, and the square of the link's component along the slide. The target is in reach where that square
-    /// is not negative; the slider is then at the coordinate plus or minus the root of the square.
-    #[inline]
-    fn triangle(&self, outer: Complex<f64>) -> (f64, f64) {
-        let local = (outer - self.pivots[0].at) * self.slide.conj();
-        (local.re, self.link_square - local.im * local.im)
-    }
-
-    /// Whether the target is in reach for this square of the link's component along the slide, the boundary
-    /// of reach included.
-    #[inline]
-    fn closes(&self, square: f64) -> bool {
-        square >= -2.0 * REACH_TOLERANCE * self.link_square
-    }
-
-    /// The position of the outer pivot at home, to which targets are applied.
-    #[inline]
-    fn outer(&self) -> Complex<f64> {
-        self.pivots[1].at
-    }
-
-    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
-        let [inner, outer] = self.pivots.map(|pivot| pivot.joint());
+    pub(super) fn joints(&self) -> [PlanarJoint<Z>; 3] {
+        let [inner, outer] = self.pivots.map(Pivot::joint);
         [PlanarJoint::Prismatic { along: self.slide }, inner, outer]
     }
 
+    pub(super) fn regular(&self) -> [Closes<Z::Real>; 2] {
+        [Closes::Within(self.link_square, [0.0, f64::INFINITY]), Closes::Always]
+    }
+
+    /// The vector from the inner pivot at home to the outer one, along the slide and across it. The target is in reach
+    /// where its component across is not longer than the link.
+    #[inline(always)]
+    fn local<T: Over<Z::Real>>(&self, target: &PlanarDisplacement<T::Plane>) -> T::Plane {
+        let [inner, outer] = self.pivots;
+        (target.apply(outer.at) - inner.at) * self.slide.conj()
+    }
+}
+
+impl Prr {
     /// The shape in which the chain closes. The places of the outer pivot are the area that half a circle
     /// about the inner pivot sweeps as the slider goes through its range: the area swept from one end on,
     /// less the area swept beyond the other end.
@@ -95,36 +88,40 @@ impl Prr {
         let ends = [home, self.link];
         // Where the slider is ahead, the link points back.
         let link = LinkLimits::new(self.slide, ends, branch == Branch::Minus, pivots);
-        Shape::of_places(Region { whole, hole }, self.outer()).with_link(link)
+        Shape::of_places(Region { whole, hole }, self.pivots[1].at).with_link(link)
     }
 }
 
-impl ClosedForm for Prr {
-    type Target = PlanarDisplacement;
+impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Prr<Z> {
+    type Target = PlanarDisplacement<T::Plane>;
 
     #[inline(always)]
-    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
-        let outer = target.apply(self.outer());
-        let (along, square) = self.triangle(outer);
-        let slider = along + branch.sign() * square.max(0.0).sqrt();
-        let link = outer - self.pivots[0].at - self.slide * slider;
-        let r2 = link * self.link.conj();
+    fn attempt(&self, target: &Self::Target, sign: T::Sign) -> Attempt<T> {
+        let local = self.local::<T>(target).named("local");
+        // The square of the link's component along the slide.
+        let square = (-local.im().square() + self.link_square).named("square");
+        let closes = square.at_least(T::from_constant(self.link_square).share(REACH, -2.0));
+        let root = (square.root() * sign).named("root");
+        // The link is turned from where it points at home to where it points from the slider.
+        let r2 = (T::Plane::new(-root, local.im()) * (self.slide * self.link.conj())).named("r2");
         let r3 = target.rotation * r2.conj();
-        let displacements = [
-            JointDisplacement::Value(slider),
-            self.pivots[0].displacement(r2),
-            self.pivots[1].displacement(r3),
-        ];
-        Attempt::decided(displacements, self.closes(square))
+        let [inner, outer] = self.pivots;
+        let slider = T::Joint::value(local.re() + root);
+        Attempt::decided([slider, inner.displacement::<T>(r2), outer.displacement::<T>(r3)], closes)
     }
 
     #[cold]
-    fn exception(
-        &self,
-        target: &PlanarDisplacement,
-        _: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        let local = (target.apply(self.outer()) - self.pivots[0].at) * self.slide.conj();
-        Err(ReachDeficit::length(local.im.abs() - self.link.norm()))
+    fn exception(&self, target: &Self::Target, _: T::Sign) -> Exception<T> {
+        let aside = self.local::<T>(target).im().absolute();
+        Exception::length(aside - self.link.length())
+    }
+
+    fn closes(&self, target: &Self::Target) -> Closes<T> {
+        let aside = self.local::<T>(target).im();
+        let link = self.link.length();
+        match link.known() {
+            Some(link) => Closes::Within(aside, [-link, link]),
+            None => Closes::Within(aside.per(link), [-1.0, 1.0]),
+        }
     }
 }

@@ -1,36 +1,37 @@
 //! RPP: a pivot that carries two sliders. The pivot's rotation is that of the target.
 
-use super::{Branch, ChainError, Pivot, PlanarJoint, along, cross};
+use super::{Attempt, ClosedForm, Closes, Joint, Over, Pivot, PlanarJoint, Plane, Truth};
+use crate::chain::DEGENERATE;
 use crate::chain::region::parallelogram;
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm, DEGENERATE};
-use crate::group::{JointDisplacement, PlanarDisplacement};
+use crate::group::PlanarDisplacement;
+use crate::numbers::PlaneOver;
 use nalgebra::Complex;
 
 /// A pivot, then two sliders. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rpp {
-    pivot: Pivot,
-    slides: [Complex<f64>; 2],
+pub struct Rpp<Z: Plane = Complex<f64>> {
+    pivot: Pivot<Z>,
+    slides: [Z; 2],
 }
 
-impl Rpp {
-    pub(super) fn new(
-        pivot: Pivot,
-        d2: Complex<f64>,
-        d3: Complex<f64>,
-    ) -> Result<Self, ChainError> {
-        if cross(d2, d3).abs() <= DEGENERATE {
-            return Err(ChainError::Dependent("two sliders are parallel"));
-        }
-        Ok(Self { pivot, slides: [d2, d3] })
+impl<Z: Plane> Rpp<Z> {
+    pub(super) fn new(pivot: Pivot<Z>, d2: Z, d3: Z) -> Self {
+        Self { pivot, slides: [d2, d3] }
     }
 
-    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+    pub(super) fn joints(&self) -> [PlanarJoint<Z>; 3] {
         let [first, second] = self.slides.map(|along| PlanarJoint::Prismatic { along });
         [self.pivot.joint(), first, second]
     }
 
+    pub(super) fn regular(&self) -> [Closes<Z::Real>; 2] {
+        let [d2, d3] = self.slides;
+        [Closes::Outside(d2.cross(d3), [-DEGENERATE, DEGENERATE]), Closes::Always]
+    }
+}
+
+impl Rpp {
     /// The shape in which the chain closes: a parallelogram that rotates with the target. See
     /// [`Shape::backwards`].
     pub(super) fn shape(&self, ranges: [[f64; 2]; 2]) -> Shape {
@@ -40,18 +41,16 @@ impl Rpp {
     }
 }
 
-impl ClosedForm for Rpp {
-    type Target = PlanarDisplacement;
+impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rpp<Z> {
+    type Target = PlanarDisplacement<T::Plane>;
 
     #[inline(always)]
-    fn attempt(&self, target: &PlanarDisplacement, _: Branch) -> Attempt {
+    fn attempt(&self, target: &Self::Target, _: T::Sign) -> Attempt<T> {
         // The displacement of the outer link's point at the pivot, rotated back to home.
         let moved = target.apply(self.pivot.at) - self.pivot.at;
-        let (s2, s3) = along(self.slides[0], self.slides[1], moved * target.rotation.conj());
-        let rotation = self.pivot.displacement(target.rotation);
-        Attempt::decided(
-            [rotation, JointDisplacement::Value(s2), JointDisplacement::Value(s3)],
-            true,
-        )
+        let [d2, d3] = self.slides;
+        let [s2, s3] = (moved * target.rotation.conj()).along_constants(d2, d3);
+        let rotation = self.pivot.displacement::<T>(target.rotation);
+        Attempt::decided([rotation, T::Joint::value(s2), T::Joint::value(s3)], T::Truth::YES)
     }
 }

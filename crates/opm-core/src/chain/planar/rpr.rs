@@ -1,32 +1,49 @@
 //! RPR: a telescopic link between two pivots.
 
-use super::{Branch, Pivot, PlanarJoint, ReachDeficit};
+use super::{
+    Attempt, Branch, ClosedForm, Closes, Exception, Joint, Over, Pivot, PlanarJoint, Plane, REACH,
+    Real,
+};
+use crate::chain::REACH_TOLERANCE;
 use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm, REACH_TOLERANCE, direction};
-use crate::group::{JointDisplacement, PlanarDisplacement};
+use crate::group::PlanarDisplacement;
 use nalgebra::Complex;
 
 /// A pivot, a slider and a pivot. The branch is `+` where the slider's root has the plus sign: the outer
 /// pivot is ahead of the foot of the perpendicular from the inner pivot to the slide.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rpr {
-    pivots: [Pivot; 2],
-    slide: Complex<f64>,
+pub struct Rpr<Z: Plane = Complex<f64>> {
+    pivots: [Pivot<Z>; 2],
+    slide: Z,
     /// The vector from the inner to the outer pivot at home: along the slide (re) and perpendicular to it (im).
-    offset: Complex<f64>,
+    offset: Z,
 }
 
-impl Rpr {
-    pub(super) fn new(p1: Pivot, slide: Complex<f64>, p3: Pivot) -> Self {
-        Self { pivots: [p1, p3], slide, offset: (p3.at - p1.at) * slide.conj() }
+impl<Z: Plane> Rpr<Z> {
+    pub(super) fn new(p1: Pivot<Z>, slide: Z, p3: Pivot<Z>) -> Self {
+        let offset = ((p3.at - p1.at) * slide.conj()).named("offset");
+        Self { pivots: [p1, p3], slide, offset }
     }
 
-    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
-        let [inner, outer] = self.pivots.map(|pivot| pivot.joint());
+    pub(super) fn joints(&self) -> [PlanarJoint<Z>; 3] {
+        let [inner, outer] = self.pivots.map(Pivot::joint);
         [inner, PlanarJoint::Prismatic { along: self.slide }, outer]
     }
 
+    pub(super) fn regular(&self) -> [Closes<Z::Real>; 2] {
+        [Closes::Always; 2]
+    }
+
+    /// The vector from the inner pivot to the outer one at a target.
+    #[inline(always)]
+    fn reach<T: Over<Z::Real>>(&self, target: &PlanarDisplacement<T::Plane>) -> T::Plane {
+        let [inner, outer] = self.pivots;
+        target.apply(outer.at) - inner.at
+    }
+}
+
+impl Rpr {
     /// The shape in which the chain closes. The places of the outer pivot are a ring about the inner one,
     /// between the lengths that the slider allows.
     pub(super) fn shape(&self, branch: Branch, [low, high]: [f64; 2]) -> Shape {
@@ -46,40 +63,45 @@ impl Rpr {
         let hole = (inner > 0.0).then(|| disc(inner));
         Shape::of_places(Region { whole: disc(aside + high * high), hole }, outer)
     }
-
-    /// The vector from the inner pivot to the outer one at a target.
-    #[inline(always)]
-    fn reach(&self, target: &PlanarDisplacement) -> Complex<f64> {
-        target.apply(self.pivots[1].at) - self.pivots[0].at
-    }
 }
 
-impl ClosedForm for Rpr {
-    type Target = PlanarDisplacement;
+impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rpr<Z> {
+    type Target = PlanarDisplacement<T::Plane>;
 
     #[inline(always)]
-    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
-        let reach = self.reach(target);
-        let aside = self.offset.im * self.offset.im;
-        let square = reach.norm_sqr() - aside;
-        let ahead = branch.sign() * square.max(0.0).sqrt();
-        let telescope = Complex::new(ahead, self.offset.im) * self.slide;
-        let r1 = direction(reach * telescope.conj(), self.offset.norm_sqr());
+    fn attempt(&self, target: &Self::Target, sign: T::Sign) -> Attempt<T> {
+        let reach = self.reach::<T>(target).named("reach");
+        let [ahead_at_home, aside] = [self.offset.re(), self.offset.im()];
+        let aside_square = aside.square().named("aside_square");
+        let square = (reach.norm_sqr() - aside_square).named("square");
+        let ahead = (square.root() * sign).named("ahead");
+        let telescope = T::Plane::new(ahead, T::from_constant(aside)) * self.slide;
+        let size = T::from_constant(self.offset.norm_sqr());
+        let r1 = (reach * telescope.conj()).direction(size).named("r1");
         let r3 = target.rotation * r1.conj();
+        let [inner, outer] = self.pivots;
         let displacements = [
-            self.pivots[0].displacement(r1),
-            JointDisplacement::Value(ahead - self.offset.re),
-            self.pivots[1].displacement(r3),
+            inner.displacement::<T>(r1),
+            T::Joint::value(ahead - ahead_at_home),
+            outer.displacement::<T>(r3),
         ];
-        Attempt::decided(displacements, square >= -2.0 * REACH_TOLERANCE * aside)
+        let least = T::from_constant(aside_square).share(REACH, -2.0);
+        Attempt::decided(displacements, square.at_least(least))
     }
 
     #[cold]
-    fn exception(
-        &self,
-        target: &PlanarDisplacement,
-        _: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        Err(ReachDeficit::length(self.offset.im.abs() - self.reach(target).norm()))
+    fn exception(&self, target: &Self::Target, _: T::Sign) -> Exception<T> {
+        let aside = T::from_constant(self.offset.im().absolute());
+        Exception::length(aside - self.reach::<T>(target).length())
+    }
+
+    fn closes(&self, target: &Self::Target) -> Closes<T> {
+        let square = self.reach::<T>(target).norm_sqr();
+        let aside = self.offset.im();
+        // The rounding is in proportion to the square.
+        match aside.known() {
+            Some(aside) => Closes::Within(square, [aside * aside, f64::INFINITY]),
+            None => Closes::Within(square - aside.square(), [0.0, f64::INFINITY]),
+        }
     }
 }

@@ -1,26 +1,31 @@
 //! RRP: a link whose outer pivot carries a slider. In reverse order it is a PRR.
 
-use super::{Branch, ChainError, Pivot, PlanarJoint, Prr, ReachDeficit};
+use super::{Attempt, Branch, ClosedForm, Closes, Exception, Over, Pivot, PlanarJoint, Plane, Prr};
 use crate::chain::limits::Limits;
 use crate::chain::shape::Shape;
-use crate::chain::{Attempt, ClosedForm};
-use crate::group::{JointDisplacement, PlanarDisplacement};
+use crate::group::PlanarDisplacement;
 use nalgebra::Complex;
 
 /// A link between two pivots, then a slider. Its branch `+` is the branch `+` of the reversed chain, a PRR.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rrp(Prr);
+pub struct Rrp<Z: Plane = Complex<f64>>(Prr<Z>);
 
-impl Rrp {
-    pub(super) fn new(p1: Pivot, p2: Pivot, slide: Complex<f64>) -> Result<Self, ChainError> {
-        Prr::new(slide, p2, p1).map(Self)
+impl<Z: Plane> Rrp<Z> {
+    pub(super) fn new(p1: Pivot<Z>, p2: Pivot<Z>, slide: Z) -> Self {
+        Self(Prr::new(slide, p2, p1))
     }
 
-    pub(super) fn joints(&self) -> [PlanarJoint; 3] {
+    pub(super) fn joints(&self) -> [PlanarJoint<Z>; 3] {
         let [third, second, first] = self.0.joints();
         [first, second, third]
     }
 
+    pub(super) fn regular(&self) -> [Closes<Z::Real>; 2] {
+        self.0.regular()
+    }
+}
+
+impl Rrp {
     /// The shape in which the chain closes: that of the PRR, reversed.
     pub(super) fn shape(
         &self,
@@ -34,20 +39,20 @@ impl Rrp {
     }
 }
 
-impl ClosedForm for Rrp {
-    type Target = PlanarDisplacement;
+impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rrp<Z> {
+    type Target = PlanarDisplacement<T::Plane>;
 
     #[inline(always)]
-    fn attempt(&self, target: &PlanarDisplacement, branch: Branch) -> Attempt {
-        self.0.attempt(&target.inverse(), branch).backwards()
+    fn attempt(&self, target: &Self::Target, sign: T::Sign) -> Attempt<T> {
+        ClosedForm::<T>::attempt(&self.0, &target.inverse(), sign).backwards()
     }
 
     #[cold]
-    fn exception(
-        &self,
-        target: &PlanarDisplacement,
-        branch: Branch,
-    ) -> Result<[JointDisplacement; 3], ReachDeficit> {
-        self.0.exception(&target.inverse(), branch)
+    fn exception(&self, target: &Self::Target, sign: T::Sign) -> Exception<T> {
+        ClosedForm::<T>::exception(&self.0, &target.inverse(), sign).backwards()
+    }
+
+    fn closes(&self, target: &Self::Target) -> Closes<T> {
+        ClosedForm::<T>::closes(&self.0, &target.inverse())
     }
 }

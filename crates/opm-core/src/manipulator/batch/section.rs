@@ -289,7 +289,7 @@ fn attempt<C>(
 {
     let chain = *chain;
     // The variants of the displacements depend on the chain alone.
-    let first = chain.attempt(&C::Target::load(targets, 0), branches[0]);
+    let first = chain.attempt(&C::Target::load(targets, 0), branches[0].sign());
     let [a, b, c] = &mut found.displacements;
     for (displacements, displacement) in
         [&mut *a, &mut *b, &mut *c].into_iter().zip(first.displacements)
@@ -308,7 +308,7 @@ fn attempt<C>(
     }
     #[expect(clippy::needless_range_loop, reason = "a loop over the branches takes a fifth longer")]
     for lane in 0..lanes.min(LANES) {
-        take(lane, chain.attempt(&C::Target::load(targets, lane), branches[lane]));
+        take(lane, chain.attempt(&C::Target::load(targets, lane), branches[lane].sign()));
     }
 }
 

@@ -1,0 +1,254 @@
+//! Numbers over a box of poses, as closed forms take them: their bounds hold for those poses at which the chain closes.
+
+use super::affine::{Affine, Plane, WIDE};
+use super::opening;
+use super::target::Enclosed;
+use crate::numbers::{self, Over, PlaneOver, Real, Tolerance, Truth};
+use nalgebra::Complex;
+use std::ops::{BitAnd, BitOr, Neg, Not};
+
+/// Whether something holds: over a box it is not asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Unasked;
+
+impl BitAnd for Unasked {
+    type Output = Self;
+
+    fn bitand(self, _: Self) -> Self {
+        self
+    }
+}
+
+impl BitOr for Unasked {
+    type Output = Self;
+
+    fn bitor(self, _: Self) -> Self {
+        self
+    }
+}
+
+impl Not for Unasked {
+    type Output = Self;
+
+    fn not(self) -> Self {
+        self
+    }
+}
+
+impl Truth for Unasked {
+    const YES: Self = Self;
+    const NO: Self = Self;
+}
+
+impl<const N: usize> Real for Affine<N> {
+    type Plane = Plane<N>;
+    type Joint = Enclosed<N>;
+    type Truth = Unasked;
+    type Sign = f64;
+
+    fn constant(value: f64) -> Self {
+        Self::constant(value)
+    }
+
+    fn known(self) -> Option<f64> {
+        None
+    }
+
+    fn square(self) -> Self {
+        Self::square(&self)
+    }
+
+    fn over(self, by: Self) -> Self {
+        self * by.recip()
+    }
+
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    fn absolute(self) -> Self {
+        if self.low() >= 0.0 {
+            self
+        } else if self.high() <= 0.0 {
+            -self
+        } else {
+            let half = 0.5 * self.furthest();
+            Self::unknown(half, half, &self.spread())
+        }
+    }
+
+    fn larger(self, other: Self) -> Self {
+        (self + other + (self - other).absolute()) * 0.5
+    }
+
+    fn unit(self) -> Plane<N> {
+        self.unit_vector()
+    }
+
+    /// A root of what is left of it up to one is bounded all the same.
+    fn at_most_one(self) -> Self {
+        self
+    }
+
+    fn share(self, tolerance: Tolerance, times: f64) -> Self {
+        self * (times * tolerance.share)
+    }
+
+    fn at_least(self, _: Self) -> Unasked {
+        Unasked
+    }
+
+    fn within(self, _: f64, _: Tolerance) -> Unasked {
+        Unasked
+    }
+
+    fn exceeds(self, _: Tolerance) -> Unasked {
+        Unasked
+    }
+}
+
+impl<const N: usize> Neg for Plane<N> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { re: -self.re, im: -self.im }
+    }
+}
+
+impl<const N: usize> numbers::Plane for Plane<N> {
+    type Real = Affine<N>;
+    type Sense = bool;
+
+    fn new(re: Affine<N>, im: Affine<N>) -> Self {
+        Self { re, im }
+    }
+
+    fn re(self) -> Affine<N> {
+        self.re
+    }
+
+    fn im(self) -> Affine<N> {
+        self.im
+    }
+
+    fn conj(self) -> Self {
+        self.conj()
+    }
+
+    fn scaled(self, by: Affine<N>) -> Self {
+        self.scaled(by)
+    }
+
+    fn per(self, by: Affine<N>) -> Self {
+        self.scaled(by.recip())
+    }
+
+    fn norm_sqr(self) -> Affine<N> {
+        self.norm_sqr()
+    }
+
+    fn length(self) -> Affine<N> {
+        self.norm_sqr().sqrt()
+    }
+
+    fn cross(self, other: Self) -> Affine<N> {
+        self.cross(other)
+    }
+
+    fn inner(self, other: Self) -> Affine<N> {
+        Affine::products([[&self.re, &other.re], [&self.im, &other.im]])
+    }
+
+    fn along(self, first: Self, second: Self) -> [Affine<N>; 2] {
+        let inverse = first.cross(second).recip();
+        [self.cross(second) * inverse, first.cross(self) * inverse]
+    }
+
+    fn direction(self, _: Affine<N>) -> Self {
+        self
+    }
+}
+
+impl<const N: usize> numbers::Joint for Enclosed<N> {
+    type Real = Affine<N>;
+
+    fn direction(vector: Plane<N>) -> Self {
+        Self::Direction(vector)
+    }
+
+    fn angle(angle: Affine<N>) -> Self {
+        Self::Angle(angle)
+    }
+
+    fn value(value: Affine<N>) -> Self {
+        Self::Value(value)
+    }
+
+    fn inverse(self) -> Self {
+        self.inverse()
+    }
+}
+
+/// With a mechanism's numbers that are constant.
+impl<const N: usize> Over<f64> for Affine<N> {
+    fn from_constant(constant: f64) -> Self {
+        Self::constant(constant)
+    }
+
+    fn per(self, by: f64) -> Self {
+        self * (1.0 / by)
+    }
+
+    fn in_sense(self, reversed: bool) -> Self {
+        if reversed { -self } else { self }
+    }
+
+    /// Where the angle in the triangle has a bounded second derivative, and that of the reach is known well.
+    fn swing(reach: Plane<N>, [first, second]: [Complex<f64>; 2], sign: f64) -> Option<Self> {
+        let squares = [first, second].map(|link| link.norm_sqr());
+        let opening = opening::planar(reach.norm_sqr(), squares)?;
+        let angle = reach.argument() - opening * sign - first.arg();
+        (angle.radius() <= WIDE).then_some(angle)
+    }
+}
+
+/// With those that depend on the box, in a leg whose lift leans.
+impl<const N: usize> Over<Self> for Affine<N> {
+    fn from_constant(constant: Self) -> Self {
+        constant
+    }
+
+    fn per(self, by: Self) -> Self {
+        by.recip() * self
+    }
+
+    fn in_sense(self, reversed: bool) -> Self {
+        if reversed { -self } else { self }
+    }
+}
+
+impl<const N: usize> PlaneOver<Complex<f64>> for Plane<N> {
+    fn from_constant(constant: Complex<f64>) -> Self {
+        Self::constant(constant)
+    }
+
+    fn in_sense(self, reversed: bool) -> Self {
+        if reversed { self.conj() } else { self }
+    }
+
+    fn along_constants(self, first: Complex<f64>, second: Complex<f64>) -> [Affine<N>; 2] {
+        let over = 1.0 / numbers::Plane::cross(first, second);
+        let [first, second] = [first, second].map(Self::constant);
+        [self.cross(second) * over, first.cross(self) * over]
+    }
+}
+
+impl<const N: usize> PlaneOver<Self> for Plane<N> {
+    fn from_constant(constant: Self) -> Self {
+        constant
+    }
+
+    fn in_sense(self, reversed: bool) -> Self {
+        if reversed { self.conj() } else { self }
+    }
+}
