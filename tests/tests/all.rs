@@ -16,6 +16,7 @@ mod homes;
 mod inclined;
 mod inverse;
 mod kinds;
+mod layers;
 mod limits;
 mod linkage;
 mod locate;

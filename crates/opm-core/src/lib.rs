@@ -72,25 +72,19 @@
 //! * A pose out of reach is an answer (`None`), not an error; an error means that the input is not valid.
 //!   A pose on the boundary of reach, or on a limit, counts as inside.
 
-// Layers: text, numeric, numbers, group, chain, mechanism, decomposition, task, manipulator, velocity, forward, motion,
-// trajectory, enclosure, linkage, skeleton. Each uses only those before it (tests/layers.rs).
-pub mod chain;
+// Layers: mechanism, decomposition, task, manipulator, velocity, forward, motion, trajectory, enclosure, linkage,
+// skeleton. Each uses only those before it, and the modules of opm-geometry and opm-mechanism (tests/tests/layers.rs).
 pub mod decomposition;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub mod enclosure;
 pub mod forward;
-pub mod group;
 pub mod linkage;
 pub mod manipulator;
 pub mod mechanism;
 pub mod motion;
-pub mod numbers;
-pub mod numeric;
 pub mod skeleton;
-pub mod table;
 pub mod task;
-pub mod text;
 pub mod trajectory;
 pub mod velocity;
 
@@ -108,6 +102,10 @@ pub use mechanism::leg::{Leg, Section};
 pub use motion::PlatformMotion;
 pub use nalgebra;
 pub use numeric::Quantity;
+#[doc(inline)]
+pub use opm_geometry::{chain, group, numbers, numeric, text};
+#[doc(inline)]
+pub use opm_mechanism::table;
 pub use skeleton::Skeleton;
 pub use task::TaskCoordinate;
 pub use trajectory::Trajectory;

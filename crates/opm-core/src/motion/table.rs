@@ -120,7 +120,7 @@ impl Problems {
             let message = format!("and {} more {problems} from here on", self.more);
             self.list.push(Problem { line: last, column: 1, message });
         }
-        FileErrors { problems: self.list }
+        FileErrors::new(self.list)
     }
 }
 

@@ -18,26 +18,6 @@ pub(crate) struct Form {
     pub angles: OrientationCoordinates,
 }
 
-impl OrientationCoordinates {
-    /// The Euler angles `zeta xi psi` for three angles of this kind. It is linear.
-    #[inline(always)]
-    pub(crate) fn to_euler(self, [first, second, third]: [f64; 3]) -> [f64; 3] {
-        match self {
-            Self::EulerAngles => [first, second, third],
-            Self::TiltTorsion => [first, second, third - first],
-        }
-    }
-
-    /// Three angles of this kind for the Euler angles.
-    #[inline(always)]
-    pub(crate) fn of_euler(self, [zeta, xi, psi]: [f64; 3]) -> [f64; 3] {
-        match self {
-            Self::EulerAngles => [zeta, xi, psi],
-            Self::TiltTorsion => [zeta, xi, zeta + psi],
-        }
-    }
-}
-
 /// The values of a section's coordinates, and those at home; zeros beyond the last.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SectionValues {

@@ -24,7 +24,7 @@ impl Task {
             Some(MotionType::Translation) => self.lower_factor_by_translation(g),
             None => lower_factor_alone(&self.lower, &self.upper, g),
         };
-        let b = self.upper.local(&(self.lower.isometry(&v).inverse() * g));
+        let b = local(&self.upper, &(self.lower.isometry(&v).inverse() * g));
         ([v, b], rise)
     }
 
@@ -122,7 +122,7 @@ impl Task {
                 return Complex::new(1.0, 0.0);
             }
             (_, Identity | TranslationalPlane | TranslationalSpace) => {
-                return about_third(&lower.rotation(g));
+                return about_third(&rotation(lower, g));
             }
             // Parallel axes: the upper one moves on a circle about the lower one.
             (Cylindrical, Cylindrical) => {
@@ -138,27 +138,25 @@ impl Task {
     }
 }
 
-impl Subspace {
-    /// The matrix of a displacement's rotation in this frame.
-    fn rotation(&self, g: &Isometry3<f64>) -> Matrix3<f64> {
-        self.axes.tr_mul(&(g.rotation.to_rotation_matrix().into_inner() * self.axes))
-    }
+/// The matrix of a displacement's rotation in the frame of a subspace.
+fn rotation(frame: &Subspace, g: &Isometry3<f64>) -> Matrix3<f64> {
+    frame.axes.tr_mul(&(g.rotation.to_rotation_matrix().into_inner() * frame.axes))
+}
 
-    /// A displacement of this subspace in its own frame, from base coordinates. Of any other displacement, it
-    /// is the part that is in the subspace.
-    fn local(&self, g: &Isometry3<f64>) -> Displacement {
-        let rotation = self.rotation(g);
-        let moved = self.point(&(g * self.origin));
-        match self.kind {
-            SubspaceKind::Identity => SubspaceKind::Identity.identity(),
-            SubspaceKind::Planar => planar(about_third(&rotation), moved.x, moved.y),
-            SubspaceKind::Spherical => Displacement::Spherical(rotation),
-            SubspaceKind::Cylindrical => cylindrical(about_third(&rotation).arg(), moved.z),
-            SubspaceKind::TranslationalPlane => {
-                Displacement::Translational(Complex::new(moved.x, moved.y))
-            }
-            SubspaceKind::TranslationalSpace => Displacement::Spatial(moved),
+/// A displacement of a subspace in its own frame, from base coordinates. Of any other displacement, it is the part
+/// that is in the subspace.
+fn local(subspace: &Subspace, g: &Isometry3<f64>) -> Displacement {
+    let rotation = rotation(subspace, g);
+    let moved = subspace.point(&(g * subspace.origin));
+    match subspace.kind {
+        SubspaceKind::Identity => SubspaceKind::Identity.identity(),
+        SubspaceKind::Planar => planar(about_third(&rotation), moved.x, moved.y),
+        SubspaceKind::Spherical => Displacement::Spherical(rotation),
+        SubspaceKind::Cylindrical => cylindrical(about_third(&rotation).arg(), moved.z),
+        SubspaceKind::TranslationalPlane => {
+            Displacement::Translational(Complex::new(moved.x, moved.y))
         }
+        SubspaceKind::TranslationalSpace => Displacement::Spatial(moved),
     }
 }
 
@@ -172,14 +170,14 @@ fn lower_factor_alone(lower: &Subspace, upper: &Subspace, g: &Isometry3<f64>) ->
         // g⁻¹ = b⁻¹ · v⁻¹: the same problem, with the subspaces exchanged.
         let inverse = g.inverse();
         let b = upper.isometry(&lower_factor_alone(upper, lower, &inverse));
-        lower.local(&(b.inverse() * inverse)).inverse()
+        local(lower, &(b.inverse() * inverse)).inverse()
     };
     let third = |frame: &Subspace| frame.axes.column(2).into_owned();
     let moved = g * upper.origin;
     match (lower.kind, upper.kind) {
         (Identity, _) => SubspaceKind::Identity.identity(),
         // `b` makes no displacement, or no rotation.
-        (_, Identity) | (Spherical, TranslationalPlane | TranslationalSpace) => lower.local(g),
+        (_, Identity) | (Spherical, TranslationalPlane | TranslationalSpace) => local(lower, g),
         // `b` keeps the centre of the upper sphere.
         (TranslationalPlane, Spherical) => {
             let t = lower.direction(&(moved - upper.origin));

@@ -124,7 +124,7 @@ impl WithSimd for Displace<'_> {
         }
         if section != Some(Section::Lower) {
             if block.one_upper() {
-                block.common_upper(task).store(&mut block.b, 0);
+                section::store(&block.common_upper(task), &mut block.b, 0);
                 lanes::repeat(&mut block.b);
             } else {
                 block.displace_section(task, Section::Upper);

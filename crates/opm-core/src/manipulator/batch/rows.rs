@@ -74,7 +74,7 @@ impl Manipulator {
         match &branch.with_upper {
             Some(b) => {
                 block.displace_only(self, Section::Lower, *arch);
-                (0..LANES).for_each(|lane| b.store(&mut block.b, lane));
+                (0..LANES).for_each(|lane| section::store(b, &mut block.b, lane));
                 block.reach(self, branch.leg, branch.branches, *arch);
             }
             None => {

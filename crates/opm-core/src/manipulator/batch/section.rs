@@ -128,11 +128,11 @@ pub fn displace(
                     // Three calls, where a map would not be inlined.
                     sines = [sin_cos_reduced(a), sin_cos_reduced(b), sin_cos_reduced(c)];
                 }
-                match section {
+                let displacement = match section {
                     Section::Lower => lower_displacement(form, values, sines),
                     Section::Upper => upper_displacement(form, values, sines),
-                }
-                .store(to, lane);
+                };
+                store(&displacement, to, lane);
             }
         }};
     }
@@ -168,18 +168,16 @@ pub fn displace(
     }
 }
 
-impl Displacement {
-    /// Stores a displacement in the columns of its kind.
-    #[inline(always)]
-    pub(crate) fn store(&self, to: &mut Displacements, lane: usize) {
-        match self {
-            Self::Identity(_) => {}
-            Self::Planar(g) => g.store(to, lane),
-            Self::Spherical(r) => r.store(to, lane),
-            Self::Cylindrical(g) => g.store(to, lane),
-            Self::Translational(t) => t.store(to, lane),
-            Self::Spatial(t) => t.store(to, lane),
-        }
+/// Stores a displacement in the columns of its kind.
+#[inline(always)]
+pub(crate) fn store(displacement: &Displacement, to: &mut Displacements, lane: usize) {
+    match displacement {
+        Displacement::Identity(_) => {}
+        Displacement::Planar(g) => g.store(to, lane),
+        Displacement::Spherical(r) => r.store(to, lane),
+        Displacement::Cylindrical(g) => g.store(to, lane),
+        Displacement::Translational(t) => t.store(to, lane),
+        Displacement::Spatial(t) => t.store(to, lane),
     }
 }
 

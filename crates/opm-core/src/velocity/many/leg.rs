@@ -366,7 +366,7 @@ impl LegRows {
                 let step = Step { motion, side: Side::Before };
                 let mut identity = [Lanes::all(0.0); 9];
                 for lane in 0..LANES {
-                    kind.identity().store(&mut identity, lane);
+                    section::store(&kind.identity(), &mut identity, lane);
                 }
                 section::shift(step, &identity, &self.back, &mut self.steps, LANES);
             }

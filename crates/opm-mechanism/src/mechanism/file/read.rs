@@ -1,0 +1,165 @@
+//! Reading a mechanism file: its head, its form, and the family or the joints that it gives.
+
+use super::problem::{FileErrors, Locations, Problem};
+use super::reader::{Reader, Table};
+use super::units::{AngleUnit, FileUnits, LengthUnit};
+use super::{MechanismFile, bodies, joints, obstacles};
+use crate::chain::Branch;
+use crate::mechanism::Mechanism;
+use crate::mechanism::family::{AssemblyError, AssemblyReason, FORMS, Family};
+use toml::de::DeTable;
+
+/// The format number that this version reads.
+pub(crate) const FORMAT: i64 = 1;
+
+/// The keys that the file of every family may have.
+pub(super) const FAMILY_KEYS: &[&str] = &["task", "bodies", "obstacle"];
+
+/// Reads the text of a mechanism file.
+///
+/// # Errors
+/// [`FileErrors`] lists every problem of the file; if the text is not TOML, only the parser's
+/// problems.
+pub fn read(text: &str) -> Result<MechanismFile, FileErrors> {
+    let (file, places) = document(text, "mechanism", read_document)?;
+    Ok(MechanismFile { places: places.in_text(text), ..file })
+}
+
+/// Reads a TOML text as a file of the kind `kind`. `read` reads its content.
+pub fn document<T>(
+    text: &str,
+    kind: &str,
+    read: impl FnOnce(&Table<'_>) -> Option<T>,
+) -> Result<T, FileErrors> {
+    let reader = Reader::new();
+    let (document, syntax) = DeTable::parse_recoverable(text);
+    for error in &syntax {
+        reader.report(error.span().map_or(0, |span| span.start), error.message());
+    }
+    let file =
+        if syntax.is_empty() { read(&Table::new(document.get_ref(), 0, &reader)) } else { None };
+    match (reader.into_errors(text), file) {
+        (None, Some(file)) => Ok(file),
+        (Some(errors), _) => Err(errors),
+        (None, None) => Err(FileErrors {
+            problems: vec![Problem {
+                line: 1,
+                column: 1,
+                message: format!("not a {kind}, expected a {kind} file"),
+            }],
+        }),
+    }
+}
+
+/// Reads the common head of every file: the format, which must be [`FORMAT`]; the name, which is
+/// empty if it is invalid; and the units, which are set in the reader.
+pub fn head<'a>(root: &Table<'a>, kind: &str) -> Option<&'a str> {
+    let format = root.require("format", &format!("format = {FORMAT}"))?;
+    let number = format.integer()?;
+    if number != FORMAT {
+        format.report(format!("is {number}, expected {FORMAT}, the only format so far"));
+        return None;
+    }
+    let name = root
+        .require("name", &format!("the {kind}'s name"))
+        .and_then(|value| value.name())
+        .unwrap_or_default();
+    root.reader.set_units(read_units(root));
+    Some(name)
+}
+
+/// Reads the file without its locations, and the locations as byte offsets.
+fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> {
+    let name = head(root, "mechanism")?;
+    let units = root.reader.units();
+    let Some(family) = root.get("family") else {
+        let (mut mechanism, noted) = joints::read(root, name);
+        bodies::read(root, &mut mechanism);
+        mechanism.shapes.obstacles = obstacles::read(root);
+        let places = Locations::default();
+        return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
+    };
+    let form = family.word(&FORMS)?;
+    root.allow(&[form.keys, FAMILY_KEYS].concat());
+    let mut noted = Locations::default();
+    let task = root.get("task").and_then(|value| value.table(joints::FAMILY_TASK_KEYS));
+    let coordinates = task.map(|task| joints::read_angles(&task, &mut noted)).unwrap_or_default();
+    let (family, mut mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
+    mechanism.task.coordinates = coordinates;
+    mechanism.units = units;
+    bodies::read(root, &mut mechanism);
+    mechanism.shapes.obstacles = obstacles::read(root);
+    let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
+    Some((MechanismFile { mechanism, units, mode, family, places }, noted))
+}
+
+/// Reads the file's units. Units that are not understood become SI, so that the rest can be
+/// checked.
+fn read_units(root: &Table<'_>) -> FileUnits {
+    let expected = "units = { length = \"mm\", angle = \"deg\" }, for instance";
+    let units = root.require("units", expected).and_then(|value| value.table(&["length", "angle"]));
+    let lengths = LengthUnit::ALL.map(|unit| (unit.symbol(), unit));
+    let angles = AngleUnit::ALL.map(|unit| (unit.symbol(), unit));
+    let length = units
+        .and_then(|units| units.require("length", "the unit of lengths"))
+        .and_then(|value| value.word(&lengths));
+    let angle = units
+        .and_then(|units| units.require("angle", "the unit of angles"))
+        .and_then(|value| value.word(&angles));
+    FileUnits { length: length.unwrap_or_default(), angle: angle.unwrap_or_default() }
+}
+
+/// The name of a leg, or `leg1`, `leg2`, ... if it has none.
+pub(in crate::mechanism) fn leg_name(leg: &Table<'_>, index: usize) -> String {
+    let given = leg.get("name").and_then(|value| value.name());
+    given.map_or_else(|| format!("leg{}", index + 1), str::to_owned)
+}
+
+/// Reads the branches of `mode`: one group of signs for each leg with choices, concatenated. Every
+/// branch is plus if the mode is not given or invalid.
+fn branches(root: &Table<'_>, choices: &[usize]) -> Vec<Branch> {
+    let plus = || vec![Branch::Plus; choices.iter().sum()];
+    let Some((value, text)) = root.get("mode").and_then(|value| Some((value, value.string()?)))
+    else {
+        return plus();
+    };
+    let groups: Vec<&str> = text.split_whitespace().collect();
+    let example = choices.iter().map(|&n| "+".repeat(n)).collect::<Vec<_>>().join(" ");
+    if let Some(wrong) = text.chars().find(|c| !c.is_whitespace() && !"+-".contains(*c)) {
+        value.report(format!("contains {wrong:?}, expected signs + and - as in {example:?}"));
+        return plus();
+    }
+    if groups.iter().map(|group| group.len()).ne(choices.iter().copied()) {
+        let expected = match choices {
+            [] => "an empty text: this family has no working modes to choose from".to_owned(),
+            _ => format!("one sign for every choice, in a group for each leg, as in {example:?}"),
+        };
+        value.report(format!("is {text:?}, expected {expected}"));
+        return plus();
+    }
+    let branch = |sign| if sign == '+' { Branch::Plus } else { Branch::Minus };
+    groups.into_iter().flat_map(str::chars).map(branch).collect()
+}
+
+/// Assembles a family that was read. Each problem is reported at the parameter that causes it. A
+/// parameter that could not be read (its value is NaN) has its problem already.
+pub(in crate::mechanism) fn assembled(
+    family: Family,
+    root: &Table<'_>,
+    legs: &[Table<'_>],
+) -> Option<(Family, Mechanism)> {
+    let problems = match family.assemble() {
+        Ok(mechanism) => return Some((family, mechanism)),
+        Err(AssemblyError { problems }) => problems,
+    };
+    for problem in problems {
+        let table = problem.leg.and_then(|leg| legs.get(leg)).unwrap_or(root);
+        let value = problem.parameter.and_then(|parameter| table.get(parameter));
+        let at = value.map_or(table.at, |value| value.at);
+        let reported = value.is_some() && root.reader.has_problem(at);
+        if problem.reason != AssemblyReason::NotFinite && !reported {
+            root.reader.report(at, problem.describe(root.reader.units()));
+        }
+    }
+    None
+}

@@ -1,0 +1,174 @@
+//! How the platform's pose is measured, where the geometry alone leaves it open.
+
+use crate::mechanism::leg::Section;
+use crate::numeric::Quantity;
+use nalgebra::{Point3, Vector3};
+use std::fmt;
+
+/// How the platform's pose is measured: `[task]` in a mechanism file.
+///
+/// What is not given follows from the geometry, by the rules in the docs of `opm_core::task`.
+/// These docs also list what each subspace leaves free.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct TaskHints {
+    /// The intersection motion's positive direction is the one on the side of this vector.
+    pub axis: Option<Vector3<f64>>,
+    /// The lower section's frame.
+    pub lower: FrameHints,
+    /// The upper section's frame.
+    pub upper: FrameHints,
+    /// The angles that an orientation is written with.
+    pub coordinates: OrientationCoordinates,
+    /// Home values of task coordinates by name, metres or radians; the others follow from the
+    /// geometry.
+    pub home: Vec<(String, f64)>,
+}
+
+/// The task coordinates whose values at home a file can give. Tilt and torsion follow from the Euler angles, in whose place
+/// they stand.
+pub const HOME_COORDINATES: [(&str, Quantity); 12] = {
+    use Quantity::{Angle, Length};
+    [
+        ("x", Length),
+        ("y", Length),
+        ("z", Length),
+        ("h", Length),
+        ("w", Length),
+        ("theta", Angle),
+        ("phi", Angle),
+        ("zeta", Angle),
+        ("xi", Angle),
+        ("psi", Angle),
+        ("mu", Angle),
+        ("nu", Angle),
+    ]
+};
+
+/// The angles with which the orientation of a spherical section is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+pub enum OrientationCoordinates {
+    /// Euler angles: `zeta xi psi` with `R = Rz(zeta) Ry(xi) Rz(psi)`.
+    #[default]
+    EulerAngles,
+    /// Tilt and torsion: `azimuth tilt torsion` with `R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)` (I. A. Bonev,
+    /// *Geometric analysis of parallel mechanisms*, 2002). The third direction is tilted towards the azimuth, and a
+    /// torsion of zero is a tilt alone, whichever way.
+    TiltTorsion,
+}
+
+impl OrientationCoordinates {
+    /// Both, with their names in files and options.
+    pub const NAMED: [(&'static str, Self); 2] =
+        [("euler-angles", Self::EulerAngles), ("tilt-torsion", Self::TiltTorsion)];
+
+    /// The name in files and options.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::EulerAngles => "euler-angles",
+            Self::TiltTorsion => "tilt-torsion",
+        }
+    }
+
+    /// The choice with a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMED.into_iter().find(|(known, _)| *known == name).map(|(_, choice)| choice)
+    }
+
+    /// The Euler angles `zeta xi psi` for three angles of this kind. It is linear.
+    #[inline(always)]
+    pub fn to_euler(self, [first, second, third]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::EulerAngles => [first, second, third],
+            Self::TiltTorsion => [first, second, third - first],
+        }
+    }
+
+    /// Three angles of this kind for the Euler angles.
+    #[inline(always)]
+    pub fn of_euler(self, [zeta, xi, psi]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::EulerAngles => [zeta, xi, psi],
+            Self::TiltTorsion => [zeta, xi, zeta + psi],
+        }
+    }
+}
+
+/// Hints for the frame of one section, in base coordinates.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct FrameHints {
+    /// Direction of the coordinate `x`; in a spherical subspace and in a translational space, direction of the
+    /// frame's first axis.
+    pub x: Option<Vector3<f64>>,
+    /// The third direction of the frame of a sphere or of a translational space, or a vector on the positive side of a
+    /// cylinder's axis, where the two subspaces share no motion.
+    pub axis: Option<Vector3<f64>>,
+    /// Positive direction of the coordinate `w`.
+    pub w: Option<Vector3<f64>>,
+    /// Normal of the plane; the plane's angle is positive about it.
+    pub normal: Option<Vector3<f64>>,
+    /// The point that lengths are measured from, metres.
+    pub origin: Option<Point3<f64>>,
+}
+
+impl TaskHints {
+    /// The hints for the frame of one section.
+    pub fn frame(&self, section: Section) -> &FrameHints {
+        match section {
+            Section::Lower => &self.lower,
+            Section::Upper => &self.upper,
+        }
+    }
+}
+
+/// The key of one hint in a mechanism file: `axis`, `lower.x`, ...
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TaskKey {
+    /// `axis`: [`TaskHints::axis`].
+    Axis,
+    /// `coordinates`: [`TaskHints::coordinates`].
+    Coordinates,
+    /// `home`: [`TaskHints::home`].
+    Home,
+    /// `axis` of a section: [`FrameHints::axis`].
+    AxisOf(Section),
+    /// `x` of a section: [`FrameHints::x`].
+    X(Section),
+    /// `w` of a section: [`FrameHints::w`].
+    W(Section),
+    /// `normal` of a section: [`FrameHints::normal`].
+    Normal(Section),
+    /// `origin` of a section: [`FrameHints::origin`].
+    Origin(Section),
+}
+
+impl TaskKey {
+    /// The last part of the key: `x`, `w`, `normal`, `origin`, `axis`, `coordinates`, or `home`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Axis | Self::AxisOf(_) => "axis",
+            Self::Coordinates => "coordinates",
+            Self::Home => "home",
+            Self::X(_) => "x",
+            Self::W(_) => "w",
+            Self::Normal(_) => "normal",
+            Self::Origin(_) => "origin",
+        }
+    }
+}
+
+impl fmt::Display for TaskKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.name();
+        match self {
+            Self::Axis | Self::Coordinates | Self::Home => f.write_str(name),
+            Self::AxisOf(section)
+            | Self::X(section)
+            | Self::W(section)
+            | Self::Normal(section)
+            | Self::Origin(section) => write!(f, "{section}.{name}"),
+        }
+    }
+}
