@@ -68,7 +68,8 @@ mod pose;
 pub use coordinate::{CoordinateKind, TaskCoordinate};
 pub use displacement::euler;
 pub(crate) use displacement::{
-    Form, SectionValues, lower_angles, lower_displacement, upper_angles, upper_displacement,
+    Form, SectionValues, euler_of, lower_angles, lower_displacement, upper_angles,
+    upper_displacement,
 };
 pub use error::{FrameProblem, OddJoint, TaskError};
 pub(crate) use height::Height;
@@ -304,13 +305,13 @@ impl Task {
             Section::Lower => lower_angles(form, values),
             Section::Upper => upper_angles(form, values),
         };
-        let mut sines = [(0.0, 1.0); 3];
+        let mut units = [Complex::ONE; 3];
         if let Some(angles) = angles {
-            sines = sin_cos_of_each(angles);
+            units = sin_cos_of_each(angles).map(|(sin, cos)| Complex::new(cos, sin));
         }
         let displacement = match section {
-            Section::Lower => lower_displacement(form, values, sines),
-            Section::Upper => upper_displacement(form, values, sines),
+            Section::Lower => lower_displacement(form, values.from_home(), units),
+            Section::Upper => upper_displacement(form, values.from_home(), units),
         };
         self.displaced_from_home(section, displacement)
     }

@@ -16,13 +16,13 @@
 //! [`Real`] asks for, too.
 
 mod joint;
+mod pose;
 
 pub use joint::JointDisplacement;
 #[doc(hidden)]
 pub use joint::nearest;
 
-use crate::numeric::angle::unit;
-use nalgebra::Complex;
+use nalgebra::Vector3;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
@@ -72,6 +72,10 @@ pub trait Real:
 {
     /// A vector of the plane, as a complex number.
     type Plane: Plane<Real = Self>;
+    /// A vector of space.
+    type Space: Space<Real = Self>;
+    /// A rotation of space.
+    type Rotation: Rotation<Real = Self>;
     /// What a joint is displaced by.
     type Joint: Joint<Real = Self>;
     /// Whether something holds. Over a box nothing is asked: there, bounds are of those poses at which it does.
@@ -87,6 +91,8 @@ pub trait Real:
     fn square(self) -> Self;
     /// The quotient.
     fn over(self, by: Self) -> Self;
+    /// `a b + c d`
+    fn products(ab: [Self; 2], cd: [Self; 2]) -> Self;
     /// The root of a number that is not negative but for rounding, which counts as zero.
     fn root(self) -> Self;
     /// The number without its sign.
@@ -151,6 +157,9 @@ pub trait Plane:
     fn cross(self, other: Self) -> Self::Real;
     /// The scalar product.
     fn inner(self, other: Self) -> Self::Real;
+    /// The unit vector in its direction.
+    #[must_use]
+    fn normalised(self) -> Self;
     /// The coordinates along two directions that are not parallel.
     fn along(self, first: Self, second: Self) -> [Self::Real; 2];
     /// The same as a direction; where it is zero compared to a size, so that its angle is free, that of the angle zero. It
@@ -162,6 +171,101 @@ pub trait Plane:
     #[must_use]
     fn named(self, _: &'static str) -> Self {
         self
+    }
+}
+
+/// A vector of space.
+pub trait Space: Copy + Debug + PartialEq {
+    /// Its components.
+    type Real: Real<Space = Self>;
+
+    /// The vector with these components.
+    fn new(x: Self::Real, y: Self::Real, z: Self::Real) -> Self;
+    /// Its components.
+    fn parts(self) -> [Self::Real; 3];
+    /// The cross product.
+    #[must_use]
+    #[inline(always)]
+    fn crossed(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.parts(), other.parts());
+        let minor = |a: Self::Real, z: Self::Real, c: Self::Real, y: Self::Real| {
+            Real::products([a, z], [-c, y])
+        };
+        Self::new(minor(b, z, c, y), minor(c, x, a, z), minor(a, y, b, x))
+    }
+    /// The sum of this vector and a multiple of another one.
+    #[must_use]
+    #[inline(always)]
+    fn plus(self, by: Self::Real, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.parts(), other.parts());
+        Self::new(a + x * by, b + y * by, c + z * by)
+    }
+    /// The product with a number.
+    #[must_use]
+    #[inline(always)]
+    fn scaled(self, by: Self::Real) -> Self {
+        let [x, y, z] = self.parts();
+        Self::new(x * by, y * by, z * by)
+    }
+    /// The scalar product.
+    #[inline(always)]
+    fn inner(self, other: Self) -> Self::Real {
+        let ([a, b, c], [x, y, z]) = (self.parts(), other.parts());
+        Real::products([a, x], [b, y]) + c * z
+    }
+}
+
+/// Numbers that have no vectors of their own have three of them.
+impl<T: Real<Space = Self>> Space for [T; 3] {
+    type Real = T;
+
+    fn new(x: T, y: T, z: T) -> Self {
+        [x, y, z]
+    }
+
+    fn parts(self) -> Self {
+        self
+    }
+}
+
+/// A rotation of space.
+pub trait Rotation: Copy + Debug + PartialEq {
+    /// Its components.
+    type Real: Real<Rotation = Self>;
+
+    /// The rotation with these rows.
+    fn from_rows(rows: [[Self::Real; 3]; 3]) -> Self;
+    /// Its rows.
+    fn rows(self) -> [[Self::Real; 3]; 3];
+    /// The inverse.
+    #[must_use]
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        let [[a, b, c], [d, e, f], [g, h, i]] = self.rows();
+        Self::from_rows([[a, d, g], [b, e, h], [c, f, i]])
+    }
+    /// The product of this one, on the left, and a rotation about the third direction: the first two columns rotate.
+    #[must_use]
+    #[inline(always)]
+    fn after_turn(self, e: <Self::Real as Real>::Plane) -> Self {
+        let (re, im) = (e.re(), e.im());
+        Self::from_rows(self.rows().map(|[x, y, z]| {
+            [Real::products([x, re], [y, im]), Real::products([y, re], [-x, im]), z]
+        }))
+    }
+    /// The product of a rotation about the third direction, on the left, and this one: the first two rows rotate.
+    #[must_use]
+    #[inline(always)]
+    fn before_turn(self, e: <Self::Real as Real>::Plane) -> Self {
+        let (re, im) = (e.re(), e.im());
+        let [[a, b, c], [d, e, f], third] = self.rows();
+        let first = |x: Self::Real, y: Self::Real| Real::products([x, re], [-y, im]);
+        let second = |x: Self::Real, y: Self::Real| Real::products([x, im], [y, re]);
+        Self::from_rows([
+            [first(a, d), first(b, e), first(c, f)],
+            [second(a, d), second(b, e), second(c, f)],
+            third,
+        ])
     }
 }
 
@@ -179,6 +283,10 @@ pub trait Joint: Copy {
     /// The opposite displacement.
     #[must_use]
     fn inverse(self) -> Self;
+    /// The unit vector in the direction of its angle.
+    fn unit(self) -> <Self::Real as Real>::Plane;
+    /// The displacement as a number.
+    fn number(self) -> Self::Real;
 }
 
 /// Whether something holds.
@@ -191,7 +299,7 @@ pub trait Truth: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Outpu
 
 /// A number of the target, which can be combined with those of the mechanism.
 pub trait Over<C: Real>:
-    Real<Plane: PlaneOver<C::Plane>>
+    Real<Plane: PlaneOver<C::Plane>, Space: SpaceOver<C::Space>, Rotation: RotationOver<C>>
     + Add<C, Output = Self>
     + Sub<C, Output = Self>
     + Mul<C, Output = Self>
@@ -220,6 +328,11 @@ pub trait PlaneOver<Z: Plane>:
     /// A rotation counter-clockwise as that of a pivot in its sense.
     #[must_use]
     fn in_sense(self, sense: Z::Sense) -> Self;
+    /// The scalar product with a vector of the mechanism.
+    #[inline(always)]
+    fn dot(self, constant: Z) -> Self::Real {
+        self.inner(Self::from_constant(constant))
+    }
     /// The coordinates along two directions of the mechanism that are not parallel.
     #[inline(always)]
     fn along_constants(self, first: Z, second: Z) -> [Self::Real; 2] {
@@ -227,204 +340,33 @@ pub trait PlaneOver<Z: Plane>:
     }
 }
 
-impl Real for f64 {
-    type Plane = Complex<f64>;
-    type Joint = JointDisplacement;
-    type Truth = bool;
-    type Sign = f64;
+/// A vector of space of the target, which can be combined with those of the mechanism.
+pub trait SpaceOver<V: Space>: Space {
+    /// The scalar product with a vector of the mechanism.
+    fn against(self, constant: V) -> Self::Real;
+}
 
-    #[inline(always)]
-    fn constant(value: f64) -> Self {
-        value
-    }
-
-    #[inline(always)]
-    fn known(self) -> Option<f64> {
-        Some(self)
-    }
-
-    #[inline(always)]
-    fn square(self) -> Self {
-        self * self
-    }
-
-    #[inline(always)]
-    fn over(self, by: Self) -> Self {
-        self / by
-    }
-
-    #[inline(always)]
-    fn root(self) -> Self {
-        self.max(0.0).sqrt()
-    }
-
-    #[inline(always)]
-    fn absolute(self) -> Self {
-        self.abs()
-    }
-
-    #[inline(always)]
-    fn larger(self, other: Self) -> Self {
-        self.max(other)
-    }
-
-    #[inline(always)]
-    fn unit(self) -> Complex<f64> {
-        unit(self)
-    }
-
-    #[inline(always)]
-    fn at_most_one(self) -> Self {
-        self.clamp(-1.0, 1.0)
-    }
-
-    #[inline(always)]
-    fn share(self, tolerance: Tolerance, times: f64) -> Self {
-        times * tolerance.share * self
-    }
-
-    #[inline(always)]
-    fn at_least(self, other: Self) -> bool {
-        self >= other
-    }
-
-    #[inline(always)]
-    fn within(self, size: f64, tolerance: Tolerance) -> bool {
-        self.abs() <= size + tolerance.share
-    }
-
-    #[inline(always)]
-    fn exceeds(self, tolerance: Tolerance) -> bool {
-        self.abs() > tolerance.share
+impl<T: Real<Space = Self>> SpaceOver<Vector3<f64>> for [T; 3] {
+    fn against(self, constant: Vector3<f64>) -> T {
+        let [x, y, z] = self;
+        x * constant.x + y * constant.y + z * constant.z
     }
 }
 
-impl Truth for bool {
-    const YES: Self = true;
-    const NO: Self = false;
-}
-
-impl Plane for Complex<f64> {
-    type Real = f64;
-    type Sense = bool;
-
-    #[inline(always)]
-    fn new(re: f64, im: f64) -> Self {
-        Self { re, im }
-    }
-
-    #[inline(always)]
-    fn re(self) -> f64 {
-        self.re
-    }
-
-    #[inline(always)]
-    fn im(self) -> f64 {
-        self.im
-    }
-
-    #[inline(always)]
-    fn conj(self) -> Self {
-        Self { re: self.re, im: -self.im }
-    }
-
-    #[inline(always)]
-    fn scaled(self, by: f64) -> Self {
-        self * by
-    }
-
-    #[inline(always)]
-    fn per(self, by: f64) -> Self {
-        self / by
-    }
-
-    #[inline(always)]
-    fn norm_sqr(self) -> f64 {
-        self.re * self.re + self.im * self.im
-    }
-
-    /// With protection from overflow.
-    #[inline(always)]
-    fn length(self) -> f64 {
-        self.norm()
-    }
-
-    #[inline(always)]
-    fn cross(self, other: Self) -> f64 {
-        self.re * other.im - self.im * other.re
-    }
-
-    #[inline(always)]
-    fn inner(self, other: Self) -> f64 {
-        self.re * other.re + self.im * other.im
-    }
-
-    /// The first is computed from the rounded second one, so that their sum is the vector even where the directions are
-    /// nearly parallel.
-    #[inline(always)]
-    fn along(self, first: Self, second: Self) -> [f64; 2] {
-        let n = Plane::cross(first, self) / Plane::cross(first, second);
-        let rest = self - second * n;
-        [rest.re * first.re + rest.im * first.im, n]
-    }
-
-    #[inline(always)]
-    fn direction(self, size: f64) -> Self {
-        let shortest = REACH.share * REACH.share * size;
-        let long = self.norm_sqr() > shortest * shortest;
-        Self { re: if long { self.re } else { 1.0 }, im: if long { self.im } else { 0.0 } }
+impl<T: Real<Space = Self>> SpaceOver<Self> for [T; 3] {
+    fn against(self, [u, v, w]: Self) -> T {
+        let [x, y, z] = self;
+        T::products([x, u], [y, v]) + z * w
     }
 }
 
-impl Joint for JointDisplacement {
-    type Real = f64;
-
-    #[inline(always)]
-    fn direction(vector: Complex<f64>) -> Self {
-        Self::Direction(vector)
-    }
-
-    #[inline(always)]
-    fn angle(angle: f64) -> Self {
-        Self::Direction(unit(angle))
-    }
-
-    #[inline(always)]
-    fn value(value: f64) -> Self {
-        Self::Value(value)
-    }
-
-    #[inline(always)]
-    fn inverse(self) -> Self {
-        JointDisplacement::inverse(self)
-    }
-}
-
-impl Over<f64> for f64 {
-    #[inline(always)]
-    fn from_constant(constant: f64) -> Self {
-        constant
-    }
-
-    #[inline(always)]
-    fn per(self, by: f64) -> Self {
-        self / by
-    }
-
-    #[inline(always)]
-    fn in_sense(self, reversed: bool) -> Self {
-        if reversed { -self } else { self }
-    }
-}
-
-impl PlaneOver<Complex<f64>> for Complex<f64> {
-    #[inline(always)]
-    fn from_constant(constant: Complex<f64>) -> Self {
-        constant
-    }
-
-    #[inline(always)]
-    fn in_sense(self, reversed: bool) -> Self {
-        Self { re: self.re, im: if reversed { -self.im } else { self.im } }
-    }
+/// A rotation of the target, which can be combined with the numbers of the mechanism.
+pub trait RotationOver<C: Real>: Rotation {
+    /// The image of a vector of the mechanism.
+    fn apply(self, constant: C::Space) -> <Self::Real as Real>::Space;
+    /// What is rotated to a vector of the mechanism.
+    fn apply_back(self, constant: C::Space) -> <Self::Real as Real>::Space;
+    /// The product of this one, on the left, and a rotation of the mechanism.
+    #[must_use]
+    fn after(self, constant: C::Rotation) -> Self;
 }

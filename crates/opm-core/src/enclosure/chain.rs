@@ -8,6 +8,7 @@ use super::target::{Enclosed, Rotation, Target, dot};
 use crate::chain::cylindrical::CoaxialJoint;
 use crate::chain::spherical::{Ball, SphericalChain};
 use crate::chain::{Branch, Chain, ClosedForm, Closes, REACH_TOLERANCE};
+use crate::group::CylindricalDisplacement;
 use nalgebra::{Complex, Vector3};
 
 /// The end of a range without an end.
@@ -50,7 +51,7 @@ pub fn displacements<const N: usize>(
         Chain::Spherical(chain) => spherical(chain, target.spherical(), branch),
         Chain::Ball(ball) => self::ball(ball, target.spherical()),
         Chain::Cylindrical(chain) => {
-            let [angle, advance] = target.cylindrical();
+            let &CylindricalDisplacement { angle, advance } = target.cylindrical();
             let [p, q] = *chain.joints();
             let determinant = p.rotation * q.advance - q.rotation * p.advance;
             let displacement = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {

@@ -3,7 +3,6 @@
 
 use super::LegConditions;
 use super::affine::{Affine, Plane};
-use super::condition;
 use super::one_joint;
 use super::share::Share;
 use super::target::{self, Coordinate, Enclosed, Target};
@@ -69,7 +68,7 @@ impl<const N: usize> LegConditions<'_, N> {
                 let (known, tau) = self.tau_before(*leg, *section, pose);
                 let values = function.places().map(|place| {
                     pose[*coordinate] = Coordinate::Linear(Affine::constant(place));
-                    condition::value(condition, &self.target_of(*leg, *section, tau, pose))
+                    condition.value(&self.target_of(*leg, *section, tau, pose))
                 });
                 let (exists, found) = zero(function, constraint.has_choice(function), values, sign);
                 let found =
@@ -101,8 +100,8 @@ impl<const N: usize> LegConditions<'_, N> {
         // A displacement by the joint, with that along the intersection motion if it belongs to the other section.
         let shifted = |g: Target<N>| match joint.section {
             _ if bridge.is_none_or(|bridge| bridge == joint.section) => g,
-            Section::Lower => target::after(motion, &g, tau.inverse()),
-            Section::Upper => target::before(motion, &g, tau),
+            Section::Lower => motion.after(&g, tau.inverse()),
+            Section::Upper => motion.before(&g, tau),
         };
         let (exists, found) = one_joint::coordinates(joint, kind, task, sign, &shifted, pose);
         for ((follows, &coordinate), value) in joint.follows.iter().zip(&joint.all).zip(found) {
@@ -162,8 +161,8 @@ impl<const N: usize> LegConditions<'_, N> {
         let (task, own) = (self.manipulator.task(), self.displacement(section, pose));
         match section {
             _ if !follows(task, self.leg(leg), section) => own,
-            Section::Lower => target::after(task.lower_intersection, &own, tau),
-            Section::Upper => target::before(task.upper_intersection, &own, tau.inverse()),
+            Section::Lower => task.lower_intersection.after(&own, tau),
+            Section::Upper => task.upper_intersection.before(&own, tau.inverse()),
         }
     }
 

@@ -5,7 +5,7 @@ use super::raised::RaisedChain;
 use super::share::Share;
 use super::slice::{Bounded, Rectangle, Slice};
 use super::target::{self, Coordinate, Enclosed, Target};
-use super::{BoxQuery, chain, partial};
+use super::{BoxQuery, chain};
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
 use crate::chain::{Branch, Chain};
@@ -62,7 +62,7 @@ impl<const N: usize> SectionChain<'_, N> {
         match self {
             Self::Fixed(chain, target) => chain::displacements(chain, target, branch),
             Self::Raised(raised) => raised.displacements(branch),
-            Self::Partial(chain, target) => partial::displacements(chain, target),
+            Self::Partial(chain, target) => chain.inverse(target),
         }
     }
 }
@@ -282,7 +282,7 @@ impl<const N: usize> LegConditions<'_, N> {
                 let step = joint.map_or(still, |joint| displacements[joint]);
                 self.unwound(compiled, step, |step| {
                     let motion = self.manipulator.task().upper_intersection;
-                    let target = target::before(motion, &b.target, step);
+                    let target = motion.before(&b.target, step);
                     self.section(leg, Section::Upper, &target, |_| Share::ALL)
                 })
             }),
@@ -291,7 +291,7 @@ impl<const N: usize> LegConditions<'_, N> {
 
     /// The share for which the lower section closes at `v · exp(I τ)` within its limits.
     fn reaches(&self, leg: usize, v: &Target<N>, tau: Enclosed<N>) -> Share<N> {
-        let target = target::after(self.manipulator.task().lower_intersection, v, tau);
+        let target = self.manipulator.task().lower_intersection.after(v, tau);
         self.section(leg, Section::Lower, &target, |_| Share::ALL)
     }
 

@@ -2,9 +2,9 @@
 
 use super::affine::{Affine, Plane, WIDE};
 use super::opening;
-use super::target::Enclosed;
-use crate::numbers::{self, Over, PlaneOver, Real, Tolerance, Truth};
-use nalgebra::Complex;
+use super::target::{Enclosed, Rotation};
+use crate::numbers::{self, Over, PlaneOver, Real, RotationOver, SpaceOver, Tolerance, Truth};
+use nalgebra::{Complex, Matrix3, Vector3};
 use std::ops::{BitAnd, BitOr, Neg, Not};
 
 /// Whether something holds: over a box it is not asked.
@@ -42,6 +42,8 @@ impl Truth for Unasked {
 
 impl<const N: usize> Real for Affine<N> {
     type Plane = Plane<N>;
+    type Space = [Affine<N>; 3];
+    type Rotation = Rotation<N>;
     type Joint = Enclosed<N>;
     type Truth = Unasked;
     type Sign = f64;
@@ -60,6 +62,10 @@ impl<const N: usize> Real for Affine<N> {
 
     fn over(self, by: Self) -> Self {
         self * by.recip()
+    }
+
+    fn products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
+        Self::products([[&a, &b], [&c, &d]])
     }
 
     fn root(self) -> Self {
@@ -159,6 +165,10 @@ impl<const N: usize> numbers::Plane for Plane<N> {
         Affine::products([[&self.re, &other.re], [&self.im, &other.im]])
     }
 
+    fn normalised(self) -> Self {
+        Self::direction(self)
+    }
+
     fn along(self, first: Self, second: Self) -> [Affine<N>; 2] {
         let inverse = first.cross(second).recip();
         [self.cross(second) * inverse, first.cross(self) * inverse]
@@ -186,6 +196,55 @@ impl<const N: usize> numbers::Joint for Enclosed<N> {
 
     fn inverse(self) -> Self {
         self.inverse()
+    }
+
+    fn unit(self) -> Plane<N> {
+        self.unit_vector()
+    }
+
+    fn number(self) -> Affine<N> {
+        self.number()
+    }
+}
+
+impl<const N: usize> numbers::Rotation for Rotation<N> {
+    type Real = Affine<N>;
+
+    fn from_rows(rows: [[Affine<N>; 3]; 3]) -> Self {
+        Self(rows)
+    }
+
+    fn rows(self) -> [[Affine<N>; 3]; 3] {
+        self.0
+    }
+}
+
+impl<const N: usize> RotationOver<f64> for Rotation<N> {
+    fn apply(self, constant: Vector3<f64>) -> [Affine<N>; 3] {
+        Self::apply(&self, &constant)
+    }
+
+    fn apply_back(self, constant: Vector3<f64>) -> [Affine<N>; 3] {
+        Self::apply_back(&self, &constant)
+    }
+
+    fn after(self, constant: Matrix3<f64>) -> Self {
+        Self::after(&self, &constant)
+    }
+}
+
+impl<const N: usize> RotationOver<Affine<N>> for Rotation<N> {
+    fn apply(self, v: [Affine<N>; 3]) -> [Affine<N>; 3] {
+        self.0.map(|row| row.against(v))
+    }
+
+    fn apply_back(self, v: [Affine<N>; 3]) -> [Affine<N>; 3] {
+        numbers::Rotation::inverse(self).0.map(|row| row.against(v))
+    }
+
+    fn after(self, other: Self) -> Self {
+        let columns = numbers::Rotation::inverse(other).0;
+        Self(self.0.map(|row| columns.map(|column| row.against(column))))
     }
 }
 
@@ -234,6 +293,10 @@ impl<const N: usize> PlaneOver<Complex<f64>> for Plane<N> {
 
     fn in_sense(self, reversed: bool) -> Self {
         if reversed { self.conj() } else { self }
+    }
+
+    fn dot(self, constant: Complex<f64>) -> Affine<N> {
+        self.re * constant.re + self.im * constant.im
     }
 
     fn along_constants(self, first: Complex<f64>, second: Complex<f64>) -> [Affine<N>; 2] {

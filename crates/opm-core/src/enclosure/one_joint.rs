@@ -24,7 +24,7 @@ pub fn coordinates<const N: usize>(
     // Zero for a displacement along the intersection motion, for which there is no coordinate.
     let home = |i: usize| joint.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
     let at = |i: usize| pose[joint.all[i]].minus(0.0);
-    let still = || shifted(Target::identity(kind));
+    let still = || shifted(Target::still(kind));
     let of_euler = |angles| of_euler(task, angles);
     match joint.motion {
         SectionMotion::None => (
@@ -117,10 +117,10 @@ fn lengths<const N: usize>(g: &Target<N>) -> [Affine<N>; 3] {
 fn of_displacement<const N: usize>(g: &Target<N>, home: impl Fn(usize) -> f64) -> [Affine<N>; 3] {
     let none = Affine::constant(0.0);
     let from_home = match g {
-        Target::Identity => return [none; 3],
+        Target::Identity(_) => return [none; 3],
         Target::Planar(g) => [g.translation.re, g.translation.im, g.rotation.argument()],
         Target::Spherical(r) => [about_third(r), none, none],
-        &Target::Cylindrical(angle, advance) => [angle, advance, none],
+        &Target::Cylindrical(g) => [g.angle, g.advance, none],
         Target::Translational(t) => [t.re, t.im, none],
         Target::Spatial(t) => *t,
     };

@@ -8,8 +8,8 @@ use super::affine::Affine;
 use super::target::{self, Coordinate, Enclosed, Target, dot};
 use super::{LegConditions, Side, Upper};
 use crate::enclosure::BoxQuery;
-use crate::group::Subspace;
 use crate::group::screw::Screw;
+use crate::group::{CylindricalDisplacement, Subspace};
 use crate::manipulator::{Choices, Manipulator, Mode};
 use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Section;
@@ -299,7 +299,7 @@ impl<const N: usize> LegPlaces<N> {
                     known = near.low() > -PI && near.high() < PI;
                     tau = Enclosed::Value(near);
                 }
-                let lower = target::after(task.lower_intersection, v, tau);
+                let lower = task.lower_intersection.after(v, tau);
                 (lower, [solve(Section::Lower, &lower), above])
             }
             Section::Lower => {
@@ -307,9 +307,9 @@ impl<const N: usize> LegPlaces<N> {
                 let joint = leg.imaginary_joint();
                 let none = Enclosed::Value(Affine::constant(0.0));
                 let step = joint.map_or(none, |joint| below[joint]);
-                let above = target::before(task.upper_intersection, &b.target, step);
+                let above = task.upper_intersection.before(&b.target, step);
                 // The last joint of the chain is the imaginary one: the links are displaced by `v` and its inverse.
-                let lower = target::after(task.lower_intersection, v, step.inverse());
+                let lower = task.lower_intersection.after(v, step.inverse());
                 (lower, [below, solve(Section::Upper, &above)])
             }
         };
@@ -405,7 +405,7 @@ fn apply<const N: usize>(subspace: &Subspace, target: &Target<N>, point: &Place<
         ]
     };
     let moved: Place<N> = match target {
-        Target::Identity => return *point,
+        Target::Identity(_) => return *point,
         Target::Planar(g) => {
             let [x, y] = rotated(&g.rotation);
             [x + g.translation.re, y + g.translation.im, local[2]]
@@ -413,7 +413,7 @@ fn apply<const N: usize>(subspace: &Subspace, target: &Target<N>, point: &Place<
         Target::Spherical(rotation) => rotation.0.map(|row| {
             Affine::products([[&row[0], &local[0]], [&row[1], &local[1]], [&row[2], &local[2]]])
         }),
-        Target::Cylindrical(angle, advance) => {
+        Target::Cylindrical(CylindricalDisplacement { angle, advance }) => {
             let [x, y] = rotated(&angle.unit_vector());
             [x, y, local[2] + *advance]
         }

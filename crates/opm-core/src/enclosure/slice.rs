@@ -9,7 +9,7 @@ use super::affine::{Affine, Plane};
 use super::area::{Area, Motion, Reach, Regions, Set};
 use super::boundary::{Curve, dot};
 use super::share::Share;
-use super::target::{Enclosed, Target, after};
+use super::target::{Enclosed, Target};
 use super::{BoxQuery, LegConditions, Side, Upper, within};
 use crate::chain::planar::{PlanarJoint, Prp};
 use crate::chain::region::{Band, Convex, Region};
@@ -137,10 +137,10 @@ impl<'a, 'b, const N: usize> Slice<'a, 'b, N> {
                 continue;
             }
             let motion = self.conditions.manipulator.task().lower_intersection;
-            let (rotation, translation) = match after(motion, v, tau) {
+            let (rotation, translation) = match motion.after(v, tau) {
                 Target::Planar(g) => (g.rotation, g.translation),
                 Target::Translational(t) => (Plane::constant(Complex::ONE), t),
-                Target::Identity
+                Target::Identity(_)
                 | Target::Spherical(_)
                 | Target::Cylindrical(..)
                 | Target::Spatial(_) => unreachable!("the lower section moves in a plane"),

@@ -1,17 +1,14 @@
 //! Displacements over a box of poses, and steps along the intersection motion.
 
 use super::affine::{Affine, Plane};
-use crate::group::{
-    CylindricalMotion, IntersectionMotion, PlanarDisplacement, PlanarMotion, SpatialMotion,
-    SphericalMotion, SubspaceKind, TranslationalMotion, mismatch,
-};
-use nalgebra::{Complex, Matrix3, Vector3};
+use crate::group::{Displacement, PlanarDisplacement};
+use nalgebra::{Matrix3, Vector3};
 
 /// A displacement of the plane over a box.
 pub type PlanarTarget<const N: usize> = PlanarDisplacement<Plane<N>>;
 
 /// A rotation over a box, row by row.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation<const N: usize>(pub [[Affine<N>; 3]; 3]);
 
 impl<const N: usize> Rotation<N> {
@@ -39,126 +36,8 @@ pub fn dot<const N: usize>(a: &Vector3<f64>, v: &[Affine<N>; 3]) -> Affine<N> {
     v[0] * a.x + v[1] * a.y + v[2] * a.z
 }
 
-/// A [`Displacement`](crate::group::Displacement) over a box.
-#[derive(Clone, Copy, Debug)]
-pub enum Target<const N: usize> {
-    Identity,
-    Planar(PlanarTarget<N>),
-    Spherical(Rotation<N>),
-    /// The angle and the advance about and along an axis.
-    Cylindrical(Affine<N>, Affine<N>),
-    Translational(Plane<N>),
-    /// A translation in space.
-    Spatial([Affine<N>; 3]),
-}
-
-impl<const N: usize> Target<N> {
-    fn kind(&self) -> SubspaceKind {
-        match self {
-            Self::Identity => SubspaceKind::Identity,
-            Self::Planar(_) => SubspaceKind::Planar,
-            Self::Spherical(_) => SubspaceKind::Spherical,
-            Self::Cylindrical(..) => SubspaceKind::Cylindrical,
-            Self::Translational(_) => SubspaceKind::TranslationalPlane,
-            Self::Spatial(_) => SubspaceKind::TranslationalSpace,
-        }
-    }
-
-    /// The target, which must be a displacement of a plane.
-    pub fn planar(&self) -> &PlanarTarget<N> {
-        match self {
-            Self::Planar(g) => g,
-            Self::Identity
-            | Self::Spherical(_)
-            | Self::Cylindrical(..)
-            | Self::Translational(_)
-            | Self::Spatial(_) => mismatch(SubspaceKind::Planar, self.kind()),
-        }
-    }
-
-    /// The target, which must be a rotation about a centre.
-    pub fn spherical(&self) -> &Rotation<N> {
-        match self {
-            Self::Spherical(r) => r,
-            Self::Identity
-            | Self::Planar(_)
-            | Self::Cylindrical(..)
-            | Self::Translational(_)
-            | Self::Spatial(_) => mismatch(SubspaceKind::Spherical, self.kind()),
-        }
-    }
-
-    /// The angle and the advance of the target, which must be a displacement about and along an axis.
-    pub fn cylindrical(&self) -> [Affine<N>; 2] {
-        match *self {
-            Self::Cylindrical(angle, advance) => [angle, advance],
-            Self::Identity
-            | Self::Planar(_)
-            | Self::Spherical(_)
-            | Self::Translational(_)
-            | Self::Spatial(_) => mismatch(SubspaceKind::Cylindrical, self.kind()),
-        }
-    }
-
-    /// The target, which must be a translation in a plane.
-    pub fn translational(&self) -> &Plane<N> {
-        match self {
-            Self::Translational(t) => t,
-            Self::Identity
-            | Self::Planar(_)
-            | Self::Spherical(_)
-            | Self::Cylindrical(..)
-            | Self::Spatial(_) => mismatch(SubspaceKind::TranslationalPlane, self.kind()),
-        }
-    }
-
-    /// The target, which must be a translation in space.
-    pub fn spatial(&self) -> &[Affine<N>; 3] {
-        match self {
-            Self::Spatial(t) => t,
-            Self::Identity
-            | Self::Planar(_)
-            | Self::Spherical(_)
-            | Self::Cylindrical(..)
-            | Self::Translational(_) => mismatch(SubspaceKind::TranslationalSpace, self.kind()),
-        }
-    }
-}
-
-impl<const N: usize> Target<N> {
-    /// The target's logarithm, where displacements commute: see [`Displacement::sum`](crate::group::Displacement).
-    pub fn sum(&self) -> [Affine<N>; 3] {
-        let none = Affine::constant(0.0);
-        match *self {
-            Self::Identity => [none; 3],
-            Self::Cylindrical(angle, advance) => [angle, advance, none],
-            Self::Translational(t) => [t.re, t.im, none],
-            Self::Spatial(t) => t,
-            Self::Planar(_) | Self::Spherical(_) => {
-                mismatch(SubspaceKind::TranslationalSpace, self.kind())
-            }
-        }
-    }
-
-    /// The identity of a subspace.
-    pub fn identity(kind: SubspaceKind) -> Self {
-        let (none, one) = (Affine::constant(0.0), Affine::constant(1.0));
-        let still = Plane::constant(Complex::ZERO);
-        match kind {
-            SubspaceKind::Identity => Self::Identity,
-            SubspaceKind::Planar => {
-                let rotation = Plane::constant(Complex::ONE);
-                Self::Planar(PlanarTarget { rotation, translation: still })
-            }
-            SubspaceKind::Spherical => {
-                Self::Spherical(Rotation([[one, none, none], [none, one, none], [none, none, one]]))
-            }
-            SubspaceKind::Cylindrical => Self::Cylindrical(none, none),
-            SubspaceKind::TranslationalPlane => Self::Translational(still),
-            SubspaceKind::TranslationalSpace => Self::Spatial([none; 3]),
-        }
-    }
-}
+/// A displacement of a section over a box.
+pub type Target<const N: usize> = Displacement<Affine<N>>;
 
 /// A joint's displacement from home over a box: a [`JointDisplacement`](crate::group::JointDisplacement).
 #[derive(Clone, Copy, Debug)]
@@ -212,86 +91,6 @@ impl<const N: usize> Enclosed<N> {
     }
 }
 
-/// The product `v · exp(I τ)`: see [`IntersectionMotion::after`].
-pub fn after<const N: usize>(
-    motion: IntersectionMotion,
-    v: &Target<N>,
-    tau: Enclosed<N>,
-) -> Target<N> {
-    match motion {
-        IntersectionMotion::None(_) => *v,
-        IntersectionMotion::Planar(PlanarMotion::Rotation) => {
-            let v = v.planar();
-            Target::Planar(PlanarTarget { rotation: v.rotation * tau.unit_vector(), ..*v })
-        }
-        IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
-            let v = v.planar();
-            let step = (v.rotation * along).scaled(tau.number());
-            Target::Planar(PlanarTarget { translation: v.translation + step, ..*v })
-        }
-        IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
-            let e = tau.unit_vector();
-            Target::Spherical(Rotation(v.spherical().0.map(|[x, y, z]| {
-                let first = Affine::products([[&x, &e.re], [&y, &e.im]]);
-                [first, Affine::products([[&y, &e.re], [&-x, &e.im]]), z]
-            })))
-        }
-        IntersectionMotion::Cylindrical(motion) => {
-            let [angle, advance] = v.cylindrical();
-            match motion {
-                CylindricalMotion::Rotation => Target::Cylindrical(angle + tau.number(), advance),
-                CylindricalMotion::Translation => {
-                    Target::Cylindrical(angle, advance + tau.number())
-                }
-            }
-        }
-        IntersectionMotion::Translational(TranslationalMotion::Translation(along)) => {
-            let step = Plane::constant(along).scaled(tau.number());
-            Target::Translational(*v.translational() + step)
-        }
-        IntersectionMotion::Spatial(SpatialMotion::Translation) => {
-            let [x, y, z] = *v.spatial();
-            Target::Spatial([x, y, z + tau.number()])
-        }
-    }
-}
-
-/// The product `exp(I τ) · b`: see [`IntersectionMotion::before`].
-pub fn before<const N: usize>(
-    motion: IntersectionMotion,
-    b: &Target<N>,
-    tau: Enclosed<N>,
-) -> Target<N> {
-    match motion {
-        IntersectionMotion::Planar(PlanarMotion::Rotation) => {
-            let (b, e) = (b.planar(), tau.unit_vector());
-            Target::Planar(PlanarTarget {
-                rotation: e * b.rotation,
-                translation: e * b.translation,
-            })
-        }
-        IntersectionMotion::Planar(PlanarMotion::Translation(along)) => {
-            let b = b.planar();
-            let step = Plane::constant(along).scaled(tau.number());
-            Target::Planar(PlanarTarget { translation: b.translation + step, ..*b })
-        }
-        IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
-            let (e, [x, y, z]) = (tau.unit_vector(), b.spherical().0);
-            let row = |f: &dyn Fn(usize) -> Affine<N>| [f(0), f(1), f(2)];
-            Target::Spherical(Rotation([
-                row(&|i| Affine::products([[&x[i], &e.re], [&-y[i], &e.im]])),
-                row(&|i| Affine::products([[&x[i], &e.im], [&y[i], &e.re]])),
-                z,
-            ]))
-        }
-        // There is no motion, or displacements commute.
-        IntersectionMotion::None(_)
-        | IntersectionMotion::Cylindrical(_)
-        | IntersectionMotion::Translational(_)
-        | IntersectionMotion::Spatial(_) => after(motion, b, tau),
-    }
-}
-
 /// One coordinate of a box of poses.
 #[derive(Clone, Copy, Debug)]
 pub enum Coordinate<const N: usize> {
@@ -340,13 +139,11 @@ impl<const N: usize> Coordinate<N> {
 
 /// The displacements that [`Task`](crate::task::Task) computes from coordinates, over a box of them.
 pub mod task {
-    use super::{Affine, Coordinate, PlanarTarget, Plane, Rotation, Target};
-    use crate::group::{
-        CylindricalMotion, IntersectionMotion, PlanarMotion, SphericalMotion, SubspaceKind,
-    };
+    use super::{Affine, Coordinate, Plane, Target};
+    use crate::group::{IntersectionMotion, MotionType, SphericalMotion, SubspaceKind};
     use crate::mechanism::OrientationCoordinates;
     use crate::mechanism::leg::Section;
-    use crate::task::Task;
+    use crate::task::{Task, euler_of, lower_displacement, upper_displacement};
     use nalgebra::Complex;
 
     /// The coordinates of a section other than a height, and their values at home; zeros beyond the last. `pose` begins
@@ -368,59 +165,48 @@ pub mod task {
     /// The displacement `v` for the first coordinates of a box: see [`Task::lower`].
     pub fn lower<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
         let (pose, home) = in_plane(task, Section::Lower, pose);
-        let q = |i: usize| pose[i].minus(home[i]);
-        match task.lower_intersection {
-            IntersectionMotion::None(kind) => alone(task, kind, &pose, &home),
-            IntersectionMotion::Planar(motion) => Target::Planar(PlanarTarget {
-                rotation: match motion {
-                    PlanarMotion::Rotation => Plane::constant(Complex::new(1.0, 0.0)),
-                    PlanarMotion::Translation(_) => pose[2].unit_vector(home[2]),
-                },
-                translation: Plane { re: q(0), im: q(1) },
-            }),
-            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
-                Target::Spherical(tilt(pose[0].unit_vector(home[0]), pose[1].unit_vector(home[1])))
-            }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
-                Target::Cylindrical(Affine::constant(0.0), q(0))
-            }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
-                Target::Cylindrical(q(0), q(1))
-            }
-            IntersectionMotion::Translational(_) => {
-                Target::Translational(Plane { re: q(0), im: q(1) })
-            }
-            IntersectionMotion::Spatial(_) => Target::Spatial([q(0), q(1), q(2)]),
-        }
+        let form = task.form(Section::Lower);
+        let turn = |i: usize| pose[i].unit_vector(home[i]);
+        let none = Plane::constant(Complex::ONE);
+        let units = match (form.kind, form.shared) {
+            (SubspaceKind::Planar, Some(MotionType::Translation) | None) => [turn(2), none, none],
+            (SubspaceKind::Spherical, Some(_)) => [turn(0), turn(1), none],
+            (SubspaceKind::Spherical, None) => orientation(task, &pose),
+            _ => [none; 3],
+        };
+        from_home(task, Section::Lower, lower_displacement(form, less(&pose, &home), units))
     }
 
     /// The displacement `b` for the remaining coordinates of a box: see [`Task::upper`].
     pub fn upper<const N: usize>(task: &Task, pose: &[Coordinate<N>]) -> Target<N> {
         let (pose, home) = in_plane(task, Section::Upper, pose);
-        let q = |i: usize| pose[i].minus(home[i]);
-        let planar = |rotation, re, im| {
-            Target::Planar(PlanarTarget { rotation, translation: Plane { re, im } })
+        let form = task.form(Section::Upper);
+        let turn = |i: usize| pose[i].unit_vector(home[i]);
+        let none = Plane::constant(Complex::ONE);
+        let units = match (form.kind, form.shared) {
+            (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => [turn(2), none, none],
+            (SubspaceKind::Planar, Some(MotionType::Translation)) => [turn(1), none, none],
+            (SubspaceKind::Spherical, _) => orientation(task, &pose),
+            _ => [none; 3],
         };
-        let none = Affine::constant(0.0);
-        match task.upper_intersection {
-            IntersectionMotion::None(kind) => alone(task, kind, &pose, &home),
-            IntersectionMotion::Spherical(SphericalMotion::Rotation) => orientation(task, &pose),
-            IntersectionMotion::Planar(PlanarMotion::Rotation) => {
-                planar(pose[2].unit_vector(home[2]), q(0), q(1))
+        from_home(task, Section::Upper, upper_displacement(form, less(&pose, &home), units))
+    }
+
+    /// The coordinates less those at home; zero for those that a unit vector stands for.
+    fn less<const N: usize>(pose: &[Coordinate<N>; 3], home: &[f64; 3]) -> [Affine<N>; 3] {
+        std::array::from_fn(|i| match pose[i] {
+            Coordinate::Linear(value) => value - home[i],
+            Coordinate::Polar(_) => Affine::constant(0.0),
+        })
+    }
+
+    /// An orientation by Euler angles as a displacement from home; other displacements are that already.
+    fn from_home<const N: usize>(task: &Task, section: Section, g: Target<N>) -> Target<N> {
+        match (g, task.home_orientation_inverse()) {
+            (Target::Spherical(r), Some(inverse)) if task.euler_section() == Some(section) => {
+                Target::Spherical(r.after(inverse))
             }
-            IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
-                planar(pose[1].unit_vector(home[1]), none, q(0))
-            }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Rotation) => {
-                Target::Cylindrical(q(0), q(1))
-            }
-            IntersectionMotion::Cylindrical(CylindricalMotion::Translation) => {
-                Target::Cylindrical(q(0), none)
-            }
-            IntersectionMotion::Translational(_) => {
-                Target::Translational(Plane { re: none, im: q(0) })
-            }
-            IntersectionMotion::Spatial(_) => Target::Spatial([q(0), q(1), none]),
+            _ => g,
         }
     }
 
@@ -439,31 +225,10 @@ pub mod task {
             ) => {
                 pose = euler_angles(task, &pose);
                 pose[0] = Coordinate::Linear(Affine::constant(0.0));
-                Some((turn, of_euler_angles(task, &pose)))
+                let rest = euler_of::<Affine<N>>(pose.map(|angle| angle.unit_vector(0.0)));
+                Some((turn, from_home(task, Section::Upper, Target::Spherical(rest))))
             }
             _ => None,
-        }
-    }
-
-    /// The displacement of a section that shares no motion with the other one. Its coordinates are those of its
-    /// whole subspace, given by their place, with their values at home.
-    fn alone<const N: usize>(
-        task: &Task,
-        kind: SubspaceKind,
-        pose: &[Coordinate<N>; 3],
-        home: &[f64; 3],
-    ) -> Target<N> {
-        let q = |i: usize| pose[i].minus(home[i]);
-        match kind {
-            SubspaceKind::Identity => Target::Identity,
-            SubspaceKind::Planar => Target::Planar(PlanarTarget {
-                rotation: pose[2].unit_vector(home[2]),
-                translation: Plane { re: q(0), im: q(1) },
-            }),
-            SubspaceKind::Spherical => orientation(task, pose),
-            SubspaceKind::Cylindrical => Target::Cylindrical(q(0), q(1)),
-            SubspaceKind::TranslationalPlane => Target::Translational(Plane { re: q(0), im: q(1) }),
-            SubspaceKind::TranslationalSpace => Target::Spatial([q(0), q(1), q(2)]),
         }
     }
 
@@ -478,36 +243,8 @@ pub mod task {
         }
     }
 
-    /// The rotation from home for the coordinates of an orientation.
-    fn orientation<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> Target<N> {
-        of_euler_angles(task, &euler_angles(task, pose))
-    }
-
-    fn of_euler_angles<const N: usize>(task: &Task, angles: &[Coordinate<N>; 3]) -> Target<N> {
-        let [zeta, xi, psi] = angles.map(|angle| angle.unit_vector(0.0));
-        let absolute = euler(zeta, xi, psi);
-        Target::Spherical(match task.home_orientation_inverse() {
-            Some(inverse) => absolute.after(inverse),
-            None => absolute,
-        })
-    }
-
-    /// The rotation `Rx(mu) Ry(nu)`.
-    fn tilt<const N: usize>(mu: Plane<N>, nu: Plane<N>) -> Rotation<N> {
-        let (none, cm, sm, cn, sn) = (Affine::constant(0.0), mu.re, mu.im, nu.re, nu.im);
-        Rotation([[cn, none, sn], [sm * sn, cm, -(sm * cn)], [-(cm * sn), sm, cm * cn]])
-    }
-
-    /// The rotation `Rz(zeta) Ry(xi) Rz(psi)`.
-    fn euler<const N: usize>(zeta: Plane<N>, xi: Plane<N>, psi: Plane<N>) -> Rotation<N> {
-        let (cx, sx) = (xi.re, xi.im);
-        // Ry(xi) Rz(psi), its first two rows then rotated about z.
-        let first = [cx * psi.re, -(cx * psi.im), sx];
-        let second = [psi.im, psi.re, Affine::constant(0.0)];
-        Rotation([
-            [0, 1, 2].map(|j| Affine::products([[&zeta.re, &first[j]], [&-zeta.im, &second[j]]])),
-            [0, 1, 2].map(|j| Affine::products([[&zeta.im, &first[j]], [&zeta.re, &second[j]]])),
-            [-(sx * psi.re), sx * psi.im, cx],
-        ])
+    /// The unit vectors of the Euler angles of an orientation.
+    fn orientation<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> [Plane<N>; 3] {
+        euler_angles(task, pose).map(|angle| angle.unit_vector(0.0))
     }
 }

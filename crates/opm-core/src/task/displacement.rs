@@ -5,8 +5,9 @@ use crate::group::{
     SubspaceKind,
 };
 use crate::mechanism::OrientationCoordinates;
-use crate::numeric::angle::sin_cos;
-use nalgebra::{Complex, Matrix3, Vector3};
+use crate::numbers::{Plane, Real, Rotation, Space};
+use crate::numeric::angle::unit;
+use nalgebra::Matrix3;
 
 /// What determines the coordinates of a section: its subspace, and the intersection motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +26,16 @@ pub(crate) struct SectionValues {
     pub home: [f64; 3],
 }
 
-/// The angles whose sines and cosines [`lower_displacement`] needs; `None` where it needs none. Euler angles are
+impl SectionValues {
+    /// The coordinates less those at home.
+    #[inline(always)]
+    pub fn from_home(&self) -> [f64; 3] {
+        let Self { at, home } = self;
+        [at[0] - home[0], at[1] - home[1], at[2] - home[2]]
+    }
+}
+
+/// The angles whose unit vectors [`lower_displacement`] needs; `None` where it needs none. Euler angles are
 /// absolute, others are measured from home.
 #[inline(always)]
 pub(crate) fn lower_angles(form: Form, values: SectionValues) -> Option<[f64; 3]> {
@@ -46,7 +56,7 @@ pub(crate) fn lower_angles(form: Form, values: SectionValues) -> Option<[f64; 3]
     }
 }
 
-/// The angles whose sines and cosines [`upper_displacement`] needs, in the same way.
+/// The angles whose unit vectors [`upper_displacement`] needs, in the same way.
 #[inline(always)]
 pub(crate) fn upper_angles(form: Form, values: SectionValues) -> Option<[f64; 3]> {
     let SectionValues { at, home } = values;
@@ -65,114 +75,95 @@ pub(crate) fn upper_angles(form: Form, values: SectionValues) -> Option<[f64; 3]
     }
 }
 
-/// The displacement `v` from its coordinates, and from the sines and cosines of [`lower_angles`]; of Euler angles, the
-/// orientation. Where `form` is a constant, this is straight-line arithmetic.
+/// The displacement `v` from its coordinates less those at home, and from the unit vectors of [`lower_angles`]; of Euler
+/// angles, the orientation. Where `form` is a constant, this is straight-line arithmetic.
 #[inline(always)]
-pub(crate) fn lower_displacement(
+pub(crate) fn lower_displacement<T: Real>(
     form: Form,
-    values: SectionValues,
-    sines: [(f64, f64); 3],
-) -> Displacement {
-    let SectionValues { at, home } = values;
-    let q = |i: usize| at[i] - home[i];
+    q: [T; 3],
+    units: [T::Plane; 3],
+) -> Displacement<T> {
+    let none = T::constant(0.0);
     match (form.kind, form.shared) {
-        (SubspaceKind::Identity, _) => Displacement::Identity(IdentityDisplacement),
         (SubspaceKind::Planar, Some(MotionType::Rotation)) => {
-            planar(Complex::new(1.0, 0.0), q(0), q(1))
+            planar(T::Plane::new(T::constant(1.0), none), q[0], q[1])
         }
-        (SubspaceKind::Planar, Some(MotionType::Translation) | None) => {
-            planar(unit_of(sines[0]), q(0), q(1))
+        (SubspaceKind::Spherical, Some(_)) => {
+            Displacement::Spherical(tilt::<T>([units[0], units[1]]))
         }
-        (SubspaceKind::Spherical, Some(_)) => Displacement::Spherical(tilt([sines[0], sines[1]])),
-        (SubspaceKind::Spherical, None) => Displacement::Spherical(euler_of(sines)),
-        (SubspaceKind::Cylindrical, Some(MotionType::Rotation)) => cylindrical(0.0, q(0)),
-        (SubspaceKind::Cylindrical, Some(MotionType::Translation) | None) => {
-            cylindrical(q(0), q(1))
-        }
-        (SubspaceKind::TranslationalPlane, _) => {
-            Displacement::Translational(Complex::new(q(0), q(1)))
-        }
-        (SubspaceKind::TranslationalSpace, _) => {
-            Displacement::Spatial(Vector3::new(q(0), q(1), q(2)))
-        }
+        (SubspaceKind::Cylindrical, Some(MotionType::Rotation)) => cylindrical(none, q[0]),
+        (kind, _) => alone(kind, q, units),
     }
 }
 
-/// The displacement `b` from its coordinates, and from the sines and cosines of [`upper_angles`]; of Euler angles, the
-/// orientation.
+/// The displacement `b` from its coordinates less those at home, and from the unit vectors of [`upper_angles`]; of Euler
+/// angles, the orientation.
 #[inline(always)]
-pub(crate) fn upper_displacement(
+pub(crate) fn upper_displacement<T: Real>(
     form: Form,
-    values: SectionValues,
-    sines: [(f64, f64); 3],
-) -> Displacement {
-    let SectionValues { at, home } = values;
-    let q = |i: usize| at[i] - home[i];
+    q: [T; 3],
+    units: [T::Plane; 3],
+) -> Displacement<T> {
+    let none = T::constant(0.0);
     match (form.kind, form.shared) {
-        (SubspaceKind::Identity, _) => Displacement::Identity(IdentityDisplacement),
-        (SubspaceKind::Spherical, _) => Displacement::Spherical(euler_of(sines)),
-        (SubspaceKind::Planar, Some(MotionType::Rotation) | None) => {
-            planar(unit_of(sines[0]), q(0), q(1))
-        }
-        (SubspaceKind::Planar, Some(MotionType::Translation)) => {
-            planar(unit_of(sines[0]), 0.0, q(0))
-        }
-        (SubspaceKind::Cylindrical, Some(MotionType::Rotation) | None) => cylindrical(q(0), q(1)),
-        (SubspaceKind::Cylindrical, Some(MotionType::Translation)) => cylindrical(q(0), 0.0),
+        (SubspaceKind::Planar, Some(MotionType::Translation)) => planar(units[0], none, q[0]),
+        (SubspaceKind::Cylindrical, Some(MotionType::Translation)) => cylindrical(q[0], none),
         (SubspaceKind::TranslationalPlane, Some(_)) => {
-            Displacement::Translational(Complex::new(0.0, q(0)))
-        }
-        (SubspaceKind::TranslationalPlane, None) => {
-            Displacement::Translational(Complex::new(q(0), q(1)))
+            Displacement::Translational(T::Plane::new(none, q[0]))
         }
         (SubspaceKind::TranslationalSpace, Some(_)) => {
-            Displacement::Spatial(Vector3::new(q(0), q(1), 0.0))
+            Displacement::Spatial(T::Space::new(q[0], q[1], none))
         }
-        (SubspaceKind::TranslationalSpace, None) => {
-            Displacement::Spatial(Vector3::new(q(0), q(1), q(2)))
-        }
+        (kind, _) => alone(kind, q, units),
     }
 }
 
+/// The displacement of a section that has all coordinates of its subspace.
 #[inline(always)]
-fn unit_of((sin, cos): (f64, f64)) -> Complex<f64> {
-    Complex::new(cos, sin)
+fn alone<T: Real>(kind: SubspaceKind, q: [T; 3], units: [T::Plane; 3]) -> Displacement<T> {
+    match kind {
+        SubspaceKind::Identity => Displacement::Identity(IdentityDisplacement),
+        SubspaceKind::Planar => planar(units[0], q[0], q[1]),
+        SubspaceKind::Spherical => Displacement::Spherical(euler_of::<T>(units)),
+        SubspaceKind::Cylindrical => cylindrical(q[0], q[1]),
+        SubspaceKind::TranslationalPlane => Displacement::Translational(T::Plane::new(q[0], q[1])),
+        SubspaceKind::TranslationalSpace => Displacement::Spatial(T::Space::new(q[0], q[1], q[2])),
+    }
 }
 
-/// The rotation `Rx(mu) Ry(nu)`, from the angles' sines and cosines.
+/// The rotation `Rx(mu) Ry(nu)`, from the angles' unit vectors.
 #[inline(always)]
-pub(super) fn tilt([(sm, cm), (sn, cn)]: [(f64, f64); 2]) -> Matrix3<f64> {
-    Matrix3::new(cn, 0.0, sn, sm * sn, cm, -sm * cn, -cm * sn, sm, cm * cn)
+pub(super) fn tilt<T: Real>([mu, nu]: [T::Plane; 2]) -> T::Rotation {
+    let (cm, sm, cn, sn) = (mu.re(), mu.im(), nu.re(), nu.im());
+    let none = T::constant(0.0);
+    T::Rotation::from_rows([[cn, none, sn], [sm * sn, cm, -sm * cn], [-cm * sn, sm, cm * cn]])
 }
 
 /// The rotation `Rz(zeta) Ry(xi) Rz(psi)`.
 #[inline]
 pub fn euler(zeta: f64, xi: f64, psi: f64) -> Matrix3<f64> {
-    euler_of([zeta, xi, psi].map(sin_cos))
+    euler_of::<f64>([zeta, xi, psi].map(unit))
 }
 
-/// The rotation `Rz(zeta) Ry(xi) Rz(psi)`, from the angles' sines and cosines.
+/// The rotation `Rz(zeta) Ry(xi) Rz(psi)`, from the angles' unit vectors.
 #[inline(always)]
-fn euler_of([(sz, cz), (sx, cx), (sp, cp)]: [(f64, f64); 3]) -> Matrix3<f64> {
-    Matrix3::new(
-        cz * cx * cp - sz * sp,
-        -cz * cx * sp - sz * cp,
-        cz * sx,
-        sz * cx * cp + cz * sp,
-        -sz * cx * sp + cz * cp,
-        sz * sx,
-        -sx * cp,
-        sx * sp,
-        cx,
-    )
+pub(crate) fn euler_of<T: Real>([zeta, xi, psi]: [T::Plane; 3]) -> T::Rotation {
+    let ([cz, sz], [cx, sx]) = ([zeta.re(), zeta.im()], [xi.re(), xi.im()]);
+    let [cp, sp] = [psi.re(), psi.im()];
+    let (level, across) = (cz * cx, sz * cx);
+    T::Rotation::from_rows([
+        [T::products([level, cp], [-sz, sp]), T::products([-level, sp], [-sz, cp]), cz * sx],
+        [T::products([across, cp], [cz, sp]), T::products([-across, sp], [cz, cp]), sz * sx],
+        [-sx * cp, sx * sp, cx],
+    ])
 }
 
-#[inline]
-pub(super) fn planar(rotation: Complex<f64>, x: f64, y: f64) -> Displacement {
-    Displacement::Planar(PlanarDisplacement { rotation, translation: Complex::new(x, y) })
+#[inline(always)]
+pub(super) fn planar<T: Real>(rotation: T::Plane, x: T, y: T) -> Displacement<T> {
+    Displacement::Planar(PlanarDisplacement { rotation, translation: T::Plane::new(x, y) })
 }
 
-#[inline]
-pub(super) fn cylindrical(angle: f64, advance: f64) -> Displacement {
+#[inline(always)]
+pub(super) fn cylindrical<T: Real>(angle: T, advance: T) -> Displacement<T> {
     Displacement::Cylindrical(CylindricalDisplacement { angle, advance })
 }

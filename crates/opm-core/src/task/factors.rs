@@ -8,7 +8,7 @@ use super::displacement::{cylindrical, planar};
 use super::{Height, Task};
 use crate::group::{Displacement, MotionType, Subspace, SubspaceKind};
 use crate::mechanism::leg::Section;
-use crate::numeric::angle::{sin_cos, unit};
+use crate::numeric::angle::unit;
 use nalgebra::{Complex, Isometry3, Matrix3, Vector3};
 
 impl Task {
@@ -70,7 +70,7 @@ impl Task {
                 };
                 // At home it is along the third direction or opposite to it.
                 let angles = super::pose::tilt_angles(&(after * before.z.signum()));
-                Displacement::Spherical(super::displacement::tilt(angles.map(sin_cos)))
+                Displacement::Spherical(super::displacement::tilt::<f64>(angles.map(unit)))
             }
         }
     }

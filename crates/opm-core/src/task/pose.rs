@@ -8,7 +8,7 @@ use crate::group::{
 use crate::mechanism::OrientationCoordinates;
 use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
-use crate::numeric::angle::{atan2, atan2_of_each, near, sin_cos};
+use crate::numeric::angle::{atan2, atan2_of_each, near, sin_cos, unit};
 use crate::numeric::four_wide::FourWide;
 use nalgebra::{Complex, Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
@@ -268,7 +268,7 @@ impl Task {
             Displacement::Spherical(r) => {
                 // R = Rx(mu) Ry(nu) Rz: the last factor.
                 let [mu, nu] = tilt_angles(&r.column(2).into_owned());
-                let rest = super::displacement::tilt([mu, nu].map(sin_cos)).tr_mul(r);
+                let rest = super::displacement::tilt::<f64>([mu, nu].map(unit)).tr_mul(r);
                 JointDisplacement::Direction(Complex::new(rest[(0, 0)], rest[(1, 0)]))
             }
             Displacement::Cylindrical(g) => JointDisplacement::Value(g.angle),

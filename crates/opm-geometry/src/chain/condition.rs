@@ -11,6 +11,7 @@ use crate::group::{
     Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, SubspaceKind, mismatch,
     rotation_about,
 };
+use crate::numbers::{Over, Plane, PlaneOver, Real, RotationOver, Space, SpaceOver};
 use nalgebra::{Complex, Vector3};
 
 /// Conditions that miss each other by less than this, as a fraction of the size, count as compatible:
@@ -22,55 +23,55 @@ pub const QUARTER: Complex<f64> = Complex::new(0.0, 1.0);
 
 /// One equation on a displacement `g`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Condition {
+pub enum Condition<C: Real = f64> {
     /// A point of the body is at a given distance from a point of the base: `|g point − centre| = radius`.
     Circle {
         /// The point, body coordinates, metres.
-        point: Complex<f64>,
+        point: C::Plane,
         /// The centre, base coordinates, metres.
-        centre: Complex<f64>,
+        centre: C::Plane,
         /// The distance, metres.
-        radius: f64,
+        radius: C,
     },
     /// A point of the body is on a line of the base: `normal · g point = offset`.
     Line {
         /// The point, body coordinates, metres.
-        point: Complex<f64>,
+        point: C::Plane,
         /// The line's unit normal, base coordinates.
-        normal: Complex<f64>,
+        normal: C::Plane,
         /// The line's distance from the origin along the normal, metres.
-        offset: f64,
+        offset: C,
     },
     /// A point of the base is on a line of the body: `normal · g⁻¹ point = offset`.
     CarriedLine {
         /// The point, base coordinates, metres.
-        point: Complex<f64>,
+        point: C::Plane,
         /// The line's unit normal, body coordinates.
-        normal: Complex<f64>,
+        normal: C::Plane,
         /// The line's distance from the origin along the normal, metres.
-        offset: f64,
+        offset: C,
     },
     /// The rotation of `g` is known.
     Heading {
         /// The unit vector in the direction of the angle.
-        rotation: Complex<f64>,
+        rotation: C::Plane,
     },
     /// A direction of the body makes a given angle with a direction of the base:
     /// `fixed · g carried = cosine`.
     Cone {
         /// The unit direction, base coordinates.
-        fixed: Vector3<f64>,
+        fixed: C::Space,
         /// The unit direction, body coordinates.
-        carried: Vector3<f64>,
+        carried: C::Space,
         /// The cosine of the angle between them.
-        cosine: f64,
+        cosine: C,
     },
     /// A linear equation on a displacement of a commutative subspace: `normal · g = value`.
     Flat {
         /// The coefficients, for the coordinates of the displacement's logarithm.
-        normal: LocalTwist,
+        normal: C::Space,
         /// The value, in the units of `normal · g`.
-        value: f64,
+        value: C,
     },
 }
 
@@ -136,27 +137,6 @@ impl Condition {
             | Self::CarriedLine { .. }
             | Self::Heading { .. }
             | Self::Flat { .. } => mismatch(SubspaceKind::Spherical, self.kind()),
-        }
-    }
-
-    /// The difference of the equation's two sides at a displacement, zero where that satisfies the condition. Of
-    /// a circle it is that of the squared distances, square metres; of a heading, the sine of the angle.
-    ///
-    /// It is a polynomial of degree one in the components of the displacement, but for a circle: that is of
-    /// degree two in a translation.
-    #[inline(always)]
-    pub fn value(&self, g: &Displacement) -> f64 {
-        match self {
-            Self::Circle { point, centre, radius } => {
-                (g.planar().apply(*point) - centre).norm_sqr() - radius * radius
-            }
-            Self::Line { point, normal, offset } => dot(*normal, g.planar().apply(*point)) - offset,
-            Self::CarriedLine { point, normal, offset } => {
-                dot(*normal, g.planar().inverse().apply(*point)) - offset
-            }
-            Self::Heading { rotation } => (rotation.conj() * g.planar().rotation).im,
-            Self::Cone { fixed, carried, cosine } => fixed.dot(&(g.spherical() * carried)) - cosine,
-            Self::Flat { normal, value } => normal.dot(&g.sum()) - value,
         }
     }
 
@@ -253,6 +233,34 @@ impl Condition {
             }
             Self::Flat { normal, value } => {
                 Self::Flat { normal, value: value + normal.dot(&h.sum()) }
+            }
+        }
+    }
+}
+
+impl<C: Real> Condition<C> {
+    /// The difference of the equation's two sides at a displacement, zero where that satisfies the condition. Of
+    /// a circle it is that of the squared distances, square metres; of a heading, the sine of the angle.
+    ///
+    /// It is a polynomial of degree one in the components of the displacement, but for a circle: that is of
+    /// degree two in a translation.
+    #[inline(always)]
+    pub fn value<T: Over<C>>(&self, g: &Displacement<T>) -> T {
+        match *self {
+            Self::Circle { point, centre, radius } => {
+                (g.planar().apply(point) - centre).norm_sqr() - radius * radius
+            }
+            Self::Line { point, normal, offset } => g.planar().apply(point).dot(normal) - offset,
+            Self::CarriedLine { point, normal, offset } => {
+                g.planar().inverse().apply(point).dot(normal) - offset
+            }
+            Self::Heading { rotation } => (g.planar().rotation * rotation.conj()).im(),
+            Self::Cone { fixed, carried, cosine } => {
+                g.spherical().apply(carried).against(fixed) - cosine
+            }
+            Self::Flat { normal, value } => {
+                let [x, y, z] = g.sums();
+                T::Space::new(x, y, z).against(normal) - value
             }
         }
     }

@@ -8,13 +8,14 @@
 //! is like any other.
 
 use super::ChainJoint;
-use super::condition::{dot, length};
+use super::planar::PlanarJoint;
 use crate::group::{
-    Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
-    linear, quarter, rotation_about,
+    Displacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind, linear, quarter,
 };
-use crate::numeric::angle::unit;
-use nalgebra::{Complex, Matrix3, Unit, Vector3};
+use crate::numbers::{
+    Joint, Over, Plane, PlaneOver, Real, Rotation, RotationOver, Space, SpaceOver,
+};
+use nalgebra::{Complex, Unit, Vector3};
 
 /// A locked joint in a plane is a slider where the angular part of its screw is less than this share.
 const SLIDES: f64 = 0.3;
@@ -58,8 +59,8 @@ impl PartialChain {
 
     /// The displacements of the completed chain's joints that move the outer link by `target`, which satisfies
     /// the section's constraints. Locked joints have zeros.
-    pub fn inverse(&self, target: &Displacement) -> [JointDisplacement; 3] {
-        let mut found = [JointDisplacement::Value(0.0); 3];
+    pub fn inverse<T: Over<f64>>(&self, target: &Displacement<T>) -> [T::Joint; 3] {
+        let mut found = [T::Joint::value(T::constant(0.0)); 3];
         match self.free() {
             (Some(a), Some(b)) => [found[a], found[b]] = self.two([a, b], target),
             (Some(a), None) => found[a] = self.one(a, target),
@@ -88,41 +89,31 @@ impl PartialChain {
 
     /// The displacement of the only joint that moves: `exp(s q) = g`.
     #[inline(always)]
-    pub fn one(&self, joint: usize, g: &Displacement) -> JointDisplacement {
+    pub fn one<T: Over<f64>>(&self, joint: usize, g: &Displacement<T>) -> T::Joint {
         let s = &self.screws[joint];
-        match g {
-            Displacement::Identity(_) => JointDisplacement::Value(0.0),
-            Displacement::Planar(g) if s.x != 0.0 => turned(s, g.rotation),
-            Displacement::Planar(g) => JointDisplacement::Value(dot(linear(s), g.translation)),
-            Displacement::Spherical(r) => {
-                // The trace is 1 + 2 cos q, and the axial vector s sin q.
-                let axial = Vector3::new(
-                    r[(2, 1)] - r[(1, 2)],
-                    r[(0, 2)] - r[(2, 0)],
-                    r[(1, 0)] - r[(0, 1)],
-                );
-                let (cos, sin) = (r.trace() - 1.0, s.dot(&axial));
-                JointDisplacement::Direction(normalised(Complex::new(cos, sin)))
-            }
-            Displacement::Cylindrical(g) if s.x == 0.0 => JointDisplacement::Value(g.advance / s.y),
-            Displacement::Cylindrical(g) if s.y == 0.0 => {
-                JointDisplacement::Direction(unit(g.angle * s.x))
-            }
+        match *g {
+            Displacement::Identity(_) => T::Joint::value(T::constant(0.0)),
+            Displacement::Planar(ref g) => one_in_plane::<T, _>(planar_joint(s), g),
+            Displacement::Spherical(r) => one_about_point::<T, f64>(*s, r),
+            Displacement::Cylindrical(g) if s.x == 0.0 => T::Joint::value(g.advance.per(s.y)),
+            Displacement::Cylindrical(g) if s.y == 0.0 => T::Joint::angle(g.angle * s.x),
             // The angle of a helical joint counts full revolutions.
-            Displacement::Cylindrical(g) => JointDisplacement::Value(g.angle * s.x),
-            Displacement::Translational(t) => JointDisplacement::Value(dot(linear_of(s), *t)),
-            Displacement::Spatial(t) => JointDisplacement::Value(s.dot(t)),
+            Displacement::Cylindrical(g) => T::Joint::value(g.angle * s.x),
+            Displacement::Translational(t) => T::Joint::value(t.dot(linear_of(s))),
+            Displacement::Spatial(t) => T::Joint::value(t.against(*s)),
         }
     }
 
     /// The displacements of the two joints that move, in a subspace of three dimensions: `exp(s p) exp(t q) = g`.
     #[inline(always)]
-    pub fn two(&self, joints: [usize; 2], g: &Displacement) -> [JointDisplacement; 2] {
+    pub fn two<T: Over<f64>>(&self, joints: [usize; 2], g: &Displacement<T>) -> [T::Joint; 2] {
         let [s, t] = joints.map(|joint| &self.screws[joint]);
-        match g {
-            Displacement::Planar(g) => planar(s, t, g),
-            Displacement::Spherical(r) => spherical(s, t, r),
-            Displacement::Spatial(g) => spatial(s, t, g),
+        match *g {
+            Displacement::Planar(ref g) => {
+                two_in_plane::<T, _>([planar_joint(s), planar_joint(t)], g)
+            }
+            Displacement::Spherical(r) => two_about_point::<T, f64>([*s, *t], r),
+            Displacement::Spatial(g) => two_in_space::<T, f64>([*s, *t], g),
             Displacement::Identity(_)
             | Displacement::Cylindrical(_)
             | Displacement::Translational(_) => {
@@ -132,66 +123,88 @@ impl PartialChain {
     }
 }
 
+/// The joint of a plane with a screw.
 #[inline(always)]
-fn planar(s: &LocalTwist, t: &LocalTwist, g: &PlanarDisplacement) -> [JointDisplacement; 2] {
-    let pivot = |s: &LocalTwist| quarter(linear(s)) * s.x;
-    let slide = |s: &LocalTwist, z: Complex<f64>| JointDisplacement::Value(dot(linear(s), z));
-    match (s.x != 0.0, t.x != 0.0) {
-        (true, true) => {
+fn planar_joint(s: &LocalTwist) -> PlanarJoint {
+    if s.x == 0.0 {
+        PlanarJoint::Prismatic { along: linear(s) }
+    } else {
+        PlanarJoint::Revolute { at: quarter(linear(s)) * s.x, reversed: s.x < 0.0 }
+    }
+}
+
+/// The displacement of a joint of a plane that makes the displacement `g`.
+#[inline(always)]
+pub fn one_in_plane<T: Over<Z::Real>, Z: Plane>(
+    joint: PlanarJoint<Z>,
+    g: &PlanarDisplacement<T::Plane>,
+) -> T::Joint {
+    match joint {
+        PlanarJoint::Revolute { reversed, .. } => {
+            T::Joint::direction(g.rotation.in_sense(reversed))
+        }
+        PlanarJoint::Prismatic { along } => T::Joint::value(g.translation.dot(along)),
+    }
+}
+
+/// The displacements of two joints of a plane that together make the displacement `g`.
+#[inline(always)]
+pub fn two_in_plane<T: Over<Z::Real>, Z: Plane>(
+    [first, second]: [PlanarJoint<Z>; 2],
+    g: &PlanarDisplacement<T::Plane>,
+) -> [T::Joint; 2] {
+    use PlanarJoint::{Prismatic, Revolute};
+    let turn = |r: T::Plane, reversed| T::Joint::direction(r.in_sense(reversed));
+    match [first, second] {
+        [Revolute { at: x, reversed: r1 }, Revolute { at: y, reversed: r2 }] => {
             // The first joint moves the second one's axis.
-            let (x, y) = (pivot(s), pivot(t));
-            let first = normalised((g.apply(y) - x) * (y - x).conj());
-            [turned(s, first), turned(t, g.rotation * first.conj())]
+            let first = ((g.apply(y) - x) * (y - x).conj()).normalised().named("first");
+            [turn(first, r1), turn(g.rotation * first.conj(), r2)]
         }
-        (false, true) => {
-            let y = pivot(t);
-            [slide(s, g.apply(y) - y), turned(t, g.rotation)]
+        [Prismatic { along }, Revolute { at, reversed }] => {
+            let moved = g.apply(at) - at;
+            [T::Joint::value(moved.dot(along)), turn(g.rotation, reversed)]
         }
-        (true, false) => {
-            let rest = PlanarDisplacement::about(pivot(s), g.rotation).inverse().after(g);
-            [turned(s, g.rotation), slide(t, rest.translation)]
+        [Revolute { at, reversed }, Prismatic { along }] => {
+            let moved = (g.apply(at) - at) * g.rotation.conj();
+            [turn(g.rotation, reversed), T::Joint::value(moved.dot(along))]
         }
-        (false, false) => {
-            let (u, v, z) = (linear(s), linear(t), g.translation);
-            let cross = |a: Complex<f64>, b: Complex<f64>| a.re * b.im - a.im * b.re;
-            let area = cross(u, v);
-            [cross(z, v), cross(u, z)].map(|part| JointDisplacement::Value(part / area))
+        [Prismatic { along: u }, Prismatic { along: v }] => {
+            g.translation.along_constants(u, v).map(T::Joint::value)
         }
     }
 }
 
-fn spherical(s: &LocalTwist, t: &LocalTwist, r: &Matrix3<f64>) -> [JointDisplacement; 2] {
-    // The first joint moves the second one's axis.
-    let first = about(s, t, &(r * t));
-    let rest = rotation_about(s, first).tr_mul(r);
-    [first, about(t, s, &(rest * s))].map(JointDisplacement::Direction)
-}
-
-/// The displacements of two sliders, in the plane that they span: `s p + t q = g`.
-fn spatial(s: &LocalTwist, t: &LocalTwist, g: &Vector3<f64>) -> [JointDisplacement; 2] {
-    let normal = s.cross(t);
-    let square = normal.norm_squared();
-    [g.cross(t), s.cross(g)].map(|part| JointDisplacement::Value(part.dot(&normal) / square))
-}
-
-/// The direction of the angle about `axis` that takes one vector to another.
-fn about(axis: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> Complex<f64> {
-    let across = |v: &Vector3<f64>| v - axis * axis.dot(v);
-    let (from, to) = (across(from), across(to));
-    let z = Complex::new(from.dot(&to), axis.dot(&from.cross(&to)));
-    if z.norm_sqr() > 0.0 { normalised(z) } else { Complex::new(1.0, 0.0) }
-}
-
-/// The unit vector in the direction of `z`.
+/// The angle of a joint with a unit axis that makes the rotation `r`: the trace is 1 + 2 cos q, the axial vector the axis
+/// times 2 sin q.
 #[inline(always)]
-fn normalised(z: Complex<f64>) -> Complex<f64> {
-    z / length(z)
+pub fn one_about_point<T: Over<C>, C: Real>(axis: C::Space, r: T::Rotation) -> T::Joint {
+    let [[a, b, c], [d, e, f], [g, h, i]] = r.rows();
+    let axial = T::Space::new(h - f, c - g, d - b);
+    T::Joint::direction(T::Plane::new(a + e + i - 1.0, axial.against(axis)))
 }
 
-/// The displacement of a revolute joint in a plane, for a rotation counter-clockwise in the plane's frame.
+/// The angles of two joints with unit axes that together make the rotation `r`: it turns the second axis as the first joint
+/// does, and its inverse the first one as that of the second joint.
 #[inline(always)]
-fn turned(s: &LocalTwist, rotation: Complex<f64>) -> JointDisplacement {
-    JointDisplacement::Direction(if s.x < 0.0 { rotation.conj() } else { rotation })
+pub fn two_about_point<T: Over<C>, C: Real>(
+    [s, t]: [C::Space; 2],
+    r: T::Rotation,
+) -> [T::Joint; 2] {
+    let about = |axis: C::Space, from: C::Space, to: T::Space| {
+        let across = from.plus(-axis.inner(from), axis);
+        let (cosine, sine) = (to.against(across), to.against(axis.crossed(across)));
+        T::Joint::direction(T::Plane::new(cosine, sine))
+    };
+    [about(s, t, r.apply(t)), about(t, s, r.apply_back(s)).inverse()]
+}
+
+/// The displacements of two sliders that together make a translation in the plane that they span: `s p + t q = g`.
+#[inline(always)]
+pub fn two_in_space<T: Over<C>, C: Real>([s, t]: [C::Space; 2], g: T::Space) -> [T::Joint; 2] {
+    let normal = s.crossed(t);
+    let square = normal.inner(normal);
+    [t.crossed(normal), normal.crossed(s)].map(|v| T::Joint::value(g.against(v).per(square)))
 }
 
 /// The direction of a slider in a translational plane.

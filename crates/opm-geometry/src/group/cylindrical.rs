@@ -4,7 +4,8 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, MotionType, SubspaceKind};
+use super::{MotionType, SubspaceKind};
+use crate::numbers::{Joint, Real};
 use crate::numeric::angle::unit;
 use nalgebra::{Complex, Rotation3, Vector3};
 
@@ -13,11 +14,11 @@ pub struct Cylindrical;
 
 /// A rotation about an axis and a translation along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CylindricalDisplacement {
+pub struct CylindricalDisplacement<T = f64> {
     /// The angle of rotation in radians; full revolutions count.
-    pub angle: f64,
+    pub angle: T,
     /// The translation along the axis, metres.
-    pub advance: f64,
+    pub advance: T,
 }
 
 /// A one-parameter motion about or along the axis that another subspace may share.
@@ -27,6 +28,23 @@ pub enum CylindricalMotion {
     Rotation,
     /// Translation along the axis.
     Translation,
+}
+
+impl CylindricalMotion {
+    /// The product `v · exp(I τ)`, or `exp(I τ) · v`: they commute.
+    #[inline(always)]
+    pub fn after<T: Real>(
+        &self,
+        v: &CylindricalDisplacement<T>,
+        tau: T::Joint,
+    ) -> CylindricalDisplacement<T> {
+        match self {
+            Self::Rotation => CylindricalDisplacement { angle: v.angle + tau.number(), ..*v },
+            Self::Translation => {
+                CylindricalDisplacement { advance: v.advance + tau.number(), ..*v }
+            }
+        }
+    }
 }
 
 impl Subgroup for Cylindrical {
@@ -117,32 +135,6 @@ impl Subgroup for Cylindrical {
             CylindricalMotion::Rotation => vec![LocalTwist::y()],
             CylindricalMotion::Translation => vec![LocalTwist::x()],
         }
-    }
-
-    #[inline(always)]
-    fn after(
-        motion: &CylindricalMotion,
-        v: &CylindricalDisplacement,
-        tau: JointDisplacement,
-    ) -> CylindricalDisplacement {
-        match motion {
-            CylindricalMotion::Rotation => {
-                CylindricalDisplacement { angle: v.angle + tau.value(), advance: v.advance }
-            }
-            CylindricalMotion::Translation => {
-                CylindricalDisplacement { angle: v.angle, advance: v.advance + tau.value() }
-            }
-        }
-    }
-
-    /// The same as `after`, because displacements on one axis commute.
-    #[inline(always)]
-    fn before(
-        motion: &CylindricalMotion,
-        b: &CylindricalDisplacement,
-        tau: JointDisplacement,
-    ) -> CylindricalDisplacement {
-        Self::after(motion, b, tau)
     }
 
     fn path(motion: &CylindricalMotion, b: &CylindricalDisplacement) -> Path {

@@ -6,23 +6,24 @@ use super::{
     Cylindrical, CylindricalDisplacement, Identity, IdentityDisplacement, Planar,
     PlanarDisplacement, Spherical, SubspaceKind, TranslationalPlane, TranslationalSpace, mismatch,
 };
+use crate::numbers::{Plane, Real, Rotation, Space};
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
 /// A displacement inside one subspace, in that subspace's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Displacement {
+pub enum Displacement<T: Real = f64> {
     /// No displacement.
     Identity(IdentityDisplacement),
     /// A planar displacement.
-    Planar(PlanarDisplacement),
+    Planar(PlanarDisplacement<T::Plane>),
     /// A rotation about a centre.
-    Spherical(Matrix3<f64>),
+    Spherical(T::Rotation),
     /// A rotation about an axis and a translation along it.
-    Cylindrical(CylindricalDisplacement),
+    Cylindrical(CylindricalDisplacement<T>),
     /// A translation in a plane, metres.
-    Translational(Complex<f64>),
+    Translational(T::Plane),
     /// A translation in space, metres.
-    Spatial(Vector3<f64>),
+    Spatial(T::Space),
 }
 
 /// Calls a function of [`Subgroup`] for the subgroup of a kind, `G`.
@@ -153,11 +154,6 @@ impl SubspaceKind {
 }
 
 impl Displacement {
-    /// The kind of subspace that the displacement belongs to.
-    pub fn kind(&self) -> SubspaceKind {
-        of_displacement!(self, G, _g => G::KIND)
-    }
-
     /// The product `self · other`: `other` is applied to points first.
     ///
     /// # Panics
@@ -229,6 +225,49 @@ impl Displacement {
     pub fn size(&self) -> f64 {
         of_displacement!(self, G, g => G::size(g))
     }
+}
+
+impl<T: Real> Displacement<T> {
+    /// The displacement that leaves everything where it is.
+    pub fn still(kind: SubspaceKind) -> Self {
+        let [none, one] = [0.0, 1.0].map(T::constant);
+        let [zero, unit] = [none, one].map(|re| T::Plane::new(re, none));
+        match kind {
+            SubspaceKind::Identity => Self::Identity(IdentityDisplacement),
+            SubspaceKind::Planar => {
+                Self::Planar(PlanarDisplacement { rotation: unit, translation: zero })
+            }
+            SubspaceKind::Spherical => {
+                let rows = [[one, none, none], [none, one, none], [none, none, one]];
+                Self::Spherical(T::Rotation::from_rows(rows))
+            }
+            SubspaceKind::Cylindrical => {
+                Self::Cylindrical(CylindricalDisplacement { angle: none, advance: none })
+            }
+            SubspaceKind::TranslationalPlane => Self::Translational(zero),
+            SubspaceKind::TranslationalSpace => Self::Spatial(T::Space::new(none, none, none)),
+        }
+    }
+
+    /// The components of the logarithm, where displacements commute: see [`Displacement::sum`].
+    ///
+    /// # Panics
+    /// If displacements of this kind do not commute.
+    pub fn sums(&self) -> [T; 3] {
+        let none = T::constant(0.0);
+        match *self {
+            Self::Identity(_) => [none; 3],
+            Self::Cylindrical(CylindricalDisplacement { angle, advance }) => [angle, advance, none],
+            Self::Translational(t) => [t.re(), t.im(), none],
+            Self::Spatial(t) => t.parts(),
+            Self::Planar(_) | Self::Spherical(_) => mismatch(Cylindrical::KIND, self.kind()),
+        }
+    }
+
+    /// The kind of subspace that the displacement belongs to.
+    pub fn kind(&self) -> SubspaceKind {
+        of_displacement!(self, G, _g => G::KIND)
+    }
 
     /// The identity. Panics if the displacement is of another kind.
     fn identity(&self) -> &IdentityDisplacement {
@@ -244,7 +283,7 @@ impl Displacement {
 
     /// The planar displacement. Panics if it is of another kind.
     #[inline(always)]
-    pub fn planar(&self) -> &PlanarDisplacement {
+    pub fn planar(&self) -> &PlanarDisplacement<T::Plane> {
         match self {
             Self::Planar(g) => g,
             Self::Identity(_)
@@ -257,7 +296,7 @@ impl Displacement {
 
     /// The rotation about a centre. Panics if the displacement is of another kind.
     #[inline(always)]
-    pub fn spherical(&self) -> &Matrix3<f64> {
+    pub fn spherical(&self) -> &T::Rotation {
         match self {
             Self::Spherical(r) => r,
             Self::Identity(_)
@@ -270,7 +309,7 @@ impl Displacement {
 
     /// The cylindrical displacement. Panics if it is of another kind.
     #[inline(always)]
-    pub fn cylindrical(&self) -> &CylindricalDisplacement {
+    pub fn cylindrical(&self) -> &CylindricalDisplacement<T> {
         match self {
             Self::Cylindrical(g) => g,
             Self::Identity(_)
@@ -283,7 +322,7 @@ impl Displacement {
 
     /// The translation in a plane. Panics if the displacement is of another kind.
     #[inline(always)]
-    pub fn translational(&self) -> &Complex<f64> {
+    pub fn translational(&self) -> &T::Plane {
         match self {
             Self::Translational(t) => t,
             Self::Identity(_)
@@ -296,7 +335,7 @@ impl Displacement {
 
     /// The translation in space. Panics if the displacement is of another kind.
     #[inline(always)]
-    pub fn spatial(&self) -> &Vector3<f64> {
+    pub fn spatial(&self) -> &T::Space {
         match self {
             Self::Spatial(t) => t,
             Self::Identity(_)

@@ -3,7 +3,7 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, MotionType, SubspaceKind};
+use super::{MotionType, SubspaceKind};
 use nalgebra::{Rotation3, Vector3};
 use std::convert::Infallible;
 
@@ -85,22 +85,6 @@ impl Subgroup for Identity {
     }
 
     fn complement(motion: &Infallible) -> Vec<LocalTwist> {
-        match *motion {}
-    }
-
-    fn after(
-        motion: &Infallible,
-        _: &IdentityDisplacement,
-        _: JointDisplacement,
-    ) -> IdentityDisplacement {
-        match *motion {}
-    }
-
-    fn before(
-        motion: &Infallible,
-        _: &IdentityDisplacement,
-        _: JointDisplacement,
-    ) -> IdentityDisplacement {
         match *motion {}
     }
 

@@ -7,7 +7,8 @@ use super::{
     SpatialMotion, Spherical, SphericalMotion, SubspaceKind, TranslationalMotion,
     TranslationalPlane, TranslationalSpace, mismatch,
 };
-use nalgebra::Vector3;
+use crate::numbers::{Over, Plane};
+use nalgebra::{Complex, Vector3};
 
 /// What a one-parameter motion is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,15 +21,15 @@ pub enum MotionType {
 
 /// The intersection motion `I` of two subspaces, in the frame of one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum IntersectionMotion {
+pub enum IntersectionMotion<Z = Complex<f64>> {
     /// A planar motion.
-    Planar(PlanarMotion),
+    Planar(PlanarMotion<Z>),
     /// A rotation about a centre.
     Spherical(SphericalMotion),
     /// A motion about or along the axis of a cylinder.
     Cylindrical(CylindricalMotion),
     /// A translation in a translational plane.
-    Translational(TranslationalMotion),
+    Translational(TranslationalMotion<Z>),
     /// A translation in space.
     Spatial(SpatialMotion),
     /// No motion: the two subspaces share the identity alone. This one is of the kind given.
@@ -63,6 +64,42 @@ macro_rules! of_motion {
             }
         }
     };
+}
+
+impl<Z: Plane> IntersectionMotion<Z> {
+    /// The product `v · exp(I τ)`.
+    ///
+    /// # Panics
+    /// If `v` is a displacement of another kind of subspace.
+    #[inline(always)]
+    pub fn after<T: Over<Z::Real>>(&self, v: &Displacement<T>, tau: T::Joint) -> Displacement<T> {
+        match self {
+            Self::None(_) => *v,
+            Self::Planar(m) => Displacement::Planar(m.after::<T>(v.planar(), tau)),
+            Self::Spherical(m) => Displacement::Spherical(m.after::<T>(v.spherical(), tau)),
+            Self::Cylindrical(m) => Displacement::Cylindrical(m.after(v.cylindrical(), tau)),
+            Self::Translational(m) => {
+                Displacement::Translational(m.after::<T>(v.translational(), tau))
+            }
+            Self::Spatial(m) => Displacement::Spatial(m.after::<T>(v.spatial(), tau)),
+        }
+    }
+
+    /// The product `exp(I τ) · b`.
+    ///
+    /// # Panics
+    /// If `b` is a displacement of another kind of subspace.
+    #[inline(always)]
+    pub fn before<T: Over<Z::Real>>(&self, b: &Displacement<T>, tau: T::Joint) -> Displacement<T> {
+        match self {
+            Self::Planar(m) => Displacement::Planar(m.before::<T>(b.planar(), tau)),
+            Self::Spherical(m) => Displacement::Spherical(m.before::<T>(b.spherical(), tau)),
+            // There is no motion, or displacements commute.
+            Self::None(_) | Self::Cylindrical(_) | Self::Translational(_) | Self::Spatial(_) => {
+                self.after(b, tau)
+            }
+        }
+    }
 }
 
 impl IntersectionMotion {
@@ -144,38 +181,6 @@ impl IntersectionMotion {
     /// Orthonormal twists that complete the unit twist to a basis of the subspace's twists; a whole basis for no motion.
     pub fn complement(&self) -> Vec<LocalTwist> {
         of_motion!(self, G, m => G::complement(m), kind => kind.basis())
-    }
-
-    /// The product `v · exp(I τ)`.
-    ///
-    /// # Panics
-    /// If `v` is a displacement of another kind of subspace.
-    #[inline(always)]
-    pub fn after(&self, v: &Displacement, tau: JointDisplacement) -> Displacement {
-        match self {
-            Self::None(_) => *v,
-            Self::Planar(m) => Planar::after(m, v.planar(), tau).into(),
-            Self::Spherical(m) => Spherical::after(m, v.spherical(), tau).into(),
-            Self::Cylindrical(m) => Cylindrical::after(m, v.cylindrical(), tau).into(),
-            Self::Translational(m) => TranslationalPlane::after(m, v.translational(), tau).into(),
-            Self::Spatial(m) => TranslationalSpace::after(m, v.spatial(), tau).into(),
-        }
-    }
-
-    /// The product `exp(I τ) · b`.
-    ///
-    /// # Panics
-    /// If `b` is a displacement of another kind of subspace.
-    #[inline(always)]
-    pub fn before(&self, b: &Displacement, tau: JointDisplacement) -> Displacement {
-        match self {
-            Self::None(_) => *b,
-            Self::Planar(m) => Planar::before(m, b.planar(), tau).into(),
-            Self::Spherical(m) => Spherical::before(m, b.spherical(), tau).into(),
-            Self::Cylindrical(m) => Cylindrical::before(m, b.cylindrical(), tau).into(),
-            Self::Translational(m) => TranslationalPlane::before(m, b.translational(), tau).into(),
-            Self::Spatial(m) => TranslationalSpace::before(m, b.spatial(), tau).into(),
-        }
     }
 
     /// The products `exp(I τ) · b` for all τ, as a path; `None` for no motion.

@@ -5,7 +5,7 @@
 use super::path::{Path, PlanarPath};
 use super::subgroup::{LocalTwist, Subgroup};
 use super::{JointDisplacement, MotionType, SubspaceKind};
-use crate::numbers::{Plane, PlaneOver};
+use crate::numbers::{Joint, Over, Plane, PlaneOver};
 use crate::numeric::angle::{sinc, unit};
 use nalgebra::{Complex, Rotation3, Vector3};
 
@@ -61,12 +61,52 @@ impl<T: Plane> PlanarDisplacement<T> {
 
 /// A one-parameter planar motion that another subspace may share.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PlanarMotion {
+pub enum PlanarMotion<Z = Complex<f64>> {
     /// Rotation about the frame's origin.
     Rotation,
     /// Translation in the plane, by this vector for a unit of displacement. It is a unit complex number, or a shorter one
     /// if the motion also has a part along the plane's normal, which is a height.
-    Translation(Complex<f64>),
+    Translation(Z),
+}
+
+impl<Z: Plane> PlanarMotion<Z> {
+    /// The product `v · exp(I τ)`.
+    #[inline(always)]
+    pub fn after<T: Over<Z::Real>>(
+        &self,
+        v: &PlanarDisplacement<T::Plane>,
+        tau: T::Joint,
+    ) -> PlanarDisplacement<T::Plane> {
+        let &PlanarDisplacement { rotation, translation } = v;
+        match *self {
+            Self::Rotation => PlanarDisplacement { rotation: rotation * tau.unit(), translation },
+            Self::Translation(along) => PlanarDisplacement {
+                rotation,
+                translation: translation + (rotation * along).scaled(tau.number()),
+            },
+        }
+    }
+
+    /// The product `exp(I τ) · b`.
+    #[inline(always)]
+    pub fn before<T: Over<Z::Real>>(
+        &self,
+        b: &PlanarDisplacement<T::Plane>,
+        tau: T::Joint,
+    ) -> PlanarDisplacement<T::Plane> {
+        let &PlanarDisplacement { rotation, translation } = b;
+        match *self {
+            Self::Rotation => {
+                let e = tau.unit();
+                PlanarDisplacement { rotation: e * rotation, translation: e * translation }
+            }
+            Self::Translation(along) => {
+                let along = T::Plane::from_constant(along);
+                let translation = translation + along.scaled(tau.number());
+                PlanarDisplacement { rotation, translation }
+            }
+        }
+    }
 }
 
 impl PlanarDisplacement {
@@ -224,42 +264,6 @@ impl Subgroup for Planar {
             PlanarMotion::Translation(along) => {
                 vec![LocalTwist::x(), angular_and_linear(0.0, quarter(*along) / along.norm())]
             }
-        }
-    }
-
-    #[inline(always)]
-    fn after(
-        motion: &PlanarMotion,
-        v: &PlanarDisplacement,
-        tau: JointDisplacement,
-    ) -> PlanarDisplacement {
-        match motion {
-            PlanarMotion::Rotation => PlanarDisplacement {
-                rotation: v.rotation * tau.unit_direction(),
-                translation: v.translation,
-            },
-            PlanarMotion::Translation(along) => PlanarDisplacement {
-                rotation: v.rotation,
-                translation: v.translation + v.rotation * along * tau.value(),
-            },
-        }
-    }
-
-    #[inline(always)]
-    fn before(
-        motion: &PlanarMotion,
-        b: &PlanarDisplacement,
-        tau: JointDisplacement,
-    ) -> PlanarDisplacement {
-        match motion {
-            PlanarMotion::Rotation => {
-                let e = tau.unit_direction();
-                PlanarDisplacement { rotation: e * b.rotation, translation: e * b.translation }
-            }
-            PlanarMotion::Translation(along) => PlanarDisplacement {
-                rotation: b.rotation,
-                translation: b.translation + along * tau.value(),
-            },
         }
     }
 

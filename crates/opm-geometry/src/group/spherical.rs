@@ -2,7 +2,8 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, MotionType, SubspaceKind};
+use super::{MotionType, SubspaceKind};
+use crate::numbers::{Joint, Real, Rotation};
 use crate::numeric::angle::atan2;
 use nalgebra::{Complex, Matrix3, Rotation3, Vector3};
 
@@ -14,6 +15,24 @@ pub struct Spherical;
 pub enum SphericalMotion {
     /// Rotation about the frame's third direction.
     Rotation,
+}
+
+impl SphericalMotion {
+    /// The product `v · exp(I τ)`.
+    #[inline(always)]
+    pub fn after<T: Real>(&self, v: &T::Rotation, tau: T::Joint) -> T::Rotation {
+        match self {
+            Self::Rotation => v.after_turn(tau.unit()),
+        }
+    }
+
+    /// The product `exp(I τ) · b`.
+    #[inline(always)]
+    pub fn before<T: Real>(&self, b: &T::Rotation, tau: T::Joint) -> T::Rotation {
+        match self {
+            Self::Rotation => b.before_turn(tau.unit()),
+        }
+    }
 }
 
 /// The rotation about a unit axis by an angle, which is given as the unit complex number `e(angle)`
@@ -139,29 +158,6 @@ impl Subgroup for Spherical {
     fn complement(motion: &SphericalMotion) -> Vec<LocalTwist> {
         match motion {
             SphericalMotion::Rotation => vec![LocalTwist::x(), LocalTwist::y()],
-        }
-    }
-
-    #[inline(always)]
-    fn after(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
-        match motion {
-            SphericalMotion::Rotation => {
-                // The first two columns of R rotate; the third, the axis of I, stays.
-                let e = tau.unit_direction();
-                let (x, y, z) = (r.column(0), r.column(1), r.column(2));
-                Matrix3::from_columns(&[x * e.re + y * e.im, y * e.re - x * e.im, z.into_owned()])
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn before(motion: &SphericalMotion, r: &Matrix3<f64>, tau: JointDisplacement) -> Matrix3<f64> {
-        match motion {
-            SphericalMotion::Rotation => {
-                let e = tau.unit_direction();
-                let (x, y, z) = (r.row(0), r.row(1), r.row(2));
-                Matrix3::from_rows(&[x * e.re - y * e.im, x * e.im + y * e.re, z.into_owned()])
-            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! The operations that every subgroup implements.
 
 use super::path::Path;
-use super::{JointDisplacement, MotionType, SubspaceKind};
+use super::{MotionType, SubspaceKind};
 use nalgebra::{Rotation3, Vector3};
 
 /// A twist in the frame of its subspace: as many components as the subspace has dimensions, padded with
@@ -81,20 +81,6 @@ pub trait Subgroup {
 
     /// Orthonormal twists that complete the unit twist of an intersection motion to a basis of the subgroup's twists.
     fn complement(motion: &Self::Intersection) -> Vec<LocalTwist>;
-
-    /// The product `v · exp(I τ)`.
-    fn after(
-        motion: &Self::Intersection,
-        v: &Self::Displacement,
-        tau: JointDisplacement,
-    ) -> Self::Displacement;
-
-    /// The product `exp(I τ) · b`.
-    fn before(
-        motion: &Self::Intersection,
-        b: &Self::Displacement,
-        tau: JointDisplacement,
-    ) -> Self::Displacement;
 
     /// The products `exp(I τ) · b` for all τ, as a path.
     fn path(motion: &Self::Intersection, b: &Self::Displacement) -> Path;

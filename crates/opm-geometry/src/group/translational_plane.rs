@@ -3,7 +3,8 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, MotionType, SubspaceKind, quarter};
+use super::{MotionType, SubspaceKind, quarter};
+use crate::numbers::{Joint, Over, Plane, PlaneOver};
 use nalgebra::{Complex, Rotation3, Vector3};
 
 /// The subgroup of the translations in a plane.
@@ -11,9 +12,19 @@ pub struct TranslationalPlane;
 
 /// A one-parameter translation in the plane that another subspace may share.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TranslationalMotion {
+pub enum TranslationalMotion<Z = Complex<f64>> {
     /// Translation along a direction of the plane, which is a unit complex number.
-    Translation(Complex<f64>),
+    Translation(Z),
+}
+
+impl<Z: Plane> TranslationalMotion<Z> {
+    /// The product `v · exp(I τ)`, or `exp(I τ) · v`: they commute.
+    #[inline(always)]
+    pub fn after<T: Over<Z::Real>>(&self, v: &T::Plane, tau: T::Joint) -> T::Plane {
+        match *self {
+            Self::Translation(along) => *v + T::Plane::from_constant(along).scaled(tau.number()),
+        }
+    }
 }
 
 impl Subgroup for TranslationalPlane {
@@ -100,27 +111,6 @@ impl Subgroup for TranslationalPlane {
                 vec![LocalTwist::new(across.re, across.im, 0.0)]
             }
         }
-    }
-
-    #[inline(always)]
-    fn after(
-        motion: &TranslationalMotion,
-        v: &Complex<f64>,
-        tau: JointDisplacement,
-    ) -> Complex<f64> {
-        match motion {
-            TranslationalMotion::Translation(along) => v + along * tau.value(),
-        }
-    }
-
-    /// The same as `after`, because translations commute.
-    #[inline(always)]
-    fn before(
-        motion: &TranslationalMotion,
-        b: &Complex<f64>,
-        tau: JointDisplacement,
-    ) -> Complex<f64> {
-        Self::after(motion, b, tau)
     }
 
     fn path(motion: &TranslationalMotion, b: &Complex<f64>) -> Path {

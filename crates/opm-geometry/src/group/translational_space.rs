@@ -3,7 +3,8 @@
 
 use super::path::Path;
 use super::subgroup::{LocalTwist, Subgroup};
-use super::{JointDisplacement, MotionType, SubspaceKind};
+use super::{MotionType, SubspaceKind};
+use crate::numbers::{Joint, Real, Space};
 use nalgebra::{Rotation3, Vector3};
 
 /// The subgroup of all translations.
@@ -14,6 +15,17 @@ pub struct TranslationalSpace;
 pub enum SpatialMotion {
     /// Translation along the frame's third direction.
     Translation,
+}
+
+impl SpatialMotion {
+    /// The product `v · exp(I τ)`, or `exp(I τ) · v`: they commute.
+    #[inline(always)]
+    pub fn after<T: Real>(&self, v: &T::Space, tau: T::Joint) -> T::Space {
+        let [x, y, z] = v.parts();
+        match self {
+            Self::Translation => T::Space::new(x, y, z + tau.number()),
+        }
+    }
 }
 
 impl Subgroup for TranslationalSpace {
@@ -95,19 +107,6 @@ impl Subgroup for TranslationalSpace {
         match motion {
             SpatialMotion::Translation => vec![LocalTwist::x(), LocalTwist::y()],
         }
-    }
-
-    #[inline(always)]
-    fn after(motion: &SpatialMotion, v: &Vector3<f64>, tau: JointDisplacement) -> Vector3<f64> {
-        match motion {
-            SpatialMotion::Translation => Vector3::new(v.x, v.y, v.z + tau.value()),
-        }
-    }
-
-    /// The same as `after`, because translations commute.
-    #[inline(always)]
-    fn before(motion: &SpatialMotion, b: &Vector3<f64>, tau: JointDisplacement) -> Vector3<f64> {
-        Self::after(motion, b, tau)
     }
 
     fn path(motion: &SpatialMotion, b: &Vector3<f64>) -> Path {

@@ -99,6 +99,13 @@ impl SectionPoses for FirstOfRows<'_> {
     }
 }
 
+/// The unit vector at an angle that needs no reduction.
+#[inline(always)]
+fn unit_reduced(angle: f64) -> Complex<f64> {
+    let (sin, cos) = sin_cos_reduced(angle);
+    Complex::new(cos, sin)
+}
+
 /// The displacements of a section, for its coordinates and their values at home.
 #[inline(always)]
 pub fn displace(
@@ -123,14 +130,15 @@ pub fn displace(
                     Section::Lower => lower_angles(form, values),
                     Section::Upper => upper_angles(form, values),
                 };
-                let mut sines = [(0.0, 1.0); 3];
+                let mut units = [Complex::ONE; 3];
                 if let Some([a, b, c]) = angles {
                     // Three calls, where a map would not be inlined.
-                    sines = [sin_cos_reduced(a), sin_cos_reduced(b), sin_cos_reduced(c)];
+                    units = [unit_reduced(a), unit_reduced(b), unit_reduced(c)];
                 }
+                let values = values.from_home();
                 let displacement = match section {
-                    Section::Lower => lower_displacement(form, values, sines),
-                    Section::Upper => upper_displacement(form, values, sines),
+                    Section::Lower => lower_displacement(form, values, units),
+                    Section::Upper => upper_displacement(form, values, units),
                 };
                 store(&displacement, to, lane);
             }
@@ -242,8 +250,9 @@ fn solve_partial(
     to.iter_mut().for_each(DisplacementColumns::clear);
     macro_rules! each {
         ($variant:ident, $displacement:ty) => {{
-            let target =
-                |lane: usize| Displacement::$variant(<$displacement as Lane>::load(targets, lane));
+            let target = |lane: usize| {
+                Displacement::<f64>::$variant(<$displacement as Lane>::load(targets, lane))
+            };
             // The variants of the displacements depend on the joints alone.
             for (to, first) in to.iter_mut().zip(partial.inverse(&target(0))) {
                 to.are_directions = matches!(first, JointDisplacement::Direction(_));
@@ -381,14 +390,15 @@ pub fn shift(
     lanes: usize,
 ) {
     let lanes = lanes.min(LANES);
+    // Where displacements commute, both sides are the same.
     macro_rules! each {
-        ($group:ty, $motion:expr, $read:ident) => {{
+        ($group:ty, $motion:expr, $read:ident, $before:ident) => {{
             let motion = $motion;
             for lane in 0..lanes {
                 let displacement = <$group as Subgroup>::Displacement::load(from, lane);
                 match side {
-                    Side::After => <$group>::after(&motion, &displacement, tau.$read(lane)),
-                    Side::Before => <$group>::before(&motion, &displacement, tau.$read(lane)),
+                    Side::After => motion.after::<f64>(&displacement, tau.$read(lane)),
+                    Side::Before => motion.$before::<f64>(&displacement, tau.$read(lane)),
                 }
                 .store(to, lane);
             }
@@ -397,34 +407,34 @@ pub fn shift(
     match (motion, tau.are_directions()) {
         (IntersectionMotion::None(_), _) => to.copy_from_slice(from),
         (IntersectionMotion::Planar(PlanarMotion::Rotation), true) => {
-            each!(Planar, PlanarMotion::Rotation, direction);
+            each!(Planar, PlanarMotion::<Complex<f64>>::Rotation, direction, before);
         }
         (IntersectionMotion::Planar(PlanarMotion::Rotation), false) => {
-            each!(Planar, PlanarMotion::Rotation, value);
+            each!(Planar, PlanarMotion::<Complex<f64>>::Rotation, value, before);
         }
         (IntersectionMotion::Planar(PlanarMotion::Translation(along)), _) => {
-            each!(Planar, PlanarMotion::Translation(along), value);
+            each!(Planar, PlanarMotion::Translation(along), value, before);
         }
         (IntersectionMotion::Spherical(SphericalMotion::Rotation), true) => {
-            each!(Spherical, SphericalMotion::Rotation, direction);
+            each!(Spherical, SphericalMotion::Rotation, direction, before);
         }
         (IntersectionMotion::Spherical(SphericalMotion::Rotation), false) => {
-            each!(Spherical, SphericalMotion::Rotation, value);
+            each!(Spherical, SphericalMotion::Rotation, value, before);
         }
         (IntersectionMotion::Cylindrical(CylindricalMotion::Rotation), true) => {
-            each!(Cylindrical, CylindricalMotion::Rotation, direction);
+            each!(Cylindrical, CylindricalMotion::Rotation, direction, after);
         }
         (IntersectionMotion::Cylindrical(CylindricalMotion::Rotation), false) => {
-            each!(Cylindrical, CylindricalMotion::Rotation, value);
+            each!(Cylindrical, CylindricalMotion::Rotation, value, after);
         }
         (IntersectionMotion::Cylindrical(CylindricalMotion::Translation), _) => {
-            each!(Cylindrical, CylindricalMotion::Translation, value);
+            each!(Cylindrical, CylindricalMotion::Translation, value, after);
         }
         (IntersectionMotion::Translational(TranslationalMotion::Translation(along)), _) => {
-            each!(TranslationalPlane, TranslationalMotion::Translation(along), value);
+            each!(TranslationalPlane, TranslationalMotion::Translation(along), value, after);
         }
         (IntersectionMotion::Spatial(SpatialMotion::Translation), _) => {
-            each!(TranslationalSpace, SpatialMotion::Translation, value);
+            each!(TranslationalSpace, SpatialMotion::Translation, value, after);
         }
     }
 }
