@@ -28,7 +28,6 @@ mod chain;
 mod dependent;
 mod legs;
 mod numbers;
-mod one_joint;
 mod opening;
 mod places;
 mod raised;

@@ -101,6 +101,16 @@ pub trait Real:
     fn larger(self, other: Self) -> Self;
     /// The unit vector at this angle.
     fn unit(self) -> Self::Plane;
+    /// An angle less full revolutions, within half of one.
+    fn reduced(self) -> Self;
+    /// Its sign, positive for zero; `None` where it is not the same everywhere.
+    fn side(self) -> Option<Self::Sign>;
+    /// An angle of which nothing is known, but that it depends on this number.
+    #[must_use]
+    #[inline(always)]
+    fn any_angle(self) -> Self {
+        self
+    }
     /// A cosine or a sine, without what rounding makes of it beyond one.
     fn at_most_one(self) -> Self;
     /// `times` times the tolerance of this size.
@@ -160,6 +170,8 @@ pub trait Plane:
     /// The unit vector in its direction.
     #[must_use]
     fn normalised(self) -> Self;
+    /// Its angle, within half a revolution of zero.
+    fn argument(self) -> Self::Real;
     /// The coordinates along two directions that are not parallel.
     fn along(self, first: Self, second: Self) -> [Self::Real; 2];
     /// The same as a direction; where it is zero compared to a size, so that its angle is free, that of the angle zero. It

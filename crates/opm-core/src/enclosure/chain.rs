@@ -5,20 +5,18 @@ use super::affine::{Affine, Plane, WIDE};
 use super::opening;
 use super::share::Share;
 use super::target::{Enclosed, Rotation, Target, dot};
-use crate::chain::cylindrical::CoaxialJoint;
 use crate::chain::spherical::{Ball, SphericalChain};
 use crate::chain::{Branch, Chain, ClosedForm, Closes, REACH_TOLERANCE};
-use crate::group::CylindricalDisplacement;
 use nalgebra::{Complex, Vector3};
 
 /// The end of a range without an end.
 const INFINITE: f64 = f64::INFINITY;
 
-/// The share for which a chain closes, by what decides that.
-pub fn share<const N: usize>(closes: &Closes<Affine<N>>) -> Share<N> {
+/// The share for which there is a solution, by what decides that, to within a tolerance.
+pub fn share<const N: usize>(closes: &Closes<Affine<N>>, tolerance: f64) -> Share<N> {
     match closes {
         Closes::Always => Share::ALL,
-        Closes::Within(number, range) => Share::within(number, *range, 0.0),
+        Closes::Within(number, range) => Share::within(number, *range, tolerance),
         Closes::Outside(number, range) => Share::outside(number, *range),
     }
 }
@@ -26,7 +24,7 @@ pub fn share<const N: usize>(closes: &Closes<Affine<N>>) -> Share<N> {
 /// The share of a box of targets for which a chain closes, whatever its joints' limits.
 pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
     match chain {
-        Chain::Planar(chain) => share(&chain.closes(target.planar())),
+        Chain::Planar(chain) => share(&chain.closes(target.planar()), 0.0),
         Chain::Spherical(chain) => Arcs::new(chain).closes(target.spherical()),
         // No joints reach the identity, a spherical joint reaches every rotation, and linear chains have one solution
         // everywhere.
@@ -51,15 +49,12 @@ pub fn displacements<const N: usize>(
         Chain::Spherical(chain) => spherical(chain, target.spherical(), branch),
         Chain::Ball(ball) => self::ball(ball, target.spherical()),
         Chain::Cylindrical(chain) => {
-            let &CylindricalDisplacement { angle, advance } = target.cylindrical();
-            let [p, q] = *chain.joints();
-            let determinant = p.rotation * q.advance - q.rotation * p.advance;
-            let displacement = |joint: CoaxialJoint, by_angle: f64, by_advance: f64| {
-                let value = angle * (by_angle / determinant) + advance * (by_advance / determinant);
-                let revolute = joint.rotation != 0.0 && joint.advance == 0.0;
-                if revolute { Enclosed::Angle(value) } else { Enclosed::Value(value) }
+            let [p, q] = chain.coordinates(target.cylindrical());
+            let displacement = |joint, value| match chain.revolute() == Some(joint) {
+                true => Enclosed::Angle(value),
+                false => Enclosed::Value(value),
             };
-            [displacement(p, q.advance, -q.rotation), displacement(q, -p.advance, p.rotation), none]
+            [displacement(0, p), displacement(1, q), none]
         }
         Chain::Translational(chain) => solved(chain, target.translational(), branch),
         Chain::Spatial(chain) => {

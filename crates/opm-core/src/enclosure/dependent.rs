@@ -3,7 +3,7 @@
 
 use super::LegConditions;
 use super::affine::{Affine, Plane};
-use super::one_joint;
+use super::chain::share;
 use super::share::Share;
 use super::target::{self, Coordinate, Enclosed, Target};
 use crate::chain::REACH_TOLERANCE;
@@ -92,18 +92,17 @@ impl<const N: usize> LegConditions<'_, N> {
         pose: &mut [Coordinate<N>],
     ) -> Share<N> {
         let task = self.manipulator.task();
-        let (motion, kind) = match joint.section {
-            Section::Lower => (task.lower_intersection, task.lower.kind),
-            Section::Upper => (task.upper_intersection, task.upper.kind),
+        let kind = match joint.section {
+            Section::Lower => task.lower.kind,
+            Section::Upper => task.upper.kind,
         };
-        let bridge = self.leg(joint.leg).bridge();
-        // A displacement by the joint, with that along the intersection motion if it belongs to the other section.
-        let shifted = |g: Target<N>| match joint.section {
-            _ if bridge.is_none_or(|bridge| bridge == joint.section) => g,
-            Section::Lower => motion.after(&g, tau.inverse()),
-            Section::Upper => motion.before(&g, tau),
-        };
-        let (exists, found) = one_joint::coordinates(joint, kind, task, sign, &shifted, pose);
+        let at = std::array::from_fn(|i| match joint.all.get(i).map(|&i| pose[i]) {
+            Some(Coordinate::Linear(value)) => value,
+            // It tells nothing.
+            Some(Coordinate::Polar(_)) | None => Affine::constant(0.0),
+        });
+        let (exists, found) = joint.found(self.manipulator, tau, sign, at);
+        let exists = share(&exists, REACH_TOLERANCE);
         for ((follows, &coordinate), value) in joint.follows.iter().zip(&joint.all).zip(found) {
             let home = task.coordinates[coordinate].home;
             pose[coordinate] = Coordinate::Linear(match follows {

@@ -5,6 +5,7 @@ use super::opening;
 use super::target::{Enclosed, Rotation};
 use crate::numbers::{self, Over, PlaneOver, Real, RotationOver, SpaceOver, Tolerance, Truth};
 use nalgebra::{Complex, Matrix3, Vector3};
+use std::f64::consts::{PI, TAU};
 use std::ops::{BitAnd, BitOr, Neg, Not};
 
 /// Whether something holds: over a box it is not asked.
@@ -91,6 +92,18 @@ impl<const N: usize> Real for Affine<N> {
         self.unit_vector()
     }
 
+    fn reduced(self) -> Self {
+        self - TAU * (self.centre / TAU).round()
+    }
+
+    fn side(self) -> Option<f64> {
+        if self.low() > 0.0 { Some(1.0) } else { (self.high() < 0.0).then_some(-1.0) }
+    }
+
+    fn any_angle(self) -> Self {
+        Self::unknown(0.0, PI, &self.spread())
+    }
+
     /// A root of what is left of it up to one is bounded all the same.
     fn at_most_one(self) -> Self {
         self
@@ -167,6 +180,10 @@ impl<const N: usize> numbers::Plane for Plane<N> {
 
     fn normalised(self) -> Self {
         Self::direction(self)
+    }
+
+    fn argument(self) -> Affine<N> {
+        Self::argument(&self)
     }
 
     fn along(self, first: Self, second: Self) -> [Affine<N>; 2] {

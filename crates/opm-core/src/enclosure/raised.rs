@@ -40,7 +40,7 @@ impl<const N: usize> RaisedChain<N> {
     pub fn closes(&self) -> Share<N> {
         let closes = ClosedForm::<Affine<N>>::closes(&self.chain, &self.target);
         let all = self.chain.regular().into_iter().chain([closes]);
-        all.fold(Share::ALL, |all, one| all.and(share(&one)))
+        all.fold(Share::ALL, |all, one| all.and(share(&one, 0.0)))
     }
 
     /// The joints' displacements.

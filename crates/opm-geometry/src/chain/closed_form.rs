@@ -64,15 +64,29 @@ impl<T: Real> Exception<T> {
     }
 }
 
-/// What decides whether a chain closes.
+/// What decides whether there is a solution: whether a chain closes, or a coordinate follows from another one.
 #[derive(Clone, Copy, Debug)]
 pub enum Closes<T> {
-    /// It always does.
+    /// There always is.
     Always,
     /// A number is in a range.
     Within(T, [f64; 2]),
     /// A number is outside of a range.
     Outside(T, [f64; 2]),
+}
+
+impl Closes<f64> {
+    /// Whether it holds, to within a tolerance; false where the number is none.
+    #[inline(always)]
+    pub fn holds(&self, tolerance: f64) -> bool {
+        match *self {
+            Self::Always => true,
+            Self::Within(number, [least, most]) => {
+                number >= least - tolerance && number <= most + tolerance
+            }
+            Self::Outside(number, [least, most]) => number < least || number > most,
+        }
+    }
 }
 
 /// A chain whose target fixes its joints up to a sign.

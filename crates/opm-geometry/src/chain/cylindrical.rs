@@ -5,18 +5,19 @@
 use super::surface::Surface;
 use super::{Attempt, ChainError, ClosedForm, DEGENERATE, Exception};
 use crate::group::{CylindricalDisplacement, JointDisplacement};
+use crate::numbers::{Over, Real};
 use crate::numeric::angle::{MOST_REDUCED, sin_cos_reduced};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// A joint on the axis: the rotation and the advance that one unit of its coordinate makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoaxialJoint {
+pub struct CoaxialJoint<C = f64> {
     /// The rotation, radians per unit: ±1 for a revolute or helical joint, 0 for a prismatic one.
-    pub rotation: f64,
+    pub rotation: C,
     /// The advance, metres per unit: 0 for a revolute joint, ±1 for a prismatic one, ± the pitch for a helical
     /// one.
-    pub advance: f64,
+    pub advance: C,
 }
 
 impl CoaxialJoint {
@@ -27,9 +28,25 @@ impl CoaxialJoint {
 
 /// Two coaxial joints. A target has one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CylindricalChain {
-    joints: [CoaxialJoint; 2],
-    determinant: f64,
+pub struct CylindricalChain<C = f64> {
+    joints: [CoaxialJoint<C>; 2],
+    determinant: C,
+}
+
+impl<C: Real> CylindricalChain<C> {
+    /// The closed form of two joints on one axis that are independent.
+    pub fn of(joints: [CoaxialJoint<C>; 2]) -> Self {
+        let [p, q] = joints;
+        Self { joints, determinant: p.rotation * q.advance - q.rotation * p.advance }
+    }
+
+    /// The joints' coordinates; those of revolute joints count revolutions too.
+    #[inline(always)]
+    pub fn coordinates<T: Over<C>>(&self, target: &CylindricalDisplacement<T>) -> [T; 2] {
+        let ([p, q], CylindricalDisplacement { angle, advance }) = (self.joints, *target);
+        let first = (angle * q.advance - advance * q.rotation).per(self.determinant);
+        [first, (advance * p.rotation - angle * p.advance).per(self.determinant)]
+    }
 }
 
 impl CylindricalChain {
@@ -38,13 +55,12 @@ impl CylindricalChain {
     /// # Errors
     /// The joints are two revolute joints, two prismatic joints, or two helical joints of the same pitch.
     pub fn new(joints: [CoaxialJoint; 2]) -> Result<Self, ChainError> {
-        let [p, q] = joints;
-        let determinant = p.rotation * q.advance - q.rotation * p.advance;
-        let size = p.advance.abs().max(q.advance.abs());
-        if determinant.abs() <= DEGENERATE * size {
+        let chain = Self::of(joints);
+        let [p, q] = joints.map(|joint| joint.advance.abs());
+        if chain.determinant.abs() <= DEGENERATE * p.max(q) {
             return Err(ChainError::Dependent("two coaxial joints have the same pitch"));
         }
-        Ok(Self { joints, determinant })
+        Ok(chain)
     }
 
     /// The joints, base first.
@@ -87,15 +103,6 @@ impl CylindricalChain {
                 JointDisplacement::Direction(displacements[revolute].unit_direction());
         }
         displacements
-    }
-
-    /// The joints' coordinates; those of revolute joints count revolutions too.
-    #[inline(always)]
-    pub fn coordinates(&self, target: &CylindricalDisplacement) -> [f64; 2] {
-        let [p, q] = self.joints;
-        let first = (target.angle * q.advance - q.rotation * target.advance) / self.determinant;
-        let second = (p.rotation * target.advance - target.angle * p.advance) / self.determinant;
-        [first, second]
     }
 
     /// The displacement of the outer link, with the revolutions that the joints' displacements count.

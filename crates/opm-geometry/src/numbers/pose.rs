@@ -4,7 +4,7 @@ use super::{
     Joint, JointDisplacement, Over, Plane, PlaneOver, REACH, Real, Rotation, RotationOver, Space,
     SpaceOver, Tolerance, Truth,
 };
-use crate::numeric::angle::unit;
+use crate::numeric::angle::{atan2, near, unit};
 use nalgebra::{Complex, Matrix3, Vector3};
 
 impl Real for f64 {
@@ -58,6 +58,16 @@ impl Real for f64 {
     #[inline(always)]
     fn unit(self) -> Complex<f64> {
         unit(self)
+    }
+
+    #[inline(always)]
+    fn reduced(self) -> Self {
+        near(self, 0.0)
+    }
+
+    #[inline(always)]
+    fn side(self) -> Option<Self> {
+        Some(if self < 0.0 { -1.0 } else { 1.0 })
     }
 
     #[inline(always)]
@@ -144,6 +154,11 @@ impl Plane for Complex<f64> {
     #[inline(always)]
     fn inner(self, other: Self) -> f64 {
         self.re * other.re + self.im * other.im
+    }
+
+    #[inline(always)]
+    fn argument(self) -> f64 {
+        atan2(self.im, self.re)
     }
 
     #[inline(always)]

@@ -5,17 +5,20 @@
 //! itself before. Where the platform's home orientation is the identity that is
 //! `sin(ξ/2) = ρ sin(q/2)`, with `ρ` the sine of the angle between `s` and the third direction.
 
-use crate::chain::{REACH_TOLERANCE, ReachDeficit};
+use crate::chain::{Closes, REACH_TOLERANCE, ReachDeficit};
 use crate::group::{
     Displacement, JointDisplacement, LocalTwist, PlanarDisplacement, Subspace, SubspaceKind,
-    linear, rotation_about,
+    linear, quarter,
 };
 use crate::manipulator::Manipulator;
 use crate::manipulator::leg::Section;
+use crate::mechanism::OrientationCoordinates;
+use crate::numbers::{Joint, Over, Plane, PlaneOver, Real, Rotation, RotationOver, Space};
 use crate::numeric::Quantity;
-use crate::numeric::angle::{atan2, near, unit};
+use crate::numeric::angle::near;
 use crate::task::{Task, other_triple};
 use nalgebra::{Complex, Matrix3};
+use std::f64::consts::PI;
 
 /// An axis whose angle with the third direction has a sine below this is along that direction.
 pub(crate) const ALONG: f64 = 1e-9;
@@ -141,21 +144,22 @@ impl OneJoint {
                 let (v, b) = task.sections(pose);
                 let displacement = if self.section == Section::Lower { v } else { b };
                 let Displacement::Spherical(_) = displacement else { return };
-                let [zeta, ..] = of_displacement(&displacement, |i| home[i]);
+                let [zeta, ..]: [f64; 3] = of_displacement(&displacement, |i| home[i]);
                 [zeta, home[1], home[2]]
             }
             SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
                 let [zeta, xi, psi] = task.angles.to_euler(numbers.map(|i| pose[i]));
                 let [a, b, c] = other_triple([zeta, xi, psi]);
                 let other = [near(a, home[0]), b, near(c, home[2])];
+                // The last angle that follows from the second one.
+                let follows = |xi: f64| last_angle(task, &s, xi, sign);
                 let off = |[_, xi, psi]: [f64; 3]| {
-                    let found = angles(task, &s, xi, sign);
-                    found.map_or(f64::INFINITY, |found| near(found[2] - psi, 0.0).abs())
+                    follows(xi).map_or(f64::INFINITY, |found| near(found - psi, 0.0).abs())
                 };
                 let [zeta, xi, psi] =
                     if off(other) < off([zeta, xi, psi]) { other } else { [zeta, xi, psi] };
                 // Near their singularity only the sum of the two angles is known, or their difference.
-                let follows = angles(task, &s, xi, sign).map_or(psi, |found| near(found[2], psi));
+                let follows = follows(xi).map_or(psi, |found| near(found, psi));
                 let rest = if xi.cos() > 0.0 { psi - follows } else { follows - psi };
                 [zeta + rest, xi, follows]
             }
@@ -179,49 +183,95 @@ impl OneJoint {
         sign: f64,
         at: [f64; 3],
     ) -> Result<[f64; 3], ReachDeficit> {
+        let (exists, found) = self.found(manipulator, tau, sign, at);
+        if !exists.holds(REACH_TOLERANCE) {
+            return Err(match self.motion {
+                SectionMotion::Slide(s, given) => {
+                    self.line::<f64>(manipulator, s, given, tau).deficit(at)
+                }
+                _ => self.deficit(exists, manipulator.task().home_orientation_inverse(), at),
+            });
+        }
+        Ok(self.taken(subspace(manipulator.task(), self.section).kind, at, found))
+    }
+
+    /// By how much the coordinate that tells the joint is out of its range.
+    #[cold]
+    fn deficit(
+        &self,
+        exists: Closes<f64>,
+        home: Option<&Matrix3<f64>>,
+        at: [f64; 3],
+    ) -> ReachDeficit {
+        let xi = near(at[1], 0.0).abs();
+        match (self.motion, exists) {
+            (SectionMotion::Axis(s) | SectionMotion::LastAngle(s), Closes::Within(_, ends)) => {
+                ReachDeficit::angle(match home {
+                    None => xi - 2.0 * s.x.hypot(s.y).min(1.0).asin(),
+                    // cos ξ - c₀ is beyond one of its ends.
+                    Some(inverse) => {
+                        let c0 = s.z * s.dot(&inverse.row(2).transpose());
+                        let nearest = (at[1].cos() - c0).clamp(ends[0], ends[1]) + c0;
+                        (xi - nearest.clamp(-1.0, 1.0).acos()).abs()
+                    }
+                })
+            }
+            _ => ReachDeficit::angle(f64::INFINITY),
+        }
+    }
+
+    /// The section's coordinates, and what decides whether there are such, over numbers: at one pose, and over boxes.
+    #[inline(always)]
+    pub fn found<T: Over<f64>>(
+        &self,
+        manipulator: &Manipulator,
+        tau: T::Joint,
+        sign: T::Sign,
+        at: [T; 3],
+    ) -> (Closes<T>, [T; 3]) {
         let task = manipulator.task();
         // Zero for a displacement along the intersection motion, for which there is no coordinate.
         let home = |i: usize| self.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
-        let subspace = subspace(task, self.section);
-        let shifted = |motion: Displacement| self.shifted(manipulator, motion, tau);
-        let still = || shifted(subspace.kind.identity());
-        let found: [f64; 3] = match self.motion {
+        let euler_at_home = || task.angles.to_euler([0, 1, 2].map(home)).map(T::constant);
+        let kind = subspace(task, self.section).kind;
+        let shifted = |motion: Displacement<T>| self.shifted(manipulator, motion, tau);
+        let still = || shifted(Displacement::still(kind));
+        let found = match self.motion {
             SectionMotion::None => match still() {
                 // The rotation about the third direction is that of the first Euler angle.
                 Displacement::Spherical(r) => {
-                    let [zeta, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
-                    task.angles.of_euler([zeta + atan2(r[(1, 0)], r[(0, 0)]), xi, psi])
+                    let [zeta, xi, psi] = euler_at_home();
+                    of_euler(task, [about_third::<T>(r) + zeta, xi, psi])
                 }
                 other => of_displacement(&other, home),
             },
             SectionMotion::Turn(s) => {
-                let rotation = unit(at[2] - home(2)) * still().planar().rotation.conj();
-                let q = if s.x < 0.0 { rotation.conj() } else { rotation };
-                of_displacement(
-                    &shifted(
-                        PlanarDisplacement::along_screw(&s, JointDisplacement::Direction(q)).into(),
-                    ),
-                    home,
-                )
+                let rotation = (at[2] - home(2)).unit() * still().planar().rotation.conj();
+                let point = quarter(linear(&s)) * s.x;
+                let turned = PlanarDisplacement::about(point, rotation);
+                of_displacement(&shifted(Displacement::Planar(turned)), home)
             }
-            SectionMotion::Slide(s, given) => self.line(manipulator, s, given, tau).through(at)?,
+            SectionMotion::Slide(s, given) => {
+                return self.line::<T>(manipulator, s, given, tau).found(at);
+            }
             SectionMotion::Third => {
-                let [_, xi, psi] = task.angles.to_euler([0, 1, 2].map(home));
-                return Ok(task.angles.of_euler([at[0], xi, psi]));
+                let [_, xi, psi] = euler_at_home();
+                return (Closes::Always, of_euler(task, [at[0], xi, psi]));
             }
             SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
-                let mut found = angles(task, &s, at[1], sign)?;
-                found[0] += match still() {
-                    Displacement::Spherical(r) => atan2(r[(1, 0)], r[(0, 0)]),
-                    _ => 0.0,
+                let (exists, [mut zeta, psi]) = match task.home_orientation_inverse() {
+                    None => from_identity(&s, at[1], sign),
+                    Some(inverse) => from_orientation(&s, &inverse.transpose(), at[1], sign),
                 };
                 if let SectionMotion::LastAngle(_) = self.motion {
-                    found[0] = at[0];
+                    zeta = at[0];
+                } else if let Displacement::Spherical(r) = still() {
+                    zeta = zeta + about_third::<T>(r);
                 }
-                task.angles.of_euler(found)
+                return (exists, of_euler(task, [zeta, at[1], psi]));
             }
         };
-        Ok(self.taken(subspace.kind, at, found))
+        (Closes::Always, found)
     }
 
     /// The section's coordinates where those that follow are `found`; angles that have no turns are those nearest to what `at`
@@ -241,12 +291,12 @@ impl OneJoint {
     /// A displacement by the joint, after or before that along the intersection motion by `tau` if that belongs to the other
     /// section: g = exp(I τ) · exp(s q) for b, and exp(s q) · exp(-I τ) for v.
     #[inline(always)]
-    fn shifted(
+    fn shifted<T: Over<f64>>(
         &self,
         manipulator: &Manipulator,
-        motion: Displacement,
-        tau: JointDisplacement,
-    ) -> Displacement {
+        motion: Displacement<T>,
+        tau: T::Joint,
+    ) -> Displacement<T> {
         let (task, leg) = (manipulator.task(), &manipulator.legs[self.leg]);
         match self.section {
             _ if leg.bridge().is_none_or(|bridge| bridge == self.section) => motion,
@@ -256,40 +306,53 @@ impl OneJoint {
     }
 
     /// The line along which a slider with the screw `s` moves the section; this length tells the place on it.
-    pub fn line(
+    #[inline(always)]
+    pub fn line<T: Over<f64>>(
         &self,
         manipulator: &Manipulator,
         s: LocalTwist,
         given: usize,
-        tau: JointDisplacement,
-    ) -> Line {
+        tau: T::Joint,
+    ) -> Line<T> {
         let (task, kind) = (manipulator.task(), subspace(manipulator.task(), self.section).kind);
         let home = |i: usize| self.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
-        let [start, end] =
-            [kind.identity(), slid(kind, s)].map(|motion| self.shifted(manipulator, motion, tau));
-        let mut rates = [0.0; 3];
-        let lengths = if kind == SubspaceKind::Planar { 2 } else { 3 };
-        for (i, rate) in rates[..lengths].iter_mut().enumerate() {
-            *rate = length_of(&end, i) - length_of(&start, i);
+        let ends = [Displacement::still(kind), slid(kind, &s)]
+            .map(|motion| self.shifted(manipulator, motion, tau));
+        let [[a, b, c], [x, y, z]] = [lengths(&ends[0]), lengths(&ends[1])];
+        let last = if kind == SubspaceKind::Planar { T::constant(0.0) } else { z - c };
+        Line {
+            start: of_displacement(&ends[0], home),
+            rates: [x - a, y - b, last],
+            given,
+            home: home(given),
+            from_home: [a, b, c][given],
         }
-        let (home_of_given, from_home) = (home(given), length_of(&start, given));
-        let start = of_displacement(&start, home);
-        Line { start, rates, given, home: home_of_given, from_home }
     }
 }
 
 /// A straight line of coordinates of a section.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Line {
+pub(crate) struct Line<T = f64> {
     /// The coordinates at its start.
-    start: [f64; 3],
+    start: [T; 3],
     /// Their changes along it.
-    rates: [f64; 3],
+    rates: [T; 3],
     /// The number of the coordinate that tells the place.
     given: usize,
     /// Its value at home, and the difference from that at the start.
     home: f64,
-    from_home: f64,
+    from_home: T,
+}
+
+impl<T: Over<f64>> Line<T> {
+    /// The coordinates where the given one is that of `at`, and what decides whether it changes along the line at all.
+    #[inline(always)]
+    fn found(&self, at: [T; 3]) -> (Closes<T>, [T; 3]) {
+        let rate = self.rates[self.given];
+        let q = (at[self.given] - self.home - self.from_home).over(rate);
+        let ([a, b, c], [x, y, z]) = (self.start, self.rates);
+        (Closes::Outside(rate, [-ALONG, ALONG]), [a + q * x, b + q * y, c + q * z])
+    }
 }
 
 impl Line {
@@ -299,15 +362,13 @@ impl Line {
     /// By how much it is missed, where it does not change along the line.
     #[inline(always)]
     pub fn through(&self, at: [f64; 3]) -> Result<[f64; 3], ReachDeficit> {
-        let from_start = (at[self.given] - self.home) - self.from_home;
-        let rate = self.rates[self.given];
-        if rate.abs() < ALONG {
-            return Err(ReachDeficit::length(from_start.abs()));
-        }
-        let q = from_start / rate;
-        let [a, b, c] = self.start;
-        let [x, y, z] = self.rates;
-        Ok([a + q * x, b + q * y, c + q * z])
+        let (exists, found) = self.found(at);
+        if exists.holds(0.0) { Ok(found) } else { Err(self.deficit(at)) }
+    }
+
+    #[cold]
+    fn deficit(&self, at: [f64; 3]) -> ReachDeficit {
+        ReachDeficit::length((at[self.given] - self.home - self.from_home).abs())
     }
 }
 
@@ -318,100 +379,129 @@ fn subspace(task: &Task, section: Section) -> &Subspace {
     }
 }
 
+/// The last Euler angle of the platform after the rotation about `s` from home whose second angle is `xi`, if there is one.
+fn last_angle(task: &Task, s: &LocalTwist, xi: f64, sign: f64) -> Option<f64> {
+    let (exists, [_, psi]) = match task.home_orientation_inverse() {
+        None => from_identity(s, xi, sign),
+        Some(inverse) => from_orientation(s, &inverse.transpose(), xi, sign),
+    };
+    exists.holds(REACH_TOLERANCE).then_some(psi)
+}
+
 /// The displacement by one unit along the screw of a slider: a translation of a plane, or of space.
 #[inline(always)]
-fn slid(kind: SubspaceKind, s: LocalTwist) -> Displacement {
+fn slid<T: Over<f64>>(kind: SubspaceKind, s: &LocalTwist) -> Displacement<T> {
     match kind {
-        SubspaceKind::Planar => {
-            let (rotation, translation) = (Complex::new(1.0, 0.0), linear(&s));
-            Displacement::Planar(PlanarDisplacement { rotation, translation })
+        SubspaceKind::Planar => Displacement::Planar(PlanarDisplacement {
+            rotation: T::Plane::from_constant(Complex::ONE),
+            translation: T::Plane::from_constant(linear(s)),
+        }),
+        _ => {
+            let [x, y, z] = [s.x, s.y, s.z].map(T::constant);
+            Displacement::Spatial(T::Space::new(x, y, z))
         }
-        _ => kind.exponential(&s),
     }
 }
 
-/// One of the lengths among the coordinates of a displacement that has a slider, from home.
+/// The lengths among the coordinates of a displacement that has a slider, from home.
 #[inline(always)]
-fn length_of(g: &Displacement, number: usize) -> f64 {
+fn lengths<T: Real>(g: &Displacement<T>) -> [T; 3] {
     match g {
-        Displacement::Planar(g) if number == 0 => g.translation.re,
-        Displacement::Planar(g) => g.translation.im,
-        other => other.spatial()[number],
+        Displacement::Planar(g) => [g.translation.re(), g.translation.im(), T::constant(0.0)],
+        other => other.spatial().parts(),
+    }
+}
+
+/// The angle of a rotation about the third direction.
+#[inline(always)]
+fn about_third<T: Real>(r: T::Rotation) -> T {
+    let [[x, ..], [y, ..], _] = r.rows();
+    T::Plane::new(x, y).argument()
+}
+
+/// Three angles of the task's kind for Euler angles.
+#[inline(always)]
+fn of_euler<T: Real>(task: &Task, [zeta, xi, psi]: [T; 3]) -> [T; 3] {
+    match task.angles {
+        OrientationCoordinates::EulerAngles => [zeta, xi, psi],
+        OrientationCoordinates::TiltTorsion => [zeta, xi, zeta + psi],
     }
 }
 
 /// The coordinates of a displacement of a section that has all coordinates of its subspace. A rotation about a
 /// centre is one about the third direction.
 #[inline(always)]
-fn of_displacement(g: &Displacement, home: impl Fn(usize) -> f64) -> [f64; 3] {
-    match g {
-        Displacement::Identity(_) => [0.0; 3],
-        Displacement::Planar(g) => {
-            let angle = atan2(g.rotation.im, g.rotation.re);
-            [home(0) + g.translation.re, home(1) + g.translation.im, home(2) + angle]
-        }
-        Displacement::Spherical(r) => [home(0) + atan2(r[(1, 0)], r[(0, 0)]), home(1), home(2)],
-        Displacement::Cylindrical(g) => [home(0) + g.angle, home(1) + g.advance, 0.0],
-        Displacement::Translational(t) => [home(0) + t.re, home(1) + t.im, 0.0],
-        Displacement::Spatial(t) => [home(0) + t.x, home(1) + t.y, home(2) + t.z],
-    }
+fn of_displacement<T: Real>(g: &Displacement<T>, home: impl Fn(usize) -> f64) -> [T; 3] {
+    let none = T::constant(0.0);
+    let [x, y, z] = match *g {
+        Displacement::Planar(g) => [g.translation.re(), g.translation.im(), g.rotation.argument()],
+        Displacement::Spherical(r) => [about_third::<T>(r), none, none],
+        ref other => other.sums(),
+    };
+    [x + home(0), y + home(1), z + home(2)]
 }
 
-/// The Euler angles of the platform after the rotation about `s` from home whose second angle is `xi`.
-fn angles(task: &Task, s: &LocalTwist, xi: f64, sign: f64) -> Result<[f64; 3], ReachDeficit> {
-    match task.home_orientation_inverse() {
-        None => from_identity(s, xi, sign),
-        Some(inverse) => from_orientation(s, &inverse.transpose(), xi, sign),
+/// The first and the last Euler angle of the rotation about `s` from the identity whose second angle is `xi`, and what
+/// decides whether there is one. They are continuous through `xi = 0`, where the half angles keep their directions.
+#[inline(always)]
+fn from_identity<T: Over<f64>>(s: &LocalTwist, xi: T, sign: T::Sign) -> (Closes<T>, [T; 2]) {
+    let reduced = xi.reduced();
+    let half = Over::per((reduced * 0.5).unit().im(), s.x.hypot(s.y));
+    let exists = Closes::Within(half, [-1.0, 1.0]);
+    if (reduced + PI).side().is_none() || (-reduced + PI).side().is_none() {
+        // The sine of half the angle changes its sign at half a revolution.
+        return (exists, [xi.any_angle(); 2]);
     }
-}
-
-/// The Euler angles of the rotation about `s` from the identity whose second angle is `xi`. They are continuous
-/// through `xi = 0`, where the half angles keep their directions.
-fn from_identity(s: &LocalTwist, xi: f64, sign: f64) -> Result<[f64; 3], ReachDeficit> {
-    let rho = s.x.hypot(s.y);
-    let reduced = near(xi, 0.0);
-    let half = (0.5 * reduced).sin() / rho;
-    if half.abs() > 1.0 + REACH_TOLERANCE {
-        return Err(ReachDeficit::angle(reduced.abs() - 2.0 * rho.min(1.0).asin()));
-    }
-    let sin = half.clamp(-1.0, 1.0);
+    let sin = half.at_most_one();
     // A rotation by half a turn about a level axis is where the tilt is half a turn, too. The directions are those of
     // its limit.
-    let cos = ((1.0 - sin) * (1.0 + sin)).sqrt().max(LEAST);
+    let cos = ((-sin + 1.0) * (sin + 1.0)).root().larger(T::constant(LEAST));
     // The rotation is by ±q, with these the sine and the cosine of q/2. Its third column and its third row,
     // over 2 sin(q/2), are regular.
-    let sin = sign * sin;
-    let column = [s.x * s.z * sin + s.y * cos, s.y * s.z * sin - s.x * cos];
-    let row = [s.x * s.z * sin - s.y * cos, s.y * s.z * sin + s.x * cos];
-    Ok([atan2(sign * column[1], sign * column[0]), xi, atan2(sign * row[1], -sign * row[0])])
+    let sin = sin * sign;
+    let (x, y) = (sin * (s.x * s.z), sin * (s.y * s.z));
+    let column = [x + cos * s.y, y - cos * s.x];
+    let row = [-x + cos * s.y, y + cos * s.x];
+    (exists, [column, row].map(|[re, im]| T::Plane::new(re * sign, im * sign).argument()))
 }
 
-/// The Euler angles of the rotation about `s` of the orientation `home` whose second angle is `xi`.
-fn from_orientation(
+/// The same for the rotation about `s` of the orientation `home`.
+#[inline(always)]
+fn from_orientation<T: Over<f64>>(
     s: &LocalTwist,
     home: &Matrix3<f64>,
-    xi: f64,
-    sign: f64,
-) -> Result<[f64; 3], ReachDeficit> {
+    xi: T,
+    sign: T::Sign,
+) -> (Closes<T>, [T; 2]) {
     let third = home.column(2).into_owned();
     // cos ξ = c₀ + c₁ cos q + c₂ sin q
     let c0 = s.z * s.dot(&third);
     let z = Complex::new(third.z - c0, s.x * third.y - s.y * third.x);
     let amplitude = z.norm();
-    let part = xi.cos() - c0;
-    if part.abs() > amplitude + REACH_TOLERANCE {
-        let nearest = (c0 + amplitude.copysign(part)).clamp(-1.0, 1.0).acos();
-        return Err(ReachDeficit::angle((near(xi, 0.0).abs() - nearest).abs()));
-    }
-    let upper = if near(xi, 0.0) < 0.0 { -1.0 } else { 1.0 };
-    let height = ((amplitude - part) * (amplitude + part)).max(0.0).sqrt();
-    let turn = z * Complex::new(part, sign * upper * height);
-    let r = rotation_about(s, turn / turn.norm()) * home;
-    Ok([
-        atan2(upper * r[(1, 2)], upper * r[(0, 2)]),
-        xi,
-        atan2(upper * r[(2, 1)], -upper * r[(2, 0)]),
-    ])
+    let part = xi.unit().re() - c0;
+    let exists = Closes::Within(part, [-amplitude, amplitude]);
+    let reduced = xi.reduced();
+    let (Some(upper), Some(_), Some(_)) =
+        (reduced.side(), (reduced + PI).side(), (-reduced + PI).side())
+    else {
+        // The axis is on both sides of a pole, where these angles jump.
+        return (exists, [xi.any_angle(); 2]);
+    };
+    let height = ((-part + amplitude) * (part + amplitude)).root() * sign * upper;
+    let turn = T::Plane::new(part, height) * (z / (amplitude * amplitude));
+    let [[_, _, x], [_, _, y], [u, v, _]] = rotation_about::<T>(s, turn).after(*home).rows();
+    (exists, [[x, y], [-u, v]].map(|[re, im]| T::Plane::new(re * upper, im * upper).argument()))
+}
+
+/// The rotation about an axis by the angle of a unit vector: s sᵀ + cos (1 - s sᵀ) + sin [s].
+#[inline(always)]
+fn rotation_about<T: Over<f64>>(s: &LocalTwist, turn: T::Plane) -> T::Rotation {
+    let across = s.cross_matrix();
+    let entry = |i: usize, j: usize| {
+        let along = s[i] * s[j];
+        turn.re() * (f64::from(i == j) - along) + turn.im() * across[(i, j)] + along
+    };
+    T::Rotation::from_rows([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))))
 }
 
 #[cfg(test)]
@@ -441,15 +531,15 @@ mod tests {
             let s = s.normalize();
             for sign in [-1.0, 1.0] {
                 let xi = share * 2.0 * s.x.hypot(s.y).asin();
-                let [zeta, xi, psi] = from_identity(&s, xi, sign).unwrap();
+                let (_, [zeta, psi]) = from_identity(&s, xi, sign);
                 prop_assert!(keeps(&euler(zeta, xi, psi), &s) < ROUNDING);
 
                 let home = euler(turn, tilt, roll);
-                let r = rotation_about(&s, unit(2.0 * share)) * home;
+                let r = rotation_about::<f64>(&s, (2.0 * share).unit()) * home;
                 let xi = r[(2, 2)].acos();
                 prop_assume!(xi.sin() > 1e-3);
                 for xi in [xi, -xi] {
-                    let [zeta, xi, psi] = from_orientation(&s, &home, xi, sign).unwrap();
+                    let (_, [zeta, psi]) = from_orientation(&s, &home, xi, sign);
                     let found = euler(zeta, xi, psi) * home.transpose();
                     prop_assert!(keeps(&found, &s) < 1e3 * ROUNDING, "{}", keeps(&found, &s));
                 }
