@@ -26,6 +26,7 @@ pub mod equation;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
 pub mod joint;
+pub mod kernel;
 pub mod limits;
 // Public for the sibling crates of the workspace only.
 #[doc(hidden)]
