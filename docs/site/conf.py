@@ -3,6 +3,7 @@ source folder, so that their links to each other mean the same on the site as in
 
 import __future__
 
+import importlib
 import os
 import re
 import sys
@@ -25,18 +26,26 @@ version = release = PACKAGE["version"]
 copyright = author
 
 
-def _module_from_its_stub():
-    """The docstrings of the compiled module stand in its stub as well, and a test holds both equal: nothing is compiled."""
+def _module_from_its_stub(compiled):
+    """The members of the compiled module in the order of its stub, with its signatures; the compiled module, which is
+    installed, has the docstrings."""
     path = REPOSITORY / "py/python/opm_kinematics/_native.pyi"
     module = type(sys)("opm_kinematics._native")
-    module.__version__ = PACKAGE["version"]
     flags = __future__.annotations.compiler_flag
     exec(compile(path.read_text(encoding="utf-8"), str(path), "exec", flags=flags), module.__dict__)
+    module.__version__ = compiled.__version__
+    for name in module.__all__:
+        described, real = getattr(module, name), getattr(compiled, name)
+        if name == "__version__":
+            continue
+        described.__doc__ = real.__doc__
+        for member, thing in vars(described).items() if isinstance(described, type) else ():
+            if not member.startswith("__"):
+                getattr(thing, "__func__", thing).__doc__ = getattr(real, member).__doc__
     return module
 
 
-sys.path.insert(0, str(REPOSITORY / "py/python"))
-sys.modules["opm_kinematics._native"] = _module_from_its_stub()
+sys.modules["opm_kinematics._native"] = _module_from_its_stub(importlib.import_module("opm_kinematics._native"))
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc"]
 root_doc = "docs/index"

@@ -12,9 +12,11 @@ import opm_kinematics
 import pytest
 from opm_kinematics import _native
 
+STUB = Path(opm_kinematics.__file__).with_name("_native.pyi")
+
 
 def test_every_export_is_in_the_stubs():
-    stub = ast.parse(Path(opm_kinematics.__file__).with_name("_native.pyi").read_text())
+    stub = ast.parse(STUB.read_text())
     named = {node.name for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
     named |= {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)}
     exported = {name for name in dir(_native) if not name.startswith("_")} | {"__version__"}
@@ -56,8 +58,6 @@ def test_the_stubs_are_those_of_the_module():
 
 
 MODULES = [importlib.import_module(f"opm_kinematics{name}") for name in ("", "._native", ".design", ".examples", ".plot")]
-#: What Python itself describes.
-PYTHONS = re.compile(r"__\w+__$")
 
 
 def members():
@@ -103,28 +103,16 @@ def test_every_argument_is_under_parameters():
 
 @pytest.mark.parametrize("of", ["Assembly", "Motion", "Singularity", "Solid", "Solutions", "Trajectory"])
 def test_every_array_tells_its_shape_and_unit(of):
-    stub = ast.parse(Path(opm_kinematics.__file__).with_name("_native.pyi").read_text())
+    stub = ast.parse(STUB.read_text())
     body = next(node.body for node in stub.body if isinstance(node, ast.ClassDef) and node.name == of)
     arrays = [f for f in body if isinstance(f, ast.FunctionDef) and ast.unparse(f.returns or f).startswith("NDArray[np.float64]") and not f.args.args[1:]]
     for f in (f for f in arrays if not f.name.startswith("_")):
-        doc = ast.get_docstring(f)
+        doc = inspect.getdoc(getattr(getattr(_native, of), f.name))
         assert re.match(r"\([\w, ]+\)", doc), f.name
         assert re.search(r"metres|radians|seconds|no unit|rad/s|m/s", doc), f.name
 
 
-def test_the_docstrings_of_the_stub_are_those_of_the_module():
-    stub = ast.parse(Path(opm_kinematics.__file__).with_name("_native.pyi").read_text())
-    for node in stub.body:
-        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
-            thing = getattr(_native, node.name)
-            pairs = [(node.name, node, thing)]
-            if isinstance(node, ast.ClassDef):
-                pairs += [(f"{node.name}.{f.name}", f, getattr(thing, f.name)) for f in node.body if isinstance(f, ast.FunctionDef)]
-            for name, described, real in pairs:
-                if not PYTHONS.match(name.rpartition(".")[2]):
-                    assert (ast.get_docstring(described) or "") == (_own(real) or ""), name
-
-
-def _own(thing):
-    doc = getattr(thing, "__doc__", None)
-    return inspect.cleandoc(doc) if doc else None
+def test_the_stub_leaves_docstrings_to_the_module():
+    described = [node for node in ast.walk(ast.parse(STUB.read_text())) if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
+    assert len(described) > 400
+    assert [node.name for node in described if ast.get_docstring(node)] == []

@@ -23,6 +23,7 @@ mod locate;
 mod measure;
 mod one_subspace;
 mod paper;
+mod paths;
 mod rejections;
 mod rows;
 mod shards;

@@ -18,7 +18,7 @@
 use crate::source::Source;
 use opm_core::Quantity;
 use opm_core::mechanism::file::hint::expected_one_of;
-use opm_core::mechanism::file::{AngleUnit, FileUnits, LengthUnit, Problem};
+use opm_core::mechanism::file::{FileUnits, Problem, optional_units};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use toml::Spanned;
@@ -150,9 +150,9 @@ impl Reader<'_> {
 
     fn file(&mut self, table: &DeTable<'_>, sources: &[Source], read: &mut Tolerances) {
         // Units first, wherever they stand.
-        if let Some(units) = table.get("units") {
-            self.units(units);
-        }
+        let (units, problems) = optional_units(table, self.text);
+        self.units = units;
+        self.problems.extend(problems);
         for (key, value) in table {
             let name: &str = key.get_ref();
             match name {
@@ -205,32 +205,6 @@ impl Reader<'_> {
             self.report(value.span().start, format!("`{name}` is not a table"));
         }
         table
-    }
-
-    fn units(&mut self, value: &Entry<'_>) {
-        for (key, value) in self.table("units", value).into_iter().flatten() {
-            let name: &str = key.get_ref();
-            if !self.is_known(key.span().start, "a quantity", name, &["length", "angle"]) {
-                continue;
-            }
-            let symbol = value.get_ref().as_str().unwrap_or_default();
-            let known = match name {
-                "length" => {
-                    let unit = LengthUnit::from_symbol(symbol);
-                    self.units.length = unit.unwrap_or_default();
-                    unit.is_none().then(|| LengthUnit::ALL.map(LengthUnit::symbol).to_vec())
-                }
-                _ => {
-                    let unit = AngleUnit::from_symbol(symbol);
-                    self.units.angle = unit.unwrap_or_default();
-                    unit.is_none().then(|| AngleUnit::ALL.map(AngleUnit::symbol).to_vec())
-                }
-            };
-            if let Some(known) = known {
-                let expected = expected_one_of(symbol, &known);
-                self.report(value.span().start, format!("`{name}` is not a unit; {expected}"));
-            }
-        }
     }
 
     fn both(&mut self, joint: &str, value: &Entry<'_>) -> Both {

@@ -26,13 +26,14 @@ use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::file::hint::expected_one_of;
-use opm_core::mechanism::file::{self, AngleUnit, FileUnits, LengthUnit, MechanismFile};
+use opm_core::mechanism::file::{self, FileUnits, MechanismFile};
 use opm_workspace::{Axis, Grid, InscribedShape, Sections};
-use serde::de::Error as _;
+use serde::de::{Error as _, IgnoredAny};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use toml::Spanned;
+use toml::de::DeTable;
 
 /// The version of the format.
 const FORMAT: u32 = 1;
@@ -78,7 +79,9 @@ struct Text {
     #[serde(default)]
     split: bool,
     values: Option<Spanned<Whole>>,
-    units: Option<Units>,
+    /// Read by `optional_units`, which knows the place of each part.
+    #[expect(dead_code, reason = "only whether the key is known matters")]
+    units: Option<IgnoredAny>,
     #[serde(default)]
     set: BTreeMap<Spanned<String>, SetText>,
     grid: Spanned<BTreeMap<Spanned<String>, AxisText>>,
@@ -105,13 +108,6 @@ impl<'de> Deserialize<'de> for Whole {
             D::Error::custom(format!("{value}, expected a whole number of 0 or more"))
         })
     }
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Units {
-    length: Option<Spanned<String>>,
-    angle: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -213,7 +209,11 @@ impl Reader<'_> {
             let problem = format!("`format` is {}, expected {FORMAT}", text.format.get_ref());
             self.report(text.format.span().start, problem);
         }
-        self.units(text.units.as_ref());
+        if let Ok(table) = DeTable::parse(self.text) {
+            let (units, problems) = file::optional_units(table.get_ref(), self.text);
+            self.units = units;
+            self.problems.extend(problems);
+        }
         let file = self.set(&text.set, file)?;
         let manipulator = match Manipulator::new(file.mechanism.clone()) {
             Ok(manipulator) => manipulator,
@@ -258,30 +258,6 @@ impl Reader<'_> {
             values,
         };
         Some((problem, file))
-    }
-
-    fn units(&mut self, units: Option<&Units>) {
-        let Some(units) = units else { return };
-        if let Some(length) = &units.length {
-            match LengthUnit::from_symbol(length.get_ref()) {
-                Some(unit) => self.units.length = unit,
-                None => {
-                    let known = LengthUnit::ALL.map(LengthUnit::symbol);
-                    let expected = expected_one_of(length.get_ref(), &known);
-                    self.report(length.span().start, format!("`length` is not a unit; {expected}"));
-                }
-            }
-        }
-        if let Some(angle) = &units.angle {
-            match AngleUnit::from_symbol(angle.get_ref()) {
-                Some(unit) => self.units.angle = unit,
-                None => {
-                    let known = AngleUnit::ALL.map(AngleUnit::symbol);
-                    let expected = expected_one_of(angle.get_ref(), &known);
-                    self.report(angle.span().start, format!("`angle` is not a unit; {expected}"));
-                }
-            }
-        }
     }
 
     /// The quantity of a number of a mechanism file; an unknown name is reported.

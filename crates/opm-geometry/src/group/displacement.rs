@@ -92,27 +92,32 @@ macro_rules! of_displacement {
 
 impl SubspaceKind {
     /// The dimension of the subspace: its number of degrees of freedom.
+    #[inline]
     pub fn dimension(self) -> usize {
         of_kind!(self, G => G::DIMENSION)
     }
 
     /// Whether displacements of the subspace commute. Their logarithms then add up.
+    #[inline]
     pub fn commutes(self) -> bool {
         of_kind!(self, G => G::COMMUTES)
     }
 
     /// The identity displacement.
+    #[inline]
     pub fn identity(self) -> Displacement {
         of_kind!(self, G => G::IDENTITY.into())
     }
 
     /// The exponential: the displacement after moving with a constant twist for unit time. The table in
     /// the docs of [`group`](crate::group) says what the three components of the twist are.
+    #[inline]
     pub fn exponential(self, twist: &Vector3<f64>) -> Displacement {
         of_kind!(self, G => G::exponential(twist).into())
     }
 
     /// A displacement that agrees with the exponential to first order.
+    #[inline]
     pub fn first_order(self, twist: &LocalTwist) -> Displacement {
         of_kind!(self, G => G::first_order(twist).into())
     }
@@ -130,17 +135,20 @@ impl SubspaceKind {
     }
 
     /// Whether a twist of the subspace is a translation. The zero twist is not.
+    #[inline]
     pub fn is_translation(self, twist: &LocalTwist) -> bool {
         *twist != LocalTwist::zeros() && of_kind!(self, G => G::is_translation(twist))
     }
 
     /// The displacement with a given sum of logarithms, in a subspace whose displacements commute: the
     /// inverse of [`Displacement::sum`].
+    #[inline]
     pub fn of_sum(self, sum: &LocalTwist) -> Displacement {
         self.exponential(sum)
     }
 
     /// The units of the components of a logarithm: one radian for an angle, `size` (metres) for a length.
+    #[inline]
     pub fn sum_units(self, size: f64) -> LocalTwist {
         let unit = |twist: LocalTwist| if self.is_translation(&twist) { size } else { 1.0 };
         LocalTwist::new(unit(LocalTwist::x()), unit(LocalTwist::y()), unit(LocalTwist::z()))
@@ -159,6 +167,7 @@ impl Displacement {
     /// # Panics
     /// If the two displacements belong to different kinds of subspace.
     #[must_use]
+    #[inline]
     pub fn after(&self, other: &Self) -> Self {
         match self {
             Self::Identity(g) => Identity::product(g, other.identity()).into(),
@@ -172,12 +181,14 @@ impl Displacement {
 
     /// The inverse displacement.
     #[must_use]
+    #[inline]
     pub fn inverse(&self) -> Self {
         of_displacement!(self, G, g => G::inverse(g).into())
     }
 
     /// The shortest twist whose exponential is this displacement. Its angle is at most π, except about the
     /// axis of a cylinder, where full revolutions count.
+    #[inline]
     pub fn logarithm(&self) -> Vector3<f64> {
         of_displacement!(self, G, g => G::logarithm(g))
     }
@@ -187,6 +198,7 @@ impl Displacement {
     ///
     /// # Panics
     /// If displacements of this kind do not commute.
+    #[inline]
     pub fn sum(&self) -> LocalTwist {
         match self {
             Self::Identity(_)
@@ -222,6 +234,7 @@ impl Displacement {
 
     /// The largest component that can grow without bound, in radians or metres; zero for a rotation about
     /// a centre.
+    #[inline]
     pub fn size(&self) -> f64 {
         of_displacement!(self, G, g => G::size(g))
     }
@@ -265,6 +278,7 @@ impl<T: Real> Displacement<T> {
     }
 
     /// The kind of subspace that the displacement belongs to.
+    #[inline]
     pub fn kind(&self) -> SubspaceKind {
         of_displacement!(self, G, _g => G::KIND)
     }

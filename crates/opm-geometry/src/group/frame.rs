@@ -41,31 +41,37 @@ pub struct Subspace {
 impl Subspace {
     /// The centre at home, along the frame's directions and relative to the point that lengths are
     /// measured from.
+    #[inline]
     pub fn home(&self) -> Vector3<f64> {
         self.axes.tr_mul(&(self.origin - self.measured_from))
     }
 
     /// The dimension of the subspace: its number of degrees of freedom.
+    #[inline]
     pub fn dimension(&self) -> usize {
         self.kind.dimension()
     }
 
     /// Converts a direction from base coordinates to this frame.
+    #[inline]
     pub fn direction(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.axes.tr_mul(direction)
     }
 
     /// Converts a point from base coordinates to this frame.
+    #[inline]
     pub fn point(&self, point: &Point3<f64>) -> Vector3<f64> {
         self.axes.tr_mul(&(point - self.origin))
     }
 
     /// Converts a point from this frame to base coordinates.
+    #[inline]
     pub fn restored(&self, point: &Vector3<f64>) -> Point3<f64> {
         self.origin + self.axes * point
     }
 
     /// Converts a displacement of this subspace to base coordinates.
+    #[inline]
     pub fn isometry(&self, displacement: &Displacement) -> Isometry3<f64> {
         let (rotation, translation) = displacement.rotation_and_translation();
         // In other directions, a rotation is about the same axis by the same angle.
@@ -79,6 +85,7 @@ impl Subspace {
 
     /// Converts a twist of this subspace to base directions: the angular velocity, and the velocity of the
     /// point at this frame's origin.
+    #[inline]
     pub fn embedded(&self, twist: &LocalTwist) -> [Vector3<f64>; 2] {
         self.kind.embed(twist).map(|part| self.axes * part)
     }

@@ -126,11 +126,13 @@ impl IntersectionMotion {
     }
 
     /// The kind of subspace in whose frame the motion is given.
+    #[inline]
     pub fn kind(&self) -> SubspaceKind {
         of_motion!(self, G, _m => G::KIND, kind => *kind)
     }
 
     /// What the motion is; `None` for no motion.
+    #[inline]
     pub fn motion_type(&self) -> Option<MotionType> {
         match self {
             Self::None(_) => None,
@@ -146,6 +148,7 @@ impl IntersectionMotion {
     }
 
     /// Whether the motion is a rotation.
+    #[inline]
     pub fn is_rotation(&self) -> bool {
         self.motion_type() == Some(MotionType::Rotation)
     }
@@ -159,12 +162,14 @@ impl IntersectionMotion {
 
     /// What a unit of the motion adds to the logarithm of a displacement, in a subspace whose displacements
     /// commute.
+    #[inline]
     pub fn sum(&self) -> LocalTwist {
         self.unit_twist()
     }
 
     /// The twist whose scalar product with another one is the rate of the motion in it; the rest is in the span of
     /// [`IntersectionMotion::complement`]. Zero for no motion.
+    #[inline]
     pub fn reciprocal(&self) -> LocalTwist {
         let unit = self.unit_twist();
         match self {
@@ -199,6 +204,7 @@ impl IntersectionMotion {
     }
 
     /// The displacement `exp(I τ)`.
+    #[inline]
     pub fn displacement(&self, tau: JointDisplacement) -> Displacement {
         self.before(&self.kind().identity(), tau)
     }

@@ -33,29 +33,34 @@ pub struct Screw {
 
 impl Screw {
     /// The screw of a unit rotation about the line through `point` along `axis`: `(a; p × a)`.
+    #[inline]
     pub fn rotation(axis: Unit<Vector3<f64>>, point: Point3<f64>) -> Self {
         Self::helical(axis, point, 0.0)
     }
 
     /// The screw of a unit translation along `axis`: `(0; a)`.
+    #[inline]
     pub fn translation(axis: Unit<Vector3<f64>>) -> Self {
         Self { angular: Vector3::zeros(), linear: axis.into_inner() }
     }
 
     /// The screw of a unit rotation about a line with an advance of `pitch` metres per radian:
     /// `(a; p × a + h a)`.
+    #[inline]
     pub fn helical(axis: Unit<Vector3<f64>>, point: Point3<f64>, pitch: f64) -> Self {
         let a = axis.into_inner();
         Self { angular: a, linear: point.coords.cross(&a) + pitch * a }
     }
 
     /// The six components `(ω; v)`, angular part first.
+    #[inline]
     pub fn to_vector(self) -> Vector6<f64> {
         let (w, v) = (self.angular, self.linear);
         Vector6::new(w.x, w.y, w.z, v.x, v.y, v.z)
     }
 
     /// Builds a screw from its six components `(ω; v)`, angular part first.
+    #[inline]
     pub fn from_vector(s: &Vector6<f64>) -> Self {
         Self {
             angular: s.fixed_rows::<3>(0).into_owned(),
@@ -65,6 +70,7 @@ impl Screw {
 
     /// The Lie bracket `[self, other] = (ω₁ × ω₂; ω₁ × v₂ + v₁ × ω₂)`: the rate of change of `other`
     /// when it moves with `self`.
+    #[inline]
     pub fn bracket(&self, other: &Self) -> Self {
         Self {
             angular: self.angular.cross(&other.angular),
@@ -74,11 +80,13 @@ impl Screw {
 
     /// The reciprocal product `ω₁·v₂ + v₁·ω₂`: the power of one screw, as a wrench, on the other, as a
     /// twist.
+    #[inline]
     pub fn reciprocal(&self, other: &Self) -> f64 {
         self.angular.dot(&other.linear) + self.linear.dot(&other.angular)
     }
 
     /// The screw displaced by `g`, that is, the adjoint action of `g`.
+    #[inline]
     pub fn transformed(&self, g: &Isometry3<f64>) -> Self {
         let angular = g.rotation * self.angular;
         let linear = g.rotation * self.linear + g.translation.vector.cross(&angular);
@@ -87,6 +95,7 @@ impl Screw {
 
     /// The displacement `exp(self · coordinate)`: motion along the screw by a value of its joint
     /// coordinate, in radians or metres.
+    #[inline]
     pub fn exp(&self, coordinate: f64) -> Isometry3<f64> {
         let (angular, linear) = (self.angular * coordinate, self.linear * coordinate);
         let angle = angular.norm();

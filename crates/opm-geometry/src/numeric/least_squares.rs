@@ -21,6 +21,7 @@ pub struct LeastSquares {
 
 impl LeastSquares {
     /// A buffer for matrices of this size.
+    #[inline]
     pub fn new(rows: usize, columns: usize) -> Self {
         let entries = vec![0.0; rows * columns];
         let (upper, inverse, order) = ([[0.0; MOST]; MOST], [0.0; MOST], [0; MOST]);

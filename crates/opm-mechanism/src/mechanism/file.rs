@@ -104,7 +104,7 @@ pub(super) use {
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub use {
-    read::{document, head},
+    read::{document, head, optional_units},
     reader::{Table, Value, all},
 };
 

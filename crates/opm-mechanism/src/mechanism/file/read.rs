@@ -93,19 +93,36 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     Some((MechanismFile { mechanism, units, mode, family, places }, noted))
 }
 
+/// The keys of `units`.
+const UNITS_KEYS: &[&str] = &["length", "angle"];
+
 /// Reads the file's units. Units that are not understood become SI, so that the rest can be
 /// checked.
 fn read_units(root: &Table<'_>) -> FileUnits {
     let expected = "units = { length = \"mm\", angle = \"deg\" }, for instance";
-    let units = root.require("units", expected).and_then(|value| value.table(&["length", "angle"]));
+    let units = root.require("units", expected).and_then(|value| value.table(UNITS_KEYS));
+    let Some(units) = units else { return FileUnits::SI };
+    units.require("length", "the unit of lengths");
+    units.require("angle", "the unit of angles");
+    named_units(&units)
+}
+
+/// Reads the units of a file of another kind, which may leave them out, as a whole or in part: they are SI then. Also
+/// gives the problems that they have.
+pub fn optional_units(root: &DeTable<'_>, text: &str) -> (FileUnits, Vec<Problem>) {
+    let reader = Reader::new();
+    let units = Table::new(root, 0, &reader).get("units");
+    let units = units.and_then(|value| value.table(UNITS_KEYS)).map(|units| named_units(&units));
+    let problems = reader.into_errors(text).map_or_else(Vec::new, |errors| errors.problems);
+    (units.unwrap_or_default(), problems)
+}
+
+/// The units that a table names; SI for what it does not name.
+fn named_units(units: &Table<'_>) -> FileUnits {
     let lengths = LengthUnit::ALL.map(|unit| (unit.symbol(), unit));
     let angles = AngleUnit::ALL.map(|unit| (unit.symbol(), unit));
-    let length = units
-        .and_then(|units| units.require("length", "the unit of lengths"))
-        .and_then(|value| value.word(&lengths));
-    let angle = units
-        .and_then(|units| units.require("angle", "the unit of angles"))
-        .and_then(|value| value.word(&angles));
+    let length = units.get("length").and_then(|value| value.word(&lengths));
+    let angle = units.get("angle").and_then(|value| value.word(&angles));
     FileUnits { length: length.unwrap_or_default(), angle: angle.unwrap_or_default() }
 }
 
