@@ -307,6 +307,12 @@ pub trait Truth: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Outpu
     const YES: Self;
     /// What never does.
     const NO: Self;
+    /// The same. What a closed form computes from here on is of use only where this holds: source code returns otherwise.
+    #[must_use]
+    #[inline(always)]
+    fn checked(self) -> Self {
+        self
+    }
 }
 
 /// A number of the target, which can be combined with those of the mechanism.

@@ -7,6 +7,7 @@ use super::share::Share;
 use super::target::{Enclosed, Rotation, Target, dot};
 use crate::chain::spherical::{Ball, SphericalChain};
 use crate::chain::{Branch, Chain, ClosedForm, Closes, REACH_TOLERANCE};
+use crate::numbers::Tolerance;
 use nalgebra::{Complex, Vector3};
 
 /// The end of a range without an end.
@@ -17,7 +18,9 @@ pub fn share<const N: usize>(closes: &Closes<Affine<N>>, tolerance: f64) -> Shar
     match closes {
         Closes::Always => Share::ALL,
         Closes::Within(number, range) => Share::within(number, *range, tolerance),
-        Closes::Outside(number, range) => Share::outside(number, *range),
+        Closes::Exceeds(number, Tolerance { share, .. }) => {
+            Share::outside(number, [-share, *share])
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Branch, ReachDeficit};
 use crate::group::JointDisplacement;
-use crate::numbers::{Joint, Real, Truth};
+use crate::numbers::{Joint, Real, Tolerance, Truth};
 use crate::numeric::Quantity;
 
 /// The result of a closed form's general case, which does not test what kind of target it has.
@@ -71,8 +71,8 @@ pub enum Closes<T> {
     Always,
     /// A number is in a range.
     Within(T, [f64; 2]),
-    /// A number is outside of a range.
-    Outside(T, [f64; 2]),
+    /// A number is further from zero than a tolerance.
+    Exceeds(T, Tolerance),
 }
 
 impl Closes<f64> {
@@ -84,7 +84,7 @@ impl Closes<f64> {
             Self::Within(number, [least, most]) => {
                 number >= least - tolerance && number <= most + tolerance
             }
-            Self::Outside(number, [least, most]) => number < least || number > most,
+            Self::Exceeds(number, tolerance) => number.abs() > tolerance.share,
         }
     }
 }

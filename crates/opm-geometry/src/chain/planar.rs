@@ -243,9 +243,8 @@ impl PlanarChain {
 
     fn is_regular(&self) -> bool {
         self.regular().into_iter().all(|condition| match condition {
-            Closes::Always => true,
             Closes::Within(number, [least, most]) => number > least && number < most,
-            Closes::Outside(number, [least, most]) => number < least || number > most,
+            Closes::Always | Closes::Exceeds(..) => condition.holds(0.0),
         })
     }
 

@@ -13,7 +13,9 @@ use crate::group::{
 use crate::manipulator::Manipulator;
 use crate::manipulator::leg::Section;
 use crate::mechanism::OrientationCoordinates;
-use crate::numbers::{Joint, Over, Plane, PlaneOver, Real, Rotation, RotationOver, Space};
+use crate::numbers::{
+    Joint, Over, Plane, PlaneOver, Real, Rotation, RotationOver, Space, Tolerance,
+};
 use crate::numeric::Quantity;
 use crate::numeric::angle::near;
 use crate::task::{Task, other_triple};
@@ -22,6 +24,14 @@ use std::f64::consts::PI;
 
 /// An axis whose angle with the third direction has a sine below this is along that direction.
 pub(crate) const ALONG: f64 = 1e-9;
+
+/// The same for a line and a coordinate that tells the place on it.
+const ALONG_LINE: Tolerance = Tolerance {
+    name: "ALONG",
+    meaning: "A coordinate that changes by less than this along a line does not tell the place on it.",
+    share: ALONG,
+    single: 1e-6,
+};
 
 /// Stands for a cosine of zero, whose products with the components of an axis have directions.
 const LEAST: f64 = 1e-150;
@@ -351,7 +361,7 @@ impl<T: Over<f64>> Line<T> {
         let rate = self.rates[self.given];
         let q = (at[self.given] - self.home - self.from_home).over(rate);
         let ([a, b, c], [x, y, z]) = (self.start, self.rates);
-        (Closes::Outside(rate, [-ALONG, ALONG]), [a + q * x, b + q * y, c + q * z])
+        (Closes::Exceeds(rate, ALONG_LINE), [a + q * x, b + q * y, c + q * z])
     }
 }
 

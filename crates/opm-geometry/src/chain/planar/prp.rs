@@ -3,9 +3,9 @@
 use super::{
     Attempt, ClosedForm, Closes, Exception, Joint, Over, Pivot, PlanarJoint, Plane, REACH, Truth,
 };
+use crate::chain::DEGENERATE;
 use crate::chain::region::{Region, parallelogram};
 use crate::chain::shape::Shape;
-use crate::chain::{DEGENERATE, REACH_TOLERANCE};
 use crate::group::PlanarDisplacement;
 use crate::numbers::PlaneOver;
 use nalgebra::Complex;
@@ -67,13 +67,11 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Prp<Z> {
     #[inline(always)]
     fn attempt(&self, target: &Self::Target, _: T::Sign) -> Attempt<T> {
         let [moved, first, second] = self.parts::<T>(target);
+        let holds = first.cross(second).exceeds(REACH).checked();
         let [s1, s3] = moved.along(first, second);
         let rotation = self.pivot.displacement::<T>(target.rotation);
-        Attempt {
-            displacements: [T::Joint::value(s1), rotation, T::Joint::value(s3)],
-            holds: first.cross(second).exceeds(REACH),
-            beyond: T::Truth::NO,
-        }
+        let displacements = [T::Joint::value(s1), rotation, T::Joint::value(s3)];
+        Attempt { displacements, holds, beyond: T::Truth::NO }
     }
 
     /// With the sliders parallel, only targets on one line are in reach, and the two displacements are known
@@ -92,6 +90,6 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Prp<Z> {
     /// Everywhere except where the sliders become parallel.
     fn closes(&self, target: &Self::Target) -> Closes<T> {
         let [_, first, second] = self.parts::<T>(target);
-        Closes::Outside(first.cross(second), [-REACH_TOLERANCE, REACH_TOLERANCE])
+        Closes::Exceeds(first.cross(second), REACH)
     }
 }

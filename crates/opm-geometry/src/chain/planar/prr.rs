@@ -3,7 +3,7 @@
 
 use super::{
     Attempt, Branch, ClosedForm, Closes, Exception, Joint, LinkLimits, Over, Pivot, PlanarJoint,
-    Plane, REACH, Real,
+    Plane, REACH, Real, Truth,
 };
 use crate::chain::REACH_TOLERANCE;
 use crate::chain::limits::Limits;
@@ -100,7 +100,8 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Prr<Z> {
         let local = self.local::<T>(target).named("local");
         // The square of the link's component along the slide.
         let square = (-local.im().square() + self.link_square).named("square");
-        let closes = square.at_least(T::from_constant(self.link_square).share(REACH, -2.0));
+        let least = T::from_constant(self.link_square).share(REACH, -2.0);
+        let closes = square.at_least(least).checked();
         let root = (square.root() * sign).named("root");
         // The link is turned from where it points at home to where it points from the slider.
         let r2 = (T::Plane::new(-root, local.im()) * (self.slide * self.link.conj())).named("r2");

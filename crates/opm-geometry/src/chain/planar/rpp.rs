@@ -1,11 +1,10 @@
 //! RPP: a pivot that carries two sliders. The pivot's rotation is that of the target.
 
 use super::{Attempt, ClosedForm, Closes, Joint, Over, Pivot, PlanarJoint, Plane, Truth};
-use crate::chain::DEGENERATE;
 use crate::chain::region::parallelogram;
 use crate::chain::shape::Shape;
 use crate::group::PlanarDisplacement;
-use crate::numbers::PlaneOver;
+use crate::numbers::{DEGENERATE, PlaneOver};
 use nalgebra::Complex;
 
 /// A pivot, then two sliders. A target has one solution.
@@ -27,7 +26,7 @@ impl<Z: Plane> Rpp<Z> {
 
     pub(super) fn regular(&self) -> [Closes<Z::Real>; 2] {
         let [d2, d3] = self.slides;
-        [Closes::Outside(d2.cross(d3), [-DEGENERATE, DEGENERATE]), Closes::Always]
+        [Closes::Exceeds(d2.cross(d3), DEGENERATE), Closes::Always]
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     Attempt, Branch, ClosedForm, Closes, Exception, Joint, Over, Pivot, PlanarJoint, Plane, REACH,
-    Real,
+    Real, Truth,
 };
 use crate::chain::REACH_TOLERANCE;
 use crate::chain::region::{Convex, Disc, Region};
@@ -74,6 +74,8 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rpr<Z> {
         let [ahead_at_home, aside] = [self.offset.re(), self.offset.im()];
         let aside_square = aside.square().named("aside_square");
         let square = (reach.norm_sqr() - aside_square).named("square");
+        let least = T::from_constant(aside_square).share(REACH, -2.0);
+        let closes = square.at_least(least).checked();
         let ahead = (square.root() * sign).named("ahead");
         let telescope = T::Plane::new(ahead, T::from_constant(aside)) * self.slide;
         let size = T::from_constant(self.offset.norm_sqr());
@@ -85,8 +87,7 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rpr<Z> {
             T::Joint::value(ahead - ahead_at_home),
             outer.displacement::<T>(r3),
         ];
-        let least = T::from_constant(aside_square).share(REACH, -2.0);
-        Attempt::decided(displacements, square.at_least(least))
+        Attempt::decided(displacements, closes)
     }
 
     #[cold]

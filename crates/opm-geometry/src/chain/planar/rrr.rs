@@ -1,10 +1,13 @@
 //! RRR: a two-link arm from a fixed pivot, with a wrist.
 
-use super::{Attempt, ClosedForm, Closes, Exception, Over, Pivot, PlanarJoint, Plane, REACH, Real};
+use super::{
+    Attempt, ClosedForm, Closes, Exception, Over, Pivot, PlanarJoint, Plane, REACH, Real, Truth,
+};
+use crate::chain::REACH_TOLERANCE;
 use crate::chain::region::{Convex, Disc, Region};
 use crate::chain::shape::Shape;
-use crate::chain::{DEGENERATE, REACH_TOLERANCE};
 use crate::group::PlanarDisplacement;
+use crate::numbers::DEGENERATE;
 use nalgebra::Complex;
 
 /// Two links between three pivots. The branch is `+` where the second link points counter-clockwise from
@@ -45,7 +48,8 @@ impl<Z: Plane> Rrr<Z> {
     pub(super) fn regular(&self) -> [Closes<Z::Real>; 2] {
         let [a, b] = [self.first, self.second].map(Plane::norm_sqr);
         let exceeds = |one: Z::Real, other: Z::Real| {
-            Closes::Within(one - other * (DEGENERATE * DEGENERATE), [0.0, f64::INFINITY])
+            let least = other.share(DEGENERATE, 1.0).share(DEGENERATE, 1.0);
+            Closes::Within(one - least, [0.0, f64::INFINITY])
         };
         [exceeds(a, b), exceeds(b, a)]
     }
@@ -92,7 +96,7 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rrr<Z> {
     fn attempt(&self, target: &Self::Target, sign: T::Sign) -> Attempt<T> {
         let reach = self.reach::<T>(target).named("reach");
         let cosine = self.elbow_cosine::<T>(reach).named("cosine");
-        let closes = cosine.within(1.0, REACH);
+        let closes = cosine.within(1.0, REACH).checked();
         let cosine = cosine.at_most_one().named("bend");
         let elbow = T::Plane::new(cosine, (-cosine.square() + 1.0).root() * sign);
         let r2 = (elbow * self.straighten).named("r2");
