@@ -19,7 +19,7 @@ use opm_accuracy::{Allocation, Assembler, Budget, Model, Samples};
 use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_study::{Drawing, characteristic_length};
 use opm_workspace::Cancelled;
-use report::{Found, Report};
+use report::{PoseAccuracy, Report};
 
 /// Mechanisms with drawn errors, assembled at a pose.
 fn sampled(
@@ -118,7 +118,7 @@ pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
             allocation
         });
         let samples = args.samples.map(|count| sampled(args, output, &setting, &at, count));
-        found = Some(Found { response, budget, allocation, samples: samples.transpose()? });
+        found = Some(PoseAccuracy { response, budget, allocation, samples: samples.transpose()? });
     }
     let report = Report { setting: &setting, at: &at, pose: &pose, found };
     output.print(&report.json(), report.text())

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose::Checks;
 use crate::pose_table::{self, Totals};
-use crate::stream::{self, MODE, Stop, Stream, Streams};
+use crate::stream::{self, MODE, Stream, StreamStop, Streams};
 use opm_core::manipulator::{ActuatedJoints, AllModes, Manipulator, Mode, PoseError, Solution};
 use opm_core::mechanism::file::FileUnits;
 use opm_mcap::csv;
@@ -48,7 +48,7 @@ fn solve(
     mut stream: Stream<'_>,
     (loaded, manipulator): (&Loaded, &Manipulator),
     wanted: RowContent,
-) -> Result<Totals, Stop> {
+) -> Result<Totals, StreamStop> {
     let start = Instant::now();
     let mut columns = pose_table::columns(&mut stream, (loaded, manipulator))?;
     let mut table = Rows::new((loaded, manipulator), wanted, columns.timed(), &mut stream.rows)?;
@@ -85,7 +85,7 @@ impl<'a> Rows<'a> {
         wanted: RowContent,
         timed: bool,
         writer: &mut csv::Rows<'_>,
-    ) -> Result<Self, Stop> {
+    ) -> Result<Self, StreamStop> {
         let coordinates = manipulator.coordinates();
         let joints = match wanted.all_joints {
             true => (0..coordinates.len()).collect(),
@@ -130,9 +130,9 @@ impl<'a> Rows<'a> {
         (pose, checks): (&[f64], Checks),
         writer: &mut csv::Rows<'_>,
         wrong: &dyn Fn(&dyn Display) -> Failure,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), StreamStop> {
         let (manipulator, time, joints) = (self.manipulator, self.time, &*self.joints);
-        let row = Row { manipulator, time, pose, joints };
+        let row = PoseRow { manipulator, time, pose, joints };
         let of_pose = |error: PoseError| wrong(&error);
         match self.wanted.modes {
             Modes::One(mode) => {
@@ -194,7 +194,7 @@ impl<'a> Rows<'a> {
 }
 
 /// What is written about a pose.
-struct Row<'a> {
+struct PoseRow<'a> {
     manipulator: &'a Manipulator,
     time: Option<f64>,
     pose: &'a [f64],
@@ -202,7 +202,7 @@ struct Row<'a> {
     joints: &'a [usize],
 }
 
-impl Row<'_> {
+impl PoseRow<'_> {
     /// Writes the row of a mode: the dependent coordinates if they are known, whether the pose is within limits, and, if it is
     /// in reach, the imaginary joints and the other ones.
     fn write(
@@ -211,7 +211,7 @@ impl Row<'_> {
         dependent: Option<&[f64]>,
         (within, mode): (bool, &str),
         joints: Option<[&[f64]; 2]>,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), StreamStop> {
         let manipulator = self.manipulator;
         let dependent = (dependent, manipulator.dependent_coordinates().len());
         let answers = [joints.is_some(), within];

@@ -96,7 +96,7 @@ impl Failure {
             Self::Interrupted(message) => (message, 130),
             Self::Closed => return 0,
         };
-        talk(Kind::Error, &message.text);
+        talk(MessageKind::Error, &message.text);
         code
     }
 }
@@ -125,7 +125,7 @@ impl Error for Failure {
 
 /// The kind of a line on standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum MessageKind {
     Note,
     Warning,
     Error,
@@ -133,11 +133,11 @@ pub enum Kind {
 
 /// Writes lines to standard error, each with the name of this program and its kind. An indented line goes on with the
 /// one before. Failures to write are ignored.
-pub fn talk(kind: Kind, message: &str) {
+pub fn talk(kind: MessageKind, message: &str) {
     let kind = match kind {
-        Kind::Note => "note",
-        Kind::Warning => "warning",
-        Kind::Error => "error",
+        MessageKind::Note => "note",
+        MessageKind::Warning => "warning",
+        MessageKind::Error => "error",
     };
     let mut stderr = io::stderr().lock();
     for line in opm_core::text::message(message).lines() {

@@ -36,7 +36,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             return poses::run(args, input, output, (&loaded, &manipulator));
         }
     };
-    let Found { actuated, found, only, method } =
+    let FoundAssemblies { actuated, found, only, method } =
         solve(args, given, output, (&loaded, &manipulator))?;
     for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
         let (c, limits) =
@@ -70,7 +70,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
 }
 
 /// The assemblies for one set of joints.
-struct Found {
+struct FoundAssemblies {
     actuated: Vec<f64>,
     found: Assemblies,
     only: Option<Mode>,
@@ -83,7 +83,7 @@ fn solve(
     given: &Pose,
     output: &Output,
     (loaded, manipulator): (&Loaded, &Manipulator),
-) -> Result<Found, Failure> {
+) -> Result<FoundAssemblies, Failure> {
     unitless::note_joints(output, "--joints", given, loaded, manipulator);
     let actuated = joints(given, manipulator)?;
     let only = args.mode.as_deref().map(|mode| load::mode(manipulator, mode)).transpose()?;
@@ -133,7 +133,7 @@ fn solve(
             (Assemblies { list: vec![assembly], ..Default::default() }, Method::Newton)
         }
     };
-    Ok(Found { actuated, found, only, method })
+    Ok(FoundAssemblies { actuated, found, only, method })
 }
 
 /// The value of every actuated joint.

@@ -14,7 +14,8 @@ use opm_core::mechanism::file::FileUnits;
 use opm_core::numeric::number::readable;
 use opm_study::unit_product;
 use opm_workspace::measure::{
-    CoordinateRange, Domain, DomainAxis, DomainError, Goal, Measured, Stop, default_ranges, measure,
+    CoordinateRange, Domain, DomainAxis, DomainError, Goal, Measured, SearchEnd, default_ranges,
+    measure,
 };
 use opm_workspace::{Cancelled, Modes, Progress};
 use rayon::ThreadPool;
@@ -54,14 +55,14 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     let run = Run { loaded: &loaded, manipulator: &manipulator, domain: &domain, modes, args };
     output.print(&run.json(&found, seconds), run.text(&found, seconds))?;
     match found.stop {
-        Stop::Tolerance => {}
-        Stop::Budget => output.warn(run.beyond(&found)),
-        Stop::Exhausted => {
+        SearchEnd::Tolerance => {}
+        SearchEnd::Budget => output.warn(run.beyond(&found)),
+        SearchEnd::Exhausted => {
             output.warn(
                 "the bounds hold, but come no closer: what is between them lies on the boundary of the workspace",
             );
         }
-        Stop::Cancelled => {
+        SearchEnd::Cancelled => {
             return Err(Failure::interrupted("interrupted; the bounds hold"));
         }
     }
@@ -83,7 +84,7 @@ fn table(
         let modes = modes(&args.mode, &manipulator)?;
         let domain = domain(args, &silent, (changed, &manipulator), modes, &pool, &progress)?;
         let found = pool.install(|| measure(&manipulator, &domain, modes, &goal, &progress));
-        if found.stop == Stop::Cancelled {
+        if found.stop == SearchEnd::Cancelled {
             return Err(Failure::interrupted("interrupted"));
         }
         let (unit, factor) = unit_product(&domain.powers(), loaded.file.units);
@@ -193,7 +194,7 @@ impl Run<'_> {
             "over": over,
             "weights": weights,
             "tolerance": self.args.tolerance,
-            "reached": found.stop == Stop::Tolerance,
+            "reached": found.stop == SearchEnd::Tolerance,
         })
     }
 

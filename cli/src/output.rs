@@ -2,7 +2,7 @@
 //! terminal but through one of them, which makes visible what it would obey.
 
 use crate::args::{Format, Output};
-use crate::failure::{Failure, Kind, talk};
+use crate::failure::{Failure, MessageKind, talk};
 use opm_core::text::{is_unseen, visible};
 use serde::Serialize;
 use serde_json::ser::{CharEscape, CompactFormatter, Formatter, Serializer};
@@ -36,14 +36,14 @@ impl Output {
     /// Prints a note on standard error, unless --quiet is given.
     pub fn note(&self, message: impl Display) {
         if !self.quiet {
-            talk(Kind::Note, &message.to_string());
+            talk(MessageKind::Note, &message.to_string());
         }
     }
 
     /// As [`Output::note`], for a warning that the result may be useless.
     pub fn warn(&self, message: impl Display) {
         if !self.quiet {
-            talk(Kind::Warning, &message.to_string());
+            talk(MessageKind::Warning, &message.to_string());
         }
     }
 }

@@ -12,7 +12,7 @@ use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
 use opm_core::table::{
-    ColumnNames, Line, Lines, Place, Plausible, Suggestion, hint, hint_of_row, not_commas,
+    ColumnNames, FieldPlace, Line, Lines, Plausible, Suggestion, hint, hint_of_row, not_commas,
 };
 use opm_core::text::quoted;
 use opm_mcap::PartialFile;
@@ -26,18 +26,18 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Why a stream ends early.
-pub enum Stop {
+pub enum StreamStop {
     Write(io::Error),
     Failure(Failure),
 }
 
-impl From<Failure> for Stop {
+impl From<Failure> for StreamStop {
     fn from(failure: Failure) -> Self {
         Self::Failure(failure)
     }
 }
 
-impl From<io::Error> for Stop {
+impl From<io::Error> for StreamStop {
     fn from(error: io::Error) -> Self {
         Self::Write(error)
     }
@@ -71,8 +71,8 @@ impl Stream<'_> {
         &mut self,
         columns: &mut Columns<'_>,
         values: &[f64],
-        mut take: impl FnMut(&mut Self, u64, Option<f64>, &[f64]) -> Result<(), Stop>,
-    ) -> Result<(), Stop> {
+        mut take: impl FnMut(&mut Self, u64, Option<f64>, &[f64]) -> Result<(), StreamStop>,
+    ) -> Result<(), StreamStop> {
         let places = columns.places();
         // The time has the last place.
         let mut row = [values, &[f64::NAN]].concat();
@@ -95,7 +95,7 @@ impl Stream<'_> {
             take(self, number, (!time.is_nan()).then_some(*time), values)?;
             self.number.fetch_add(1, Ordering::Relaxed);
         }
-        self.rows.flush().map_err(Stop::Write)
+        self.rows.flush().map_err(StreamStop::Write)
     }
 
     /// Prints a note about the input.
@@ -191,7 +191,7 @@ pub fn run<T>(
     streams: &Streams<'_>,
     output: &Output,
     loaded: &Loaded,
-    solve: impl FnOnce(Stream<'_>) -> Result<T, Stop>,
+    solve: impl FnOnce(Stream<'_>) -> Result<T, StreamStop>,
 ) -> Result<Option<T>, Failure> {
     let input = streams.input;
     let target = streams.output.filter(|path| !is_stdout(path));
@@ -212,8 +212,8 @@ pub fn run<T>(
         // There is no progress bar, since the rows may go to the terminal.
         return match solve(source.to(&mut stdout())) {
             Ok(_) => Ok(None),
-            Err(Stop::Write(error)) => Err(Failure::stdout(error)),
-            Err(Stop::Failure(failure)) => Err(failure),
+            Err(StreamStop::Write(error)) => Err(Failure::stdout(error)),
+            Err(StreamStop::Failure(failure)) => Err(failure),
         };
     };
     loaded.refuse_as_output(path, &[input])?;
@@ -224,7 +224,7 @@ pub fn run<T>(
     let summary =
         match watch(output, "solving", None, || rows.load(Ordering::Relaxed), work) {
             Ok(summary) => summary,
-            Err(Stop::Failure(Failure::Interrupted(message))) => {
+            Err(StreamStop::Failure(Failure::Interrupted(message))) => {
                 return Err(Failure::Interrupted(message.reworded(|message| {
                     format!("{message}; what was solved is in {place}.partial")
                 })));
@@ -233,8 +233,8 @@ pub fn run<T>(
                 // The file is discarded: the rows before a wrong one would look like the whole answer.
                 file.discard();
                 return Err(match stop {
-                    Stop::Write(error) => Failure::at(&place, error),
-                    Stop::Failure(failure) => failure,
+                    StreamStop::Write(error) => Failure::at(&place, error),
+                    StreamStop::Failure(failure) => failure,
                 });
             }
         };
@@ -325,14 +325,16 @@ impl Columns<'_> {
     }
 
     /// The place of every column's number in a row: that of its value, or behind the values for the time.
-    fn places(&self) -> Vec<Option<Place>> {
+    fn places(&self) -> Vec<Option<FieldPlace>> {
         const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
         let place = |&(column, units): &(Column, Option<FileUnits>)| match column {
-            Column::Time => Some(Place { number: self.values.len(), optional: false, usual: ANY }),
+            Column::Time => {
+                Some(FieldPlace { number: self.values.len(), optional: false, usual: ANY })
+            }
             Column::Value(number) => {
                 let Wanted { plausible, optional, .. } = self.values[number];
                 let usual = if units.is_none() { plausible.usual() } else { ANY };
-                Some(Place { number, optional, usual })
+                Some(FieldPlace { number, optional, usual })
             }
             Column::Other => None,
         };
@@ -343,7 +345,7 @@ impl Columns<'_> {
     fn read(
         &self,
         line: Line<'_>,
-        places: &[Option<Place>],
+        places: &[Option<FieldPlace>],
         row: &mut [f64],
         at: impl Fn(String) -> Failure,
     ) -> Result<bool, Failure> {

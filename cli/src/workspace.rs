@@ -72,7 +72,12 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let workspace = work.fit(request, loaded.file.units)?;
     advice::before(&workspace, output);
     if let (Some(shard), Some(path)) = (args.shard, path) {
-        return sweep_shard(&workspace, &loaded, Part { shard, path, force: args.force }, &work);
+        return sweep_shard(
+            &workspace,
+            &loaded,
+            ShardFile { shard, path, force: args.force },
+            &work,
+        );
     }
 
     let (found, effort, poses) = if recording.is_some() || workspace.needs_points() {
@@ -88,7 +93,7 @@ pub fn run(args: &WorkspaceArgs, output: &Output) -> Result<(), Failure> {
     let rejections = if args.explain { Some(work.explain(&workspace)?) } else { None };
     if let Some(recording) = recording {
         let mechanism = loaded.attachment();
-        let inscribed = inscribed.as_ref().and_then(inscribed::Found::shape);
+        let inscribed = inscribed.as_ref().and_then(inscribed::FoundInscribed::shape);
         let (workspace, analysis) = (&workspace, &analysis);
         let rejections = rejections.as_ref();
         let findings = Findings { mechanism, workspace, poses, analysis, inscribed, rejections };
@@ -142,7 +147,7 @@ pub fn points(CloudArgs { output: _, axes, color, scalars, scale }: &CloudArgs) 
 }
 
 /// The requested part of a sweep, and its output file.
-struct Part<'a> {
+struct ShardFile<'a> {
     shard: Shard,
     path: &'a Path,
     /// Whether it replaces an existing file.
@@ -153,7 +158,7 @@ struct Part<'a> {
 fn sweep_shard(
     workspace: &Workspace,
     loaded: &Loaded,
-    Part { shard, path, force }: Part<'_>,
+    ShardFile { shard, path, force }: ShardFile<'_>,
     work: &Work<'_>,
 ) -> Result<(), Failure> {
     let output = work.output;

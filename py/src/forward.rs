@@ -11,7 +11,7 @@ use crate::pickle::pickled;
 use crate::rows::Rows;
 pub use assemblies::Assemblies;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use opm_core::forward::{self as core, ForwardError, LeastChange, NearError, Stop};
+use opm_core::forward::{self as core, ForwardError, LeastChange, NearError, NearStop};
 use opm_core::manipulator::Mode;
 use opm_study::Tracker;
 use pyo3::prelude::*;
@@ -305,7 +305,7 @@ impl Manipulator {
         match self.inner.forward_near(joints, near, mode) {
             Ok(assembly) => Ok(vec![assembly]),
             Err(NearError::NotFound(end)) => match end.why {
-                Stop::OutOfReach(_) if end.steps == 0 => {
+                NearStop::OutOfReach(_) if end.steps == 0 => {
                     let mode = self.inner.format_mode(mode);
                     Err(format!("near is out of reach in mode {mode:?}: {}", end.why))
                 }

@@ -9,7 +9,7 @@ use crate::parts::{Parts, Pickled};
 use crate::sweep::modes;
 use opm_workspace::measure::{
     self as workspace, Bounds, Cell, CoordinateRange, Domain, Evaluator, Goal, Measured, Search,
-    Stop,
+    SearchEnd,
 };
 use opm_workspace::{Modes, Progress, Sections};
 use pyo3::prelude::*;
@@ -38,11 +38,11 @@ pub struct Measure {
 }
 
 /// Why a computation stopped.
-const STOPS: [(Stop, &str); 4] = [
-    (Stop::Tolerance, "tolerance"),
-    (Stop::Budget, "budget"),
-    (Stop::Cancelled, "cancelled"),
-    (Stop::Exhausted, "exhausted"),
+const STOPS: [(SearchEnd, &str); 4] = [
+    (SearchEnd::Tolerance, "tolerance"),
+    (SearchEnd::Budget, "budget"),
+    (SearchEnd::Cancelled, "cancelled"),
+    (SearchEnd::Exhausted, "exhausted"),
 ];
 
 /// A measure as it is pickled: bounds and whole, boxes, why it stopped, units, ranges.

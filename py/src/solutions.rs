@@ -68,7 +68,7 @@ impl Solutions {
         };
         let (joints, imaginary) = (table(widths[0])?, table(widths[1])?);
         let (reachable, within_limits) = (answers()?, answers()?);
-        Part {
+        PosesPart {
             first: 0,
             poses: poses.values(),
             out: BatchOutput {
@@ -185,14 +185,14 @@ impl Scratch {
 }
 
 /// Some of the poses, and the memory for their results.
-struct Part<'a> {
+struct PosesPart<'a> {
     /// Index of the first pose.
     first: usize,
     poses: &'a [f64],
     out: BatchOutput<'a>,
 }
 
-impl Part<'_> {
+impl PosesPart<'_> {
     fn solve(
         self,
         py: Python<'_>,
@@ -201,7 +201,7 @@ impl Part<'_> {
         threads: Option<NonZeroUsize>,
     ) -> PyResult<()> {
         let stop = AtomicBool::new(false);
-        let work = |scratch: &mut Scratch, part: Part<'_>| {
+        let work = |scratch: &mut Scratch, part: PosesPart<'_>| {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
@@ -237,7 +237,7 @@ impl Part<'_> {
         (mode, columns): (Mode, &[usize]),
         scratch: &mut Scratch,
     ) -> Result<(), BatchError> {
-        let Part { poses, mut out, .. } = self;
+        let PosesPart { poses, mut out, .. } = self;
         let Scratch { batch, home, patched, joints } = scratch;
         let (width, all) = (home.len(), manipulator.coordinates().len());
         let missing = |pose: &[f64]| pose.iter().any(|value| value.is_nan());

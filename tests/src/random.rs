@@ -13,12 +13,12 @@ use std::f64::consts::{PI, TAU};
 
 /// Every pair of subspaces (lower, upper) that has closed-form chains and shares at most a one-parameter
 /// motion, and every subspace alone.
-pub const PAIRS: [[Kind; 2]; 41] = {
-    use Kind::{
+pub const PAIRS: [[RandomSubspace; 2]; 41] = {
+    use Meet::{Nothing, Rotation, Translation};
+    use RandomSubspace::{
         Cylindrical, Identity, Inclined, Planar, Schoenflies, Spherical, TranslationalPlane,
         TranslationalSpace,
     };
-    use Meet::{Nothing, Rotation, Translation};
     [
         [Planar(Rotation), Spherical],
         [Spherical, Planar(Rotation)],
@@ -65,7 +65,7 @@ pub const PAIRS: [[Kind; 2]; 41] = {
 };
 
 /// The pairs of which a section can be examined alone, and bounded: those without an inclined shared translation.
-pub const LEVEL: &[[Kind; 2]] = PAIRS.split_at(39).0;
+pub const LEVEL: &[[RandomSubspace; 2]] = PAIRS.split_at(39).0;
 
 /// What the subspaces of a pair share, before it is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +81,7 @@ pub enum Meet {
 /// A kind of subspace, placed relative to the intersection motion along or about z, or so that it shares
 /// nothing with the other one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum RandomSubspace {
     /// No motion.
     Identity,
     /// A plane with its normal along z, or a plane that contains z.
@@ -100,7 +100,7 @@ pub enum Kind {
     Inclined,
 }
 
-impl Kind {
+impl RandomSubspace {
     /// Its number of degrees of freedom.
     pub fn dimension(self) -> usize {
         match self {
@@ -126,8 +126,8 @@ impl Kind {
 }
 
 /// A subspace with random geometry.
-struct Place {
-    kind: Kind,
+struct PlacedSubspace {
+    kind: RandomSubspace,
     /// Normal of a plane, or axis of a cylinder.
     normal: Vector3<f64>,
     point: Point3<f64>,
@@ -160,45 +160,49 @@ pub fn order(leg: &Leg, section: &[Freedom]) -> String {
 
 /// Every order of kinds that a section can have, if it has as many freedoms as its subspace, or one
 /// less if the imaginary joint takes one.
-pub fn orders(kind: Kind, cut: Option<Meet>) -> &'static [&'static str] {
+pub fn orders(kind: RandomSubspace, cut: Option<Meet>) -> &'static [&'static str] {
     use Meet::{Rotation, Translation};
     match (kind, cut) {
         (_, Some(Meet::Nothing)) => &[],
-        (Kind::Identity, _) => &[""],
-        (Kind::Planar(_), None) => &["RRR", "PRR", "RPR", "RRP", "RPP", "PRP", "PPR"],
-        (Kind::Planar(_), Some(Rotation)) => &["RR", "RP", "PR", "PP"],
-        (Kind::Planar(_), Some(Translation)) => &["RR", "RP", "PR"],
-        (Kind::Spherical, None) => &["RRR", "UR", "RU", "S"],
-        (Kind::Spherical, Some(_)) => &["RR", "U"],
-        (Kind::Cylindrical(_), None) => &["RP", "PR", "RH", "HR", "PH", "HP", "HH", "C"],
-        (Kind::Cylindrical(_), Some(Rotation)) => &["P", "H"],
-        (Kind::Cylindrical(_), Some(Translation)) => &["R", "H"],
-        (Kind::TranslationalPlane, None) => &["PP"],
-        (Kind::TranslationalPlane, Some(_)) => &["P"],
-        (Kind::TranslationalSpace(_), None) => &["PPP"],
-        (Kind::TranslationalSpace(_), Some(_)) => &["PP"],
+        (RandomSubspace::Identity, _) => &[""],
+        (RandomSubspace::Planar(_), None) => &["RRR", "PRR", "RPR", "RRP", "RPP", "PRP", "PPR"],
+        (RandomSubspace::Planar(_), Some(Rotation)) => &["RR", "RP", "PR", "PP"],
+        (RandomSubspace::Planar(_), Some(Translation)) => &["RR", "RP", "PR"],
+        (RandomSubspace::Spherical, None) => &["RRR", "UR", "RU", "S"],
+        (RandomSubspace::Spherical, Some(_)) => &["RR", "U"],
+        (RandomSubspace::Cylindrical(_), None) => &["RP", "PR", "RH", "HR", "PH", "HP", "HH", "C"],
+        (RandomSubspace::Cylindrical(_), Some(Rotation)) => &["P", "H"],
+        (RandomSubspace::Cylindrical(_), Some(Translation)) => &["R", "H"],
+        (RandomSubspace::TranslationalPlane, None) => &["PP"],
+        (RandomSubspace::TranslationalPlane, Some(_)) => &["P"],
+        (RandomSubspace::TranslationalSpace(_), None) => &["PPP"],
+        (RandomSubspace::TranslationalSpace(_), Some(_)) => &["PP"],
         // A slider more, anywhere; a screw may take its place.
-        (Kind::Schoenflies(_) | Kind::Inclined, None) => &[
+        (RandomSubspace::Schoenflies(_) | RandomSubspace::Inclined, None) => &[
             "PRRR", "RPRR", "RRPR", "RRRP", "PPRR", "PRPR", "PRRP", "RPPR", "RPRP", "RRPP", "PRPP",
             "RPPP", "PPRP", "PPPR",
         ],
-        (Kind::Schoenflies(_), Some(Rotation)) => {
+        (RandomSubspace::Schoenflies(_), Some(Rotation)) => {
             &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR", "PPP"]
         }
-        (Kind::Inclined, Some(Rotation)) => &[],
-        (Kind::Schoenflies(_) | Kind::Inclined, Some(Translation)) => {
+        (RandomSubspace::Inclined, Some(Rotation)) => &[],
+        (RandomSubspace::Schoenflies(_) | RandomSubspace::Inclined, Some(Translation)) => {
             &["PRR", "RPR", "RRP", "PRP", "RPP", "PPR"]
         }
     }
 }
 
 /// What the two subspaces of a pair share.
-pub fn meet([lower, upper]: [Kind; 2]) -> Meet {
+pub fn meet([lower, upper]: [RandomSubspace; 2]) -> Meet {
     if lower.meet() == upper.meet() { lower.meet() } else { Meet::Nothing }
 }
 
 /// A random mechanism of a pair of subspaces, with its decomposition.
-pub fn mechanism(rng: &mut Rng, pair: [Kind; 2], options: Options) -> (Mechanism, Decomposition) {
+pub fn mechanism(
+    rng: &mut Rng,
+    pair: [RandomSubspace; 2],
+    options: Options,
+) -> (Mechanism, Decomposition) {
     let meet = meet(pair);
     let azimuth = rng.f64() * PI;
     let apart = azimuth + 0.5 + rng.f64() * (PI - 1.0);
@@ -280,7 +284,7 @@ pub const LACKS: [[usize; 2]; 5] = [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
 /// joints, or some with several freedoms. A joint that carries a height is kept, as a slider along its direction.
 pub fn constrained(
     rng: &mut Rng,
-    pair: [Kind; 2],
+    pair: [RandomSubspace; 2],
     lacks: [usize; 2],
     repeated: bool,
     options: Options,
@@ -332,47 +336,49 @@ pub fn displacement(rng: &mut Rng) -> Isometry3<f64> {
     )
 }
 
-fn place(rng: &mut Rng, kind: Kind, azimuth: f64) -> Place {
+fn place(rng: &mut Rng, kind: RandomSubspace, azimuth: f64) -> PlacedSubspace {
     let side = Vector3::new(azimuth.cos(), azimuth.sin(), 0.0);
     let (normal, point) = match kind {
-        Kind::Identity
-        | Kind::Planar(Meet::Rotation | Meet::Nothing)
-        | Kind::Schoenflies(Meet::Rotation | Meet::Nothing)
-        | Kind::TranslationalSpace(_)
-        | Kind::Cylindrical(Meet::Rotation) => (Vector3::z(), Point3::origin()),
+        RandomSubspace::Identity
+        | RandomSubspace::Planar(Meet::Rotation | Meet::Nothing)
+        | RandomSubspace::Schoenflies(Meet::Rotation | Meet::Nothing)
+        | RandomSubspace::TranslationalSpace(_)
+        | RandomSubspace::Cylindrical(Meet::Rotation) => (Vector3::z(), Point3::origin()),
         // Its axis passes z at a distance of one, and is not parallel to any of the planes.
-        Kind::Cylindrical(Meet::Nothing) => {
+        RandomSubspace::Cylindrical(Meet::Nothing) => {
             (side.cross(&Vector3::z()) * 0.8 + Vector3::z() * 0.6, Point3::from(side))
         }
-        Kind::Planar(Meet::Translation)
-        | Kind::Schoenflies(Meet::Translation)
-        | Kind::TranslationalPlane => (side, Point3::origin()),
-        Kind::Inclined => {
+        RandomSubspace::Planar(Meet::Translation)
+        | RandomSubspace::Schoenflies(Meet::Translation)
+        | RandomSubspace::TranslationalPlane => (side, Point3::origin()),
+        RandomSubspace::Inclined => {
             // 20 to 70 degrees from z, upwards or downwards.
             let angle = (20.0 + 50.0 * rng.f64()).to_radians();
             let up = if rng.bool() { angle.cos() } else { -angle.cos() };
             (side * angle.sin() + Vector3::z() * up, Point3::origin())
         }
-        Kind::Cylindrical(Meet::Translation) => (Vector3::z(), Point3::from(side)),
-        Kind::Spherical => {
+        RandomSubspace::Cylindrical(Meet::Translation) => (Vector3::z(), Point3::from(side)),
+        RandomSubspace::Spherical => {
             (Vector3::z(), Point3::new(0.0, 0.0, rng.f64() * 2.0 - 1.0 + 3.0 * azimuth))
         }
     };
-    Place { kind, normal, point }
+    PlacedSubspace { kind, normal, point }
 }
 
-impl Place {
+impl PlacedSubspace {
     fn class(&self, g: &Isometry3<f64>) -> SubspaceClass {
         let normal = Unit::new_normalize(g * self.normal);
         let point = g * self.point;
         match self.kind {
-            Kind::Identity => SubspaceClass::Identity,
-            Kind::Planar(_) => SubspaceClass::Planar { normal },
-            Kind::Spherical => SubspaceClass::Spherical { centre: point },
-            Kind::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
-            Kind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal },
-            Kind::TranslationalSpace(_) => SubspaceClass::TranslationalSpace,
-            Kind::Schoenflies(_) | Kind::Inclined => SubspaceClass::Schoenflies { axis: normal },
+            RandomSubspace::Identity => SubspaceClass::Identity,
+            RandomSubspace::Planar(_) => SubspaceClass::Planar { normal },
+            RandomSubspace::Spherical => SubspaceClass::Spherical { centre: point },
+            RandomSubspace::Cylindrical(_) => SubspaceClass::Cylindrical { axis: normal, point },
+            RandomSubspace::TranslationalPlane => SubspaceClass::TranslationalPlane { normal },
+            RandomSubspace::TranslationalSpace(_) => SubspaceClass::TranslationalSpace,
+            RandomSubspace::Schoenflies(_) | RandomSubspace::Inclined => {
+                SubspaceClass::Schoenflies { axis: normal }
+            }
         }
     }
 }
@@ -381,7 +387,7 @@ impl Place {
 /// first in an upper one.
 fn section_joints(
     rng: &mut Rng,
-    place: &Place,
+    place: &PlacedSubspace,
     cut: Option<Meet>,
     upper: bool,
     options: Options,
@@ -392,11 +398,11 @@ fn section_joints(
     let (revolute, prismatic) = (JointKind::Revolute, JointKind::Prismatic);
     let sign = |rng: &mut Rng| if rng.bool() { 1.0 } else { -1.0 };
     match place.kind {
-        Kind::Identity => vec![],
-        Kind::Spherical if cut.is_none() && options.balls && rng.bool() => {
+        RandomSubspace::Identity => vec![],
+        RandomSubspace::Spherical if cut.is_none() && options.balls && rng.bool() => {
             vec![joint(JointKind::Spherical, Vector3::z(), place.point)]
         }
-        Kind::Spherical => {
+        RandomSubspace::Spherical => {
             let mut joints: Vec<Joint> = Vec::new();
             while joints.len() < count {
                 let axis = direction(rng).into_inner();
@@ -426,7 +432,7 @@ fn section_joints(
             }
             joints
         }
-        Kind::Planar(meet) => {
+        RandomSubspace::Planar(meet) => {
             let (u, v) = beside(&place.normal);
             let mut sliders = usize::from(cut.is_some() && meet == Meet::Translation);
             let mut angles: Vec<f64> = Vec::new();
@@ -454,14 +460,15 @@ fn section_joints(
             }
             joints
         }
-        Kind::Schoenflies(_) | Kind::Inclined => {
-            let plane = Place { kind: Kind::Planar(place.kind.meet()), ..*place };
+        RandomSubspace::Schoenflies(_) | RandomSubspace::Inclined => {
+            let plane =
+                PlacedSubspace { kind: RandomSubspace::Planar(place.kind.meet()), ..*place };
             let mut joints = section_joints(rng, &plane, cut, upper, options);
             let lift = joint(prismatic, place.normal * sign(rng), Point3::from(vector(rng)));
             joints.insert(rng.usize(..=joints.len()), lift);
             joints
         }
-        Kind::Cylindrical(meet) => {
+        RandomSubspace::Cylindrical(meet) => {
             // With a revolute imaginary joint the other joint must advance; with a prismatic one it
             // must rotate.
             let kinds: &[JointKind] = match (cut, meet) {
@@ -497,7 +504,7 @@ fn section_joints(
                 })
                 .collect()
         }
-        Kind::TranslationalPlane => {
+        RandomSubspace::TranslationalPlane => {
             let other = place.normal.cross(&Vector3::z());
             let first = 0.3 + rng.f64() * 0.9;
             let angles = [first, -0.3 - rng.f64() * 0.9];
@@ -509,7 +516,7 @@ fn section_joints(
                 })
                 .collect()
         }
-        Kind::TranslationalSpace(_) => loop {
+        RandomSubspace::TranslationalSpace(_) => loop {
             let mut slides = [Vector3::z(); 3];
             slides[..count].fill_with(|| direction(rng).into_inner());
             // The sliders, and the imaginary one, are well apart from one plane.

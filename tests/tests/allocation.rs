@@ -6,10 +6,10 @@ use fastrand::Rng;
 use opm_core::linkage::{Linkage, LinkageBranch};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::{examples, file};
-use opm_tests::random::{Kind, Options, PAIRS, constrained, mechanism};
+use opm_tests::random::{Options, PAIRS, RandomSubspace, constrained, mechanism};
 
 /// A mechanism of a pair: one without constraining legs, and one with each kind of them.
-fn manipulators(rng: &mut Rng, pair: [Kind; 2], options: Options) -> Vec<Manipulator> {
+fn manipulators(rng: &mut Rng, pair: [RandomSubspace; 2], options: Options) -> Vec<Manipulator> {
     let free = std::iter::once(mechanism(rng, pair, options)).collect::<Vec<_>>();
     let lacks = [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
     let tied = lacks.into_iter().filter_map(|lacks| constrained(rng, pair, lacks, false, options));

@@ -4,7 +4,7 @@
 use fastrand::Rng;
 use opm_check::branches::{Alone, Branches};
 use opm_tests::height::straight;
-use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism, meet, order, orders};
+use opm_tests::random::{Meet, Options, PAIRS, RandomSubspace, mechanism, meet, order, orders};
 use std::collections::BTreeSet;
 
 /// The number of poses compared, for each pair and each section that the imaginary joint can be in.
@@ -18,7 +18,7 @@ struct Tally {
     orders: [BTreeSet<String>; 2],
 }
 
-fn compare(pair: [Kind; 2], above: bool, rng: &mut Rng) -> Tally {
+fn compare(pair: [RandomSubspace; 2], above: bool, rng: &mut Rng) -> Tally {
     let mut tally = Tally::default();
     let expected = expected(pair, above);
     let complete = |tally: &Tally| {
@@ -62,7 +62,7 @@ fn compare(pair: [Kind; 2], above: bool, rng: &mut Rng) -> Tally {
 
 /// The orders of joints in both sections, with the imaginary joint in the upper or in the lower
 /// one.
-fn expected(pair: [Kind; 2], above: bool) -> [BTreeSet<String>; 2] {
+fn expected(pair: [RandomSubspace; 2], above: bool) -> [BTreeSet<String>; 2] {
     let cut = Some(meet(pair)).filter(|meet| *meet != Meet::Nothing);
     let cuts = if above { [None, cut] } else { [cut, None] };
     [0, 1].map(|i| orders(pair[i], cuts[i]).iter().map(|&order| order.to_owned()).collect())

@@ -10,7 +10,7 @@ use opm_workspace::{Conditioned, Modes, PoseLimit};
 
 /// What is found of one pose: the condition number in the first admitted mode, and the ranges of the imaginary joints over
 /// all admitted modes.
-type Found = (Option<f64>, Vec<[f64; 2]>);
+type ConditionFound = (Option<f64>, Vec<[f64; 2]>);
 
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
@@ -20,7 +20,7 @@ fn by_modes(
     pose: &[f64],
     mode: Option<Mode>,
     limit: &PoseLimit,
-) -> Found {
+) -> ConditionFound {
     let mut jacobians = manipulator.jacobians();
     let mut at: Solution = manipulator.solution();
     let (mut first, mut ranges) = (None, vec![NOTHING; manipulator.imaginary().len()]);

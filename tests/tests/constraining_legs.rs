@@ -14,7 +14,7 @@ use opm_core::mechanism::joint::{JointKind, Quantity};
 use opm_core::mechanism::{Mechanism, OrientationCoordinates};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::differences::derivatives;
-use opm_tests::random::{Kind, LACKS, Options, PAIRS, constrained};
+use opm_tests::random::{LACKS, Options, PAIRS, RandomSubspace, constrained};
 use opm_tests::structured::gap;
 use opm_workspace::{Axis, Cancelled, Count, Grid, Modes, Progress, Sweep};
 use std::f64::consts::{PI, TAU};
@@ -98,7 +98,7 @@ fn every_mode_closes_every_original_leg() {
                  worst {worst:.1e}"
             );
             assert!(reached >= poses / 4, "{pair:?} {lacks:?}: hardly any pose was in reach");
-            let [lower, upper] = pair.map(Kind::dimension);
+            let [lower, upper] = pair.map(RandomSubspace::dimension);
             // Either kind of leg has enough joints to lack some.
             let enough = lower > lacks[0] + 1 && upper > lacks[1] + 1;
             assert!(made > 15 || !enough, "{pair:?} {lacks:?}: {made} mechanisms");
@@ -143,7 +143,7 @@ fn every_displacement_of_the_leg_is_found() {
 /// they control it. `None` if there is none.
 fn actuated(
     rng: &mut Rng,
-    pair: [Kind; 2],
+    pair: [RandomSubspace; 2],
     lacks: [usize; 2],
     round: usize,
 ) -> Option<Manipulator> {

@@ -3,7 +3,7 @@
 
 use opm_core::Manipulator;
 use opm_core::mechanism::examples;
-use opm_workspace::measure::{CoordinateRange, Domain, Goal, Stop, measure};
+use opm_workspace::measure::{CoordinateRange, Domain, Goal, SearchEnd, measure};
 use opm_workspace::{Grid, GridError, Modes, Progress, Sections};
 use std::f64::consts::PI;
 
@@ -184,7 +184,7 @@ fn rings_at_all_heights_have_a_known_volume() {
             let domain = Domain::new(&m, Sections::Whole, &ranges).unwrap();
             let goal = Goal { tolerance: 0.002, ..Goal::default() };
             let found = measure(&m, &domain, Modes::Any, &goal, &Progress::default());
-            assert_eq!(found.stop, Stop::Tolerance, "{before}");
+            assert_eq!(found.stop, SearchEnd::Tolerance, "{before}");
             assert!(found.lower <= volume && volume <= found.upper, "{before}: {volume} {found:?}");
             println!("{before} {} boxes", found.boxes);
         }

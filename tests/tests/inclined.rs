@@ -12,7 +12,7 @@ use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{Mechanism, TaskHints};
 use opm_study::{WorkspaceKind, WorkspaceRequest};
-use opm_tests::random::{Kind, Meet, Options, mechanism};
+use opm_tests::random::{Meet, Options, RandomSubspace, mechanism};
 use opm_tests::structured::gap;
 use opm_workspace::measure::{Domain, DomainError};
 use opm_workspace::{Axis, Grid, GridError, Modes, Progress, Sections, Sweep};
@@ -25,9 +25,9 @@ const ROUNDING: f64 = 1e-12;
 /// The largest closure error of a leg: rounding, times the numbers by which random sliders are nearly parallel.
 const CLOSURE: f64 = 1e-9;
 
-const ORDERS: [[Kind; 2]; 2] = [
-    [Kind::Inclined, Kind::Cylindrical(Meet::Translation)],
-    [Kind::Cylindrical(Meet::Translation), Kind::Inclined],
+const ORDERS: [[RandomSubspace; 2]; 2] = [
+    [RandomSubspace::Inclined, RandomSubspace::Cylindrical(Meet::Translation)],
+    [RandomSubspace::Cylindrical(Meet::Translation), RandomSubspace::Inclined],
 ];
 
 const REVOLUTE: JointKind = JointKind::Revolute;

@@ -10,7 +10,7 @@ use opm_core::{Quantity, Section};
 use opm_tests::height;
 use opm_tests::random::{LACKS, LEVEL, Options, PAIRS, constrained, mechanism};
 use opm_workspace::measure::{
-    CoordinateRange, Domain, DomainError, Evaluator, Goal, Measured, Search, Stop, measure,
+    CoordinateRange, Domain, DomainError, Evaluator, Goal, Measured, Search, SearchEnd, measure,
 };
 use opm_workspace::{Axis, Cancelled, Grid, GridError, Modes, Progress, Sections, Sweep};
 use std::f64::consts::PI;
@@ -117,7 +117,7 @@ fn all_orientations_of_the_paper() {
             let found = measured(&m, &domain, modes, goal);
             let [lower, upper] = [found.lower, found.upper].map(|bound| bound / found.whole);
             assert!(lower < share && share < upper, "{lower} {upper}");
-            assert_eq!(found.stop, Stop::Tolerance);
+            assert_eq!(found.stop, SearchEnd::Tolerance);
             assert!((upper - lower) / (upper + lower) <= tolerance);
         }
     }
@@ -157,7 +157,7 @@ fn the_polygon_of_the_helical_manipulator() {
         let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
         let goal = Goal { tolerance: 1e-9, ..Goal::default() };
         let found = measured(&m, &domain, Modes::Any, goal);
-        assert_eq!(found.stop, Stop::Tolerance);
+        assert_eq!(found.stop, SearchEnd::Tolerance);
         assert!(found.lower < area && area < found.upper, "{area} {found:?}");
     }
 }
@@ -178,7 +178,7 @@ fn places_at_one_orientation_take_one_box() {
             ];
             let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
             let found = measured(&m, &domain, modes, Goal { tolerance: 1e-6, ..Goal::default() });
-            assert_eq!((found.boxes, found.stop), (1, Stop::Tolerance), "{found:?}");
+            assert_eq!((found.boxes, found.stop), (1, SearchEnd::Tolerance), "{found:?}");
             let at = |step: u32| (f64::from(step) + 0.5) / f64::from(STEPS);
             let hit = |k: u32| {
                 let pose = domain.pose(&[at(k % STEPS), at(k / STEPS)]).unwrap();
@@ -220,7 +220,7 @@ fn the_rings_of_the_five_bar() {
         let Measured { lower, upper, stop, boxes, .. } = measured(&m, &domain, modes, goal);
         println!("{modes:?}: {boxes} boxes");
         assert!(lower < area && area < upper, "{modes:?}: {lower} < {area} < {upper}");
-        assert_eq!(stop, Stop::Tolerance, "{modes:?}");
+        assert_eq!(stop, SearchEnd::Tolerance, "{modes:?}");
     }
 }
 
@@ -234,7 +234,7 @@ fn the_line_of_sarrus() {
     for modes in [Modes::One(m.home_mode()), Modes::Any] {
         let found = measured(&m, &domain, modes, Goal { tolerance: 1e-9, ..Goal::default() });
         assert!(found.lower < length && length < found.upper, "{found:?}");
-        assert_eq!(found.stop, Stop::Tolerance);
+        assert_eq!(found.stop, SearchEnd::Tolerance);
     }
 }
 
@@ -545,7 +545,7 @@ fn constrained_mechanisms_have_measures() {
             let chance = chance(hit, DRAWS, bounds);
             assert!(chance > 1e-9, "{pair:?} {lacks:?}: {hit} of {DRAWS}, {bounds:?}");
             off += u32::from(chance < 1e-2);
-            if found.stop == Stop::Budget {
+            if found.stop == SearchEnd::Budget {
                 println!("{pair:?} {lacks:?}: {hit} of {DRAWS}, {bounds:?}");
                 wide += 1;
             } else {
@@ -606,8 +606,13 @@ fn bounds_only_come_closer() {
         let (m, mode, sections) = random(&mut rng, round);
         let domain = domain_of(&mut rng, &m, sections, 1.0);
         let modes = mode.map_or(Modes::Any, Modes::One);
-        let mut before =
-            Measured { lower: 0.0, upper: f64::INFINITY, whole: 0.0, boxes: 0, stop: Stop::Budget };
+        let mut before = Measured {
+            lower: 0.0,
+            upper: f64::INFINITY,
+            whole: 0.0,
+            boxes: 0,
+            stop: SearchEnd::Budget,
+        };
         for budget in [1, 30, 100, 300, 1000, 3000] {
             let goal = Goal { tolerance: 0.0, budget };
             let found = measured(&m, &domain, modes, goal);
@@ -645,13 +650,13 @@ fn what_was_found_before_a_stop_is_kept() {
         search.answer(bounds).unwrap();
     }
     let before = search.found();
-    assert_eq!((before.stop, before.boxes), (Stop::Cancelled, progress.done()));
+    assert_eq!((before.stop, before.boxes), (SearchEnd::Cancelled, progress.done()));
     assert!(0.0 < before.lower && before.lower < before.upper && before.upper < before.whole);
     progress.cancel();
     assert_eq!(asker.evaluate(search.round().unwrap(), &progress), Err(Cancelled));
     assert_eq!(search.found(), before);
     // If it is interrupted at once, nothing is known.
     let none = measure(&m, &domain, Modes::Any, &goal, &progress);
-    assert_eq!((none.stop, none.boxes), (Stop::Cancelled, 0));
+    assert_eq!((none.stop, none.boxes), (SearchEnd::Cancelled, 0));
     assert_eq!((none.lower, none.upper), (0.0, none.whole));
 }

@@ -10,7 +10,7 @@ use opm_tests::random::direction;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A planar place: the platform's point and angle.
-type Place = (Complex<f64>, f64);
+type PlanarPlace = (Complex<f64>, f64);
 
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-9
@@ -28,10 +28,10 @@ fn triangle_on_circles(
     bases: [Complex<f64>; 3],
     radii: [f64; 3],
     corners: [Complex<f64>; 3],
-) -> Vec<Place> {
+) -> Vec<PlanarPlace> {
     const STEPS: usize = 20_000;
     let side = corners[1] - corners[0];
-    let place = |t: f64, sign: f64| -> Option<(f64, Place)> {
+    let place = |t: f64, sign: f64| -> Option<(f64, PlanarPlace)> {
         let first = bases[0] + Complex::from_polar(radii[0], t);
         let across = bases[1] - first;
         let (d, s) = (across.norm(), side.norm());
@@ -88,7 +88,7 @@ fn the_planar_3rpr_has_its_six_assemblies() {
     let home = manipulator.pose([]).unwrap();
     let at_home = Complex::new(home[0], home[1]);
     let nearest = |point: Complex<f64>| {
-        let distance = |place: &&Place| (place.0 - point).norm();
+        let distance = |place: &&PlanarPlace| (place.0 - point).norm();
         *expected.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap()
     };
     let offset = nearest(at_home).1;

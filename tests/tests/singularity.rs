@@ -23,19 +23,19 @@ use std::f64::consts::{PI, TAU};
 const AGREE: f64 = 1e-9;
 
 /// All quantities at one pose.
-struct Found {
+struct AtPose {
     at: Solution,
     jacobians: Jacobians,
     measured: Singularities,
     conditioning: Conditioning,
 }
 
-fn look(manipulator: &Manipulator, pose: &[f64], mode: Mode) -> Option<Found> {
+fn look(manipulator: &Manipulator, pose: &[f64], mode: Mode) -> Option<AtPose> {
     let mut at = manipulator.solution();
     manipulator.inverse(pose, mode, &mut at).unwrap().is_some().then(|| measure(manipulator, at))
 }
 
-fn measure(manipulator: &Manipulator, at: Solution) -> Found {
+fn measure(manipulator: &Manipulator, at: Solution) -> AtPose {
     let (mut jacobians, mut measured) = (manipulator.jacobians(), manipulator.singularities());
     let regular = manipulator.differentiate(&at, &mut jacobians).unwrap();
     assert_eq!(regular, jacobians.singular.is_empty());
@@ -45,7 +45,7 @@ fn measure(manipulator: &Manipulator, at: Solution) -> Found {
     assert!(conditioning.condition >= 1.0 && conditioning.manipulability >= 0.0);
     let matrices = [&jacobians.upper, &jacobians.lower, &jacobians.joints, &jacobians.pose];
     assert!(matrices.iter().all(|m| m.iter().all(|x| x.is_finite())));
-    Found { at, jacobians, measured, conditioning }
+    AtPose { at, jacobians, measured, conditioning }
 }
 
 /// A random plano-spherical manipulator without limits, and the working mode in which it is
@@ -131,7 +131,7 @@ fn the_first_manipulators_are_the_papers() {
 /// Poses of a random first manipulator that are singular by geometry, each with the leg and the
 /// kind of singularity.
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum SingularPose {
     /// Link a1 is perpendicular to its slider.
     LinkSquare,
     /// The arm is stretched.
@@ -147,7 +147,7 @@ fn singular_pose(
     rng: &mut Rng,
     paper: &PlanoSpherical,
     signs: &Signs,
-    kind: Kind,
+    kind: SingularPose,
     off: f64,
 ) -> Option<([f64; 5], usize)> {
     let mut near = |by: f64| by * (2.0 * rng.f64() - 1.0);
@@ -164,7 +164,7 @@ fn singular_pose(
             .then(|| w[1].atan2(w[0]) + if signs.legs[i][0] { k.asin() } else { PI - k.asin() })
     };
     match kind {
-        Kind::LinkSquare => {
+        SingularPose::LinkSquare => {
             // The condition Q · e(alpha) = a1 with Q = P + a2 e(theta) - h e(alpha).
             let along = Vector2::from(e(leg.alpha));
             let p = Vector2::new(pose[0], pose[1]);
@@ -173,21 +173,21 @@ fn singular_pose(
             (pose[0], pose[1]) = (p.x, p.y);
             Some((pose, i))
         }
-        Kind::ArmStretched => {
+        SingularPose::ArmStretched => {
             let reach = (paper.b[0] + paper.b[1]) * (1.0 - off);
             let towards = e(near(PI));
             pose[0] = paper.d[0] + reach * towards[0];
             pose[1] = paper.d[1] + reach * towards[1];
             Some((pose, 3))
         }
-        Kind::Coplanar => {
+        SingularPose::Coplanar => {
             // The condition w = Rz(zeta) Ry(arc1 + arc2) z.
             let farthest = (leg.arc1 + leg.arc2).min(TAU - leg.arc1 - leg.arc2);
             pose[3] = farthest - off - leg.beta;
             pose[4] = -leg.eta;
             Some((pose, i))
         }
-        Kind::InLine => {
+        SingularPose::InLine => {
             // The condition C - A = a1 e(theta) with P = C - a2 e(theta).
             let theta = theta(&pose)? + off;
             let slider = near(0.1);
@@ -202,7 +202,12 @@ fn singular_pose(
 #[test]
 fn measures_vanish_where_geometry_says_so() {
     let mut rng = Rng::with_seed(81);
-    for kind in [Kind::LinkSquare, Kind::ArmStretched, Kind::Coplanar, Kind::InLine] {
+    for kind in [
+        SingularPose::LinkSquare,
+        SingularPose::ArmStretched,
+        SingularPose::Coplanar,
+        SingularPose::InLine,
+    ] {
         let (mut compared, mut made) = (0, None);
         for round in 0..20_000 {
             if round % 100 == 0 {
@@ -233,17 +238,19 @@ fn measures_vanish_where_geometry_says_so() {
                 .into_iter()
                 .filter(agrees)
                 .filter_map(|mode| Some((mode, look(manipulator, &pose, mode)?)));
-            let value = |found: &Found| match kind {
-                Kind::LinkSquare | Kind::ArmStretched => found.measured.lower.serial,
-                Kind::Coplanar => found.measured.upper.serial,
-                Kind::InLine => found.measured.lower.parallel.unwrap(),
+            let value = |found: &AtPose| match kind {
+                SingularPose::LinkSquare | SingularPose::ArmStretched => {
+                    found.measured.lower.serial
+                }
+                SingularPose::Coplanar => found.measured.upper.serial,
+                SingularPose::InLine => found.measured.lower.parallel.unwrap(),
             };
-            let smallest = |(_, a): &(Mode, Found), (_, b): &(Mode, Found)| {
+            let smallest = |(_, a): &(Mode, AtPose), (_, b): &(Mode, AtPose)| {
                 value(a).abs().total_cmp(&value(b).abs())
             };
             let Some((mode, found)) = founds.min_by(smallest) else { continue };
             // Other legs must not be near singularities of their own.
-            let serial = |found: &Found, section: usize| {
+            let serial = |found: &AtPose, section: usize| {
                 let others = found.measured.legs.iter().enumerate();
                 others.filter(|(i, _)| *i != leg).map(|(_, m)| m[section].abs()).fold(1.0, f64::min)
             };
@@ -252,7 +259,7 @@ fn measures_vanish_where_geometry_says_so() {
             }
             assert!(value(&found).abs() < SINGULAR, "{kind:?} {}", value(&found));
             let product = match kind {
-                Kind::InLine => found.measured.whole.parallel.unwrap(),
+                SingularPose::InLine => found.measured.whole.parallel.unwrap(),
                 _ => found.measured.whole.serial,
             };
             assert!(product.abs() < SINGULAR, "{kind:?} {product}");
@@ -262,10 +269,10 @@ fn measures_vanish_where_geometry_says_so() {
             else {
                 continue;
             };
-            let blurred = |found: &Found| {
+            let blurred = |found: &AtPose| {
                 let [upper, lower] = [found.measured.upper, found.measured.lower]
                     .map(|section| section.parallel.unwrap().abs());
-                upper < 0.05 || !matches!(kind, Kind::InLine) && lower < 0.05
+                upper < 0.05 || !matches!(kind, SingularPose::InLine) && lower < 0.05
             };
             if blurred(&found) || blurred(&far) {
                 continue;
@@ -275,7 +282,7 @@ fn measures_vanish_where_geometry_says_so() {
             assert!(at > 3.0 * near && near > 3.0 * away, "{kind:?}: {at} {near} {away}");
             let expected = |section, cause| vec![SingularLeg { leg, section, cause }];
             match kind {
-                Kind::InLine => {
+                SingularPose::InLine => {
                     assert!(found.jacobians.singular.is_empty());
                     assert!(at > 1e6, "{at}");
                     let causes = manipulator.parallel_causes(&found.measured, Section::Lower);
@@ -283,7 +290,7 @@ fn measures_vanish_where_geometry_says_so() {
                 }
                 _ => {
                     let section = match kind {
-                        Kind::Coplanar => Section::Upper,
+                        SingularPose::Coplanar => Section::Upper,
                         _ => Section::Lower,
                     };
                     assert!(at.is_infinite() && found.conditioning.manipulability == 0.0);
@@ -301,7 +308,7 @@ fn measures_vanish_where_geometry_says_so() {
 }
 
 /// At a serial singularity the other legs move as they do next to it, and no value is NaN.
-fn only_that_leg_stands_still(manipulator: &Manipulator, found: &Found, beside: &Found) {
+fn only_that_leg_stands_still(manipulator: &Manipulator, found: &AtPose, beside: &AtPose) {
     let rates = [0.3, -0.2, 0.5, 0.4, -0.6];
     let (mut motion, mut near) = (manipulator.joint_motion(), manipulator.joint_motion());
     assert!(!manipulator.velocity(&found.at, &rates, &rates, &mut motion).unwrap());
@@ -373,7 +380,7 @@ fn the_upper_sections_parallel_measure_changes_sign_at_the_papers_root() {
         if found.measured.whole.serial.abs() < 0.01 || before.measured.whole.serial.abs() < 0.01 {
             continue;
         }
-        let value = |found: &Found| found.measured.upper.parallel.unwrap();
+        let value = |found: &AtPose| found.measured.upper.parallel.unwrap();
         assert!(value(&found).abs() < 1e-12, "{}", value(&found));
         assert!(value(&before) * value(&after) < 0.0);
         assert!(found.conditioning.condition > 1e3 * before.conditioning.condition.min(1e6));
@@ -578,7 +585,9 @@ fn measures_do_not_depend_on_place_and_size() {
             let [a, b] = [found.conditioning, same.conditioning];
             if here.characteristic_length() == 1.0 && there.characteristic_length() == 1.0 {
                 // Sliders and a single axis, or a single centre: the mechanism has no length of its own.
-                let planar = |kind: &random::Kind| matches!(kind, random::Kind::Planar(_));
+                let planar = |kind: &random::RandomSubspace| {
+                    matches!(kind, random::RandomSubspace::Planar(_))
+                };
                 lengthless += usize::from(pair.iter().any(planar));
             } else if a.condition < 1e4 {
                 assert!(close(a.condition / b.condition, 1.0), "{pair:?} {a:?} {b:?}");

@@ -496,15 +496,15 @@ fn names_of_coordinates_are_no_names_of_joints() {
     let mut rng = Rng::with_seed(45);
     let meet = random::Meet::Translation;
     for pair in [
-        [random::Kind::Cylindrical(meet), random::Kind::Schoenflies(meet)],
-        [random::Kind::Schoenflies(meet), random::Kind::Cylindrical(meet)],
+        [random::RandomSubspace::Cylindrical(meet), random::RandomSubspace::Schoenflies(meet)],
+        [random::RandomSubspace::Schoenflies(meet), random::RandomSubspace::Cylindrical(meet)],
     ] {
         let options = Options { limited: 0.0, balls: false };
         let (mut mechanism, decomposition) = mechanism(&mut rng, pair, options);
         mechanism.legs[1].joints[0].name = "h".into();
         let found = Manipulator::with_decomposition(mechanism, decomposition);
         let refused = found.err().map(|error| error.to_string());
-        let has_h = matches!(pair, [random::Kind::Cylindrical(_), _]);
+        let has_h = matches!(pair, [random::RandomSubspace::Cylindrical(_), _]);
         assert_eq!(refused.is_some_and(|told| told.starts_with("joint h of leg leg2")), has_h);
     }
 }

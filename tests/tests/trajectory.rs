@@ -5,7 +5,7 @@ use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Section};
 use opm_core::mechanism::joint::MotionLimit;
 use opm_core::motion::{self, Harmonics, Path, PlatformMotion, Sinusoid};
-use opm_core::trajectory::{Bound, Change, Gauge, Part, Trajectory, Violation};
+use opm_core::trajectory::{Bound, Change, Gauge, GaugedPart, Trajectory, Violation};
 use opm_tests::random::{Meet, Options, PAIRS, mechanism, meet};
 use std::f64::consts::{PI, TAU};
 
@@ -208,7 +208,7 @@ fn what_is_violated_is_reported_and_nothing_else() {
             limit += stretches.iter().filter(|v| matches!(v.gauge, Gauge::Limit { .. })).count();
 
             for (i, section) in [Section::Upper, Section::Lower].into_iter().enumerate() {
-                let gauge = Gauge::Parallel { part: Part::Section(section) };
+                let gauge = Gauge::Parallel { part: GaugedPart::Section(section) };
                 let reported: Vec<f64> =
                     found.iter().filter(|v| v.gauge == gauge).map(|v| v.start).collect();
                 for pair in seen.windows(2) {

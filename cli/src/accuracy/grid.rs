@@ -26,18 +26,18 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Why the work ends early.
-enum Stop {
+enum GridStop {
     Cancelled,
     Write(io::Error),
 }
 
-impl From<Cancelled> for Stop {
+impl From<Cancelled> for GridStop {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
     }
 }
 
-impl From<StudyError> for Stop {
+impl From<StudyError> for GridStop {
     fn from(error: StudyError) -> Self {
         match error {
             StudyError::Cancelled => Self::Cancelled,
@@ -46,7 +46,7 @@ impl From<StudyError> for Stop {
     }
 }
 
-impl From<io::Error> for Stop {
+impl From<io::Error> for GridStop {
     fn from(error: io::Error) -> Self {
         Self::Write(error)
     }
@@ -76,16 +76,16 @@ pub fn run(args: &AccuracyArgs, output: &Output, setting: &Setting<'_>) -> Resul
         let work = Work { args, output, setting, grid: &grid, request };
         return match work.run(&mut stdout()) {
             Ok(_) => Ok(()),
-            Err(Stop::Cancelled) => Err(Failure::interrupted("interrupted")),
-            Err(Stop::Write(error)) => Err(Failure::stdout(error)),
+            Err(GridStop::Cancelled) => Err(Failure::interrupted("interrupted")),
+            Err(GridStop::Write(error)) => Err(Failure::stdout(error)),
         };
     }
     let work = Work { args, output, setting, grid: &grid, request };
     let start = Instant::now();
     let field = match path {
         None => work.run(&mut io::sink()).map_err(|stop| match stop {
-            Stop::Cancelled => Failure::interrupted("interrupted"),
-            Stop::Write(error) => Failure::work(error.to_string()),
+            GridStop::Cancelled => Failure::interrupted("interrupted"),
+            GridStop::Write(error) => Failure::work(error.to_string()),
         })?,
         Some(path) => work.to_file(path)?,
     };
@@ -114,18 +114,18 @@ impl Work<'_> {
                 file.commit().map_err(|error| Failure::at(&place, error))?;
                 Ok(field)
             }
-            Err(Stop::Cancelled) => {
+            Err(GridStop::Cancelled) => {
                 let text = format!("interrupted; what was solved is in {place}.partial");
                 Err(Failure::interrupted(text))
             }
-            Err(Stop::Write(error)) => {
+            Err(GridStop::Write(error)) => {
                 file.discard();
                 Err(Failure::at(&place, error))
             }
         }
     }
 
-    fn run(&self, sink: &mut (dyn Write + Send)) -> Result<AccuracyField, Stop> {
+    fn run(&self, sink: &mut (dyn Write + Send)) -> Result<AccuracyField, GridStop> {
         let manipulator = self.setting.manipulator();
         let mut rows = Rows::new(sink);
         let errors = row::header(manipulator);
@@ -135,19 +135,23 @@ impl Work<'_> {
             .chain(errors.iter().map(String::as_str));
         rows.header(header)?;
         let mode = manipulator.format_mode(self.setting.mode);
-        let progress = interruptible().map_err(|error| Stop::Write(io::Error::other(error)))?;
+        let progress = interruptible().map_err(|error| GridStop::Write(io::Error::other(error)))?;
         let pool =
-            threads(self.args.threads).map_err(|error| Stop::Write(io::Error::other(error)))?;
+            threads(self.args.threads).map_err(|error| GridStop::Write(io::Error::other(error)))?;
         let job = || {
             pool.install(|| {
-                self.request.over(self.grid, &progress, |row: &AccuracyRow| -> Result<(), Stop> {
-                    rows.numbers(&row.pose)?;
-                    rows.numbers(&row.dependent)?;
-                    [true; 2].iter().try_for_each(|&answer| rows.answer(answer))?;
-                    rows.text(&mode)?;
-                    rows.cells(&row::cells(&row.budget).collect::<Vec<_>>())?;
-                    Ok(rows.end()?)
-                })
+                self.request.over(
+                    self.grid,
+                    &progress,
+                    |row: &AccuracyRow| -> Result<(), GridStop> {
+                        rows.numbers(&row.pose)?;
+                        rows.numbers(&row.dependent)?;
+                        [true; 2].iter().try_for_each(|&answer| rows.answer(answer))?;
+                        rows.text(&mode)?;
+                        rows.cells(&row::cells(&row.budget).collect::<Vec<_>>())?;
+                        Ok(rows.end()?)
+                    },
+                )
             })
         };
         let field =

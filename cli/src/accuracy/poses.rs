@@ -4,7 +4,7 @@ use super::{Setting, row};
 use crate::args::{AccuracyArgs, Output};
 use crate::failure::Failure;
 use crate::pose_table::{self, Totals};
-use crate::stream::{self, Stop, Stream, Streams};
+use crate::stream::{self, Stream, StreamStop, Streams};
 use opm_accuracy::Budget;
 use std::path::Path;
 use std::time::Instant;
@@ -24,7 +24,7 @@ pub fn run(
     totals.tell(&streams, output, &totals)
 }
 
-fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, Stop> {
+fn solve(mut stream: Stream<'_>, setting: &Setting<'_>) -> Result<Totals, StreamStop> {
     let start = Instant::now();
     let (manipulator, mode) = (setting.manipulator(), setting.mode);
     let coordinates = manipulator.task_coordinates();

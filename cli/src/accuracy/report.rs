@@ -21,11 +21,11 @@ pub struct Report<'a> {
     pub at: &'a Solution,
     pub pose: &'a [f64],
     /// If the pose is in reach.
-    pub found: Option<Found>,
+    pub found: Option<PoseAccuracy>,
 }
 
 /// What was computed at a pose.
-pub struct Found {
+pub struct PoseAccuracy {
     pub response: Response,
     pub budget: Budget,
     pub allocation: Option<Allocation>,
@@ -49,7 +49,7 @@ impl Report<'_> {
         json.insert("length".into(), setting.model.length().into());
         let keys = ["pose_error", "worst", "root_sum_square", "sensitivity", "misfit"];
         let more = ["clearance", "samples", "overconstraints", "held", "transform"];
-        let Some(Found { response, budget, allocation, samples }) = &self.found else {
+        let Some(PoseAccuracy { response, budget, allocation, samples }) = &self.found else {
             json.extend(keys.into_iter().chain(more).map(|key| (key.to_owned(), Value::Null)));
             let legs = &manipulator.mechanism().legs;
             let out = self.at.unreachable().iter().map(|u| &*legs[u.leg].name);
@@ -106,7 +106,7 @@ impl Report<'_> {
         let manipulator = setting.manipulator();
         let units = setting.loaded.file.units;
         let mut text = heading(setting);
-        let Some(Found { response, budget, allocation, samples }) = &self.found else {
+        let Some(PoseAccuracy { response, budget, allocation, samples }) = &self.found else {
             let mut table = Table::new(["coordinate", ">value", "unit"]);
             for (c, &value) in manipulator.task_coordinates().iter().zip(self.pose) {
                 let shown = text::number(value, c.quantity, units);

@@ -41,7 +41,7 @@ pub fn run(
 }
 
 /// What is told of one mechanism, radians and metres; not finite where it is not known.
-struct Found {
+struct MechanismAccuracy {
     coordinates: Vec<f64>,
     worst: [f64; 2],
     /// The largest of all joints.
@@ -55,7 +55,7 @@ fn at_pose(args: &AccuracyArgs, setting: &Setting<'_>) -> Result<Vec<Cell>, Fail
     let mut at = manipulator.solution();
     let solved = manipulator.inverse(&pose, setting.mode, &mut at);
     let reached = solved.map_err(|error| Failure::flag("--pose", error))?.is_some();
-    let mut found = Found::nothing(args, setting);
+    let mut found = MechanismAccuracy::nothing(args, setting);
     if reached {
         // What follows from the others changes with the mechanism.
         let units = setting.loaded.file.units;
@@ -99,7 +99,7 @@ fn over_grid(
         true => f64::NAN,
         false => largest.value,
     };
-    let found = Found {
+    let found = MechanismAccuracy {
         coordinates: worst.coordinates.iter().map(value).collect(),
         worst: [value(&worst.length), value(&worst.angle)],
         misfit: largest(worst.misfit.iter().map(|each| each.each_ref().map(value))),
@@ -115,7 +115,7 @@ fn largest(plays: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     plays.fold([0.0; 2], |all, play| [larger(all[0], play[0]), larger(all[1], play[1])])
 }
 
-impl Found {
+impl MechanismAccuracy {
     /// Of a mechanism that does not reach the pose.
     fn nothing(args: &AccuracyArgs, setting: &Setting<'_>) -> Self {
         let (model, unknown) = (&setting.model, f64::NAN);

@@ -5,7 +5,7 @@ use crate::args::{AnalyzeArgs, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::pose_table::{self, Totals};
-use crate::stream::{self, MODE, Stop, Stream, Streams};
+use crate::stream::{self, MODE, Stream, StreamStop, Streams};
 use opm_analysis::Index;
 use opm_core::manipulator::Mode;
 use opm_study::effort_names;
@@ -40,7 +40,7 @@ fn solve(
     loaded: &Loaded,
     analyser: &mut Analyser<'_>,
     mode: Mode,
-) -> Result<Summary, Stop> {
+) -> Result<Summary, StreamStop> {
     let start = Instant::now();
     let manipulator = analyser.manipulator;
     // Those that the mechanism has.

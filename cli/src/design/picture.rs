@@ -8,7 +8,7 @@ use crate::plot::mechanism::{At, figure};
 use opm_core::mechanism::file::MechanismFile;
 use opm_design::{Outcome, Problem};
 use opm_plot::{
-    Curve, Drawing, Heading, Measure, Panel, Row, Scale, Steps, TimeFigure, TooSmall, Unit,
+    Curve, Drawing, Heading, Measure, Panel, PanelRow, Scale, Steps, TimeFigure, TooSmall, Unit,
 };
 
 /// Draws what was found.
@@ -54,7 +54,7 @@ pub fn draw(
         heading: Heading { title: loaded.file.mechanism.name.clone(), lines, notes: vec![] },
         over: over.0,
         range: wide,
-        rows: vec![Row { names: vec!["front".to_owned()], panels: vec![Some(panel)] }],
+        rows: vec![PanelRow { names: vec!["front".to_owned()], panels: vec![Some(panel)] }],
         invalid: vec![],
         marks: vec![],
     };

@@ -3,7 +3,7 @@
 use super::{least, shown};
 use crate::text::reason;
 use opm_core::Quantity;
-use opm_core::forward::{NotFound, Stop};
+use opm_core::forward::{NearStop, NotFound};
 use opm_core::manipulator::{Manipulator, Mode, Unreachable};
 use opm_core::mechanism::file::FileUnits;
 use std::f64::consts::TAU;
@@ -21,7 +21,7 @@ pub fn explain(
         let leg = &manipulator.mechanism().legs[unreachable.leg].name;
         format!("{leg}: {}", reason(unreachable, units))
     };
-    if let (Stop::OutOfReach(unreachable), 0) = (&not_found.why, not_found.steps) {
+    if let (NearStop::OutOfReach(unreachable), 0) = (&not_found.why, not_found.steps) {
         return format!(
             "the start is out of reach in mode {signs}: {}; start elsewhere (--near), or in another mode \
              (--mode)",
@@ -33,12 +33,12 @@ pub fn explain(
         return format!("no assembly from any start: {}", lines.join("; "));
     }
     let why = match &not_found.why {
-        Stop::OutOfReach(unreachable) => {
+        NearStop::OutOfReach(unreachable) => {
             format!("the next step leads out of reach, {}", leg(unreachable))
         }
-        Stop::Singular => "the pose there is singular".to_owned(),
-        Stop::Stalled => "no step from there comes closer".to_owned(),
-        Stop::Steps => format!("{} steps did not arrive", not_found.steps),
+        NearStop::Singular => "the pose there is singular".to_owned(),
+        NearStop::Stalled => "no step from there comes closer".to_owned(),
+        NearStop::Steps => format!("{} steps did not arrive", not_found.steps),
     };
     let left =
         farthest(manipulator, actuated, mode, &not_found.pose).map(|(name, by, quantity)| {

@@ -5,7 +5,7 @@ use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::output::Shown;
-use crate::stream::{self, Stop, Stream, Streams, Wanted, other_columns};
+use crate::stream::{self, Stream, StreamStop, Streams, Wanted, other_columns};
 use crate::text::{count, short};
 use crate::unitless::plausible;
 use opm_core::forward::{Assembly, NearError};
@@ -92,7 +92,7 @@ type Unassembled = Option<(u64, Vec<f64>)>;
 
 impl Request<'_> {
     /// Solves all rows.
-    fn solve(&self, mut stream: Stream<'_>) -> Result<(Summary, Unassembled), Stop> {
+    fn solve(&self, mut stream: Stream<'_>) -> Result<(Summary, Unassembled), StreamStop> {
         let start = Instant::now();
         let m = self.manipulator;
         let actuated: Vec<_> = m.actuated().iter().map(|&i| &m.coordinates()[i]).collect();
@@ -192,7 +192,7 @@ impl Request<'_> {
         (row, number): (u64, usize),
         (time, joints): (Option<f64>, &[f64]),
         assembly: Option<&Assembly>,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), StreamStop> {
         let m = self.manipulator;
         let numbers: &[u64] = if self.all { &[row, number as u64] } else { &[] };
         rows.numbers(time.as_slice())?;

@@ -1,6 +1,6 @@
 //! `opm fk --vary`: the assemblies for each value of a number of the mechanism file.
 
-use super::{Found, solve};
+use super::{FoundAssemblies, solve};
 use crate::args::{FkArgs, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
@@ -16,7 +16,7 @@ pub fn run(
     let (units, silent) = (loaded.file.units, output.silent());
     runs::vary(loaded, &loaded.varied(vary)?, output, |changed| {
         let manipulator = changed.compile()?;
-        let Found { found, .. } = solve(args, given, &silent, (changed, &manipulator))?;
+        let FoundAssemblies { found, .. } = solve(args, given, &silent, (changed, &manipulator))?;
         let within = found.list.iter().filter(|assembly| assembly.within_limits).count();
         let mut cells = vec![
             Cell::count("assemblies", found.list.len() as u64),

@@ -32,8 +32,8 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
                 sweep.report(None, &summary, output);
                 Ok(())
             }
-            Err(Stop::Write(error)) => Err(Failure::stdout(error)),
-            Err(Stop::Failure(failure)) => Err(failure),
+            Err(SweepStop::Write(error)) => Err(Failure::stdout(error)),
+            Err(SweepStop::Failure(failure)) => Err(failure),
         };
     };
     run.loaded.refuse_as_output(path, &[])?;
@@ -44,10 +44,10 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
             let mut file = PartialFile::create(path).map_err(|e| Failure::at(&place, e))?;
             sweep
                 .csv(&mut file)
-                .and_then(|summary| file.commit().map(|()| summary).map_err(Stop::Write))
+                .and_then(|summary| file.commit().map(|()| summary).map_err(SweepStop::Write))
                 .map_err(|error| match error {
-                    Stop::Write(error) => Failure::at(&place, error),
-                    Stop::Failure(failure) => failure,
+                    SweepStop::Write(error) => Failure::at(&place, error),
+                    SweepStop::Failure(failure) => failure,
                 })?
         }
         Some("mcap") => record_linkage(&sweep.round, run.loaded.attachment(), path)?,
@@ -73,18 +73,18 @@ pub fn run(args: &LinkageArgs, output: &Output, run: &Run<'_>) -> Result<(), Fai
 }
 
 /// Why a sweep ends early.
-enum Stop {
+enum SweepStop {
     Write(io::Error),
     Failure(Failure),
 }
 
-impl From<StudyError> for Stop {
+impl From<StudyError> for SweepStop {
     fn from(error: StudyError) -> Self {
         Self::Failure(error.into())
     }
 }
 
-impl From<io::Error> for Stop {
+impl From<io::Error> for SweepStop {
     fn from(error: io::Error) -> Self {
         Self::Write(error)
     }
@@ -97,12 +97,12 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    fn csv(&self, output: &mut (dyn Write + Send)) -> Result<RoundSummary, Stop> {
+    fn csv(&self, output: &mut (dyn Write + Send)) -> Result<RoundSummary, SweepStop> {
         let linkage = self.round.linkage;
         let mut rows = Rows::new(output);
         let joints = linkage.coordinates().iter().map(|c| &*c.name);
         rows.header(joints.chain([&*linkage.imaginary().name, "branch", "within_limits"]))?;
-        let row = |_: u32, position: &Position| -> Result<(), Stop> {
+        let row = |_: u32, position: &Position| -> Result<(), SweepStop> {
             let Position { joints, imaginary, branch, within_limits } = position;
             rows.numbers(joints)?;
             rows.number(*imaginary)?;

@@ -42,12 +42,12 @@ pub struct Coordinate {
     pub home: Option<f64>,
     /// Its values on the grid, SI; `None` for the reference point of the platform, which is not on a grid.
     pub axis: Option<Axis>,
-    pub place: Place,
+    pub place: ValueSource,
 }
 
 /// The source of the value of a point's coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
+pub enum ValueSource {
     /// A field of the cloud, whose values were multiplied by this.
     Field(String, f64),
     /// The number of the slice, divided by this.
@@ -74,7 +74,7 @@ impl Layout {
             let axis = axis.and_then(|i| Some((*POSITION_FIELDS.get(i)?, factor(i))));
             let scalar = scalars.iter().find(|scalar| *scalar == name);
             let scalar = scalar.map(|scalar| (&**scalar, 1.0));
-            axis.or(scalar).map(|(field, factor)| Place::Field(field.to_owned(), factor))
+            axis.or(scalar).map(|(field, factor)| ValueSource::Field(field.to_owned(), factor))
         };
         let axis = |name: &str| axis(name, run.get(&format!("grid.{name}"))?);
         let mut layout = Self {
@@ -108,7 +108,8 @@ impl Layout {
                 let place = if i < grid.lower() {
                     field(c.name)
                 } else {
-                    let slice = (product >= together).then(|| Place::Slice(product / together));
+                    let slice =
+                        (product >= together).then(|| ValueSource::Slice(product / together));
                     product *= axis.count;
                     slice.or_else(|| field(c.name))
                 };
@@ -139,7 +140,7 @@ impl Layout {
                     },
                     home: None,
                     axis: axis(name),
-                    place: Place::Field(field.to_owned(), factor(i)),
+                    place: ValueSource::Field(field.to_owned(), factor(i)),
                 });
             }
         }
@@ -158,7 +159,7 @@ impl Layout {
         manipulator: &Manipulator,
         names: impl Iterator<Item = &'a str>,
         axis: impl Fn(&str) -> Option<Axis>,
-        place: impl Fn(&str) -> Option<Place>,
+        place: impl Fn(&str) -> Option<ValueSource>,
     ) {
         let known = self.kind.sections().coordinates(manipulator);
         for c in &known {

@@ -3,7 +3,7 @@
 use super::label::value_label;
 use super::options::PanelName;
 use super::sized::drawn;
-use super::source::{Rate, Source, Stop};
+use super::source::{Rate, ReadStop, Source};
 use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
 use super::violations::{count_of, listed, violations};
 use crate::args::PlotArgs;
@@ -13,7 +13,7 @@ use opm_core::Quantity;
 use opm_core::text::cell;
 use opm_mcap::Flat;
 use opm_mcap::trajectory::JOINTS_TOPIC;
-use opm_plot::{Drawing, Heading, Measure, Panel, Row, Scale, TimeFigure};
+use opm_plot::{Drawing, Heading, Measure, Panel, PanelRow, Scale, TimeFigure};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Nanoseconds per second.
@@ -44,7 +44,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
             message.values(&mut values)?;
             motion.add(topic, flat, message.time, &values);
         }
-        Ok::<(), Stop>(())
+        Ok::<(), ReadStop>(())
     })?;
     motion.finish();
     if motion.instants == 0 {
@@ -379,7 +379,7 @@ fn check_names(args: &PlotArgs, all: &[Trace]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) -> Row {
+fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) -> PanelRow {
     let mut names: Vec<String> = Vec::new();
     let mut columns: Vec<Vec<Trace>> = rates.iter().map(|_| vec![]).collect();
     for trace in traces {
@@ -405,7 +405,7 @@ fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) ->
         Some(Panel { title: title(group, quantity, rate), name, unit, scale, curves })
     };
     let panels = columns.into_iter().map(panel).collect();
-    Row { names, panels }
+    PanelRow { names, panels }
 }
 
 /// The label of an axis.

@@ -6,8 +6,8 @@ mod section;
 
 use super::choice::{fast, home, selected, several, varied};
 use super::inscribed::Shape;
-use super::layout::{Layout, Place};
-use super::source::{Rate, Source, Stop};
+use super::layout::{Layout, ValueSource};
+use super::source::{Rate, ReadStop, Source};
 use crate::args::PlotArgs;
 use crate::failure::Failure;
 use opm_mcap::rejected::MAX_CAUSES;
@@ -193,7 +193,7 @@ impl<'a> Slices<'a> {
         source.messages(|message| {
             let slice = slices.slice(message)?;
             if message.topic != SLICES_TOPIC {
-                return Ok::<(), Stop>(());
+                return Ok::<(), ReadStop>(());
             }
             if let (Some(cloud), Some(slice)) = (message.cloud()?, slice) {
                 self.each(&cloud, In::Slice(slice), Some(varied), |_, value| extend(value));
@@ -252,8 +252,8 @@ impl<'a> Slices<'a> {
         }
         let range = |seen: &Seen| {
             let (field, scale) = match &self.layout.coordinates[seen.number].place {
-                Place::Field(field, scale) => (Some(field), *scale),
-                Place::Slice(_) => (None, 1.0),
+                ValueSource::Field(field, scale) => (Some(field), *scale),
+                ValueSource::Slice(_) => (None, 1.0),
             };
             let found = field.and_then(|field| extents.iter().find(|e| e.field == *field));
             let value = |value: f64| value / scale / seen.factor;

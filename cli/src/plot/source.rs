@@ -37,23 +37,23 @@ pub struct Source<'a> {
 /// The moving system.
 pub struct Mechanism {
     pub file: MechanismFile,
-    pub kind: Kind,
+    pub kind: SourceSolver,
 }
 
 /// The solver for it.
-pub enum Kind {
+pub enum SourceSolver {
     Manipulator(Box<Manipulator>),
     Linkage(Box<Linkage>),
     Other,
 }
 
 /// The reason why reading stops early.
-pub enum Stop {
+pub enum ReadStop {
     Read(ReadError),
     Interrupted,
 }
 
-impl From<ReadError> for Stop {
+impl From<ReadError> for ReadStop {
     fn from(error: ReadError) -> Self {
         Self::Read(error)
     }
@@ -90,7 +90,7 @@ impl<'a> Source<'a> {
     /// Calls `visit` with every message.
     pub fn messages(
         &self,
-        visit: impl FnMut(&Message<'_>) -> Result<(), Stop>,
+        visit: impl FnMut(&Message<'_>) -> Result<(), ReadStop>,
     ) -> Result<(), Failure> {
         let total = self.recording.topics.iter().map(|topic| topic.messages).sum();
         self.each(Some(total), visit).map(|_| ())
@@ -99,24 +99,24 @@ impl<'a> Source<'a> {
     fn each(
         &self,
         total: Option<u64>,
-        mut visit: impl FnMut(&Message<'_>) -> Result<(), Stop>,
+        mut visit: impl FnMut(&Message<'_>) -> Result<(), ReadStop>,
     ) -> Result<Recording, Failure> {
         let seen = AtomicU64::new(0);
         let look = |message: &Message<'_>| {
             let number = seen.fetch_add(1, Ordering::Relaxed);
             if number.is_multiple_of(PORTION) && self.progress.is_cancelled() {
-                return Err(Stop::Interrupted);
+                return Err(ReadStop::Interrupted);
             }
             visit(message)
         };
         let done = || seen.load(Ordering::Relaxed);
         let found = watch_reading(self.output, total, done, || read(self.path, look));
         found.map_err(|stop| match stop {
-            Stop::Interrupted => {
+            ReadStop::Interrupted => {
                 let seen = count(done());
                 Failure::interrupted(format!("interrupted while reading; messages so far: {seen}"))
             }
-            Stop::Read(error) => match error {
+            ReadStop::Read(error) => match error {
                 ReadError::Io { source, .. } => Failure::at(&self.label, source),
                 ReadError::NotMcap { .. } => {
                     Failure::because(format!("{}: not an MCAP file", self.label), error)
@@ -134,10 +134,10 @@ impl<'a> Source<'a> {
         });
         let file = texts.filter_map(|text| read_mechanism(text).ok()).next()?;
         let kind = match Manipulator::new(file.mechanism.clone()) {
-            Ok(manipulator) => Kind::Manipulator(Box::new(manipulator)),
+            Ok(manipulator) => SourceSolver::Manipulator(Box::new(manipulator)),
             Err(_) => match Linkage::new(&file.mechanism) {
-                Ok(linkage) => Kind::Linkage(Box::new(linkage)),
-                Err(_) => Kind::Other,
+                Ok(linkage) => SourceSolver::Linkage(Box::new(linkage)),
+                Err(_) => SourceSolver::Other,
             },
         };
         Some(Mechanism { file, kind })
@@ -146,8 +146,8 @@ impl<'a> Source<'a> {
     /// The mechanism, if it has inverse kinematics.
     pub fn manipulator(&self) -> Option<&Manipulator> {
         match &self.mechanism.as_ref()?.kind {
-            Kind::Manipulator(manipulator) => Some(manipulator),
-            Kind::Linkage(_) | Kind::Other => None,
+            SourceSolver::Manipulator(manipulator) => Some(manipulator),
+            SourceSolver::Linkage(_) | SourceSolver::Other => None,
         }
     }
 

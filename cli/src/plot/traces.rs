@@ -1,6 +1,6 @@
 //! The topics of a motion, and the meaning of their values.
 
-use super::source::{Kind, Rate, Source, quantity};
+use super::source::{Rate, Source, SourceSolver, quantity};
 use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_mcap::Flat;
@@ -140,9 +140,11 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
 
 fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
     match &source.mechanism.as_ref()?.kind {
-        Kind::Manipulator(m) => m.imaginary().iter().find(|j| j.name == name).map(|j| j.quantity),
-        Kind::Linkage(l) => (l.imaginary().name == name).then(|| l.imaginary().quantity),
-        Kind::Other => None,
+        SourceSolver::Manipulator(m) => {
+            m.imaginary().iter().find(|j| j.name == name).map(|j| j.quantity)
+        }
+        SourceSolver::Linkage(l) => (l.imaginary().name == name).then(|| l.imaginary().quantity),
+        SourceSolver::Other => None,
     }
 }
 

@@ -6,7 +6,7 @@ use super::layout::Layout;
 use super::options::PanelName;
 use super::sized::drawn;
 use super::slices::{In, Slices, rounded};
-use super::source::{Rate, Source, Stop};
+use super::source::{Rate, ReadStop, Source};
 use crate::args::{Output, PlotArgs};
 use crate::failure::Failure;
 use crate::text::count;
@@ -89,7 +89,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
             return Ok(());
         }
         if message.topic != SLICES_TOPIC {
-            return Ok::<(), Stop>(());
+            return Ok::<(), ReadStop>(());
         }
         let (Some(found), Some(slice)) = (message.cloud()?, slice) else {
             return Ok(());

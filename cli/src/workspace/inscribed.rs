@@ -11,7 +11,7 @@ use opm_workspace::{Inscribed, InscribedShape};
 use serde_json::{Map, Value, json};
 
 /// What was found.
-pub struct Found {
+pub struct FoundInscribed {
     shape: InscribedShape,
     /// `None` if the set is empty, or the given centre outside.
     inscribed: Option<Inscribed>,
@@ -24,7 +24,7 @@ pub fn find(
     args: &WorkspaceArgs,
     workspace: &Workspace,
     analysis: &Analysis,
-) -> Result<Option<Found>, Failure> {
+) -> Result<Option<FoundInscribed>, Failure> {
     let Some(shape) = args.inscribed else { return Ok(None) };
     let varying = workspace.varying();
     let centre = match &args.centre {
@@ -34,10 +34,10 @@ pub fn find(
     let Some(set) = &analysis.set else { return Ok(None) };
     let inscribed = workspace.inscribed(set, shape, centre.as_deref())?;
     let quantities = varying.into_iter().map(|(_, quantity)| quantity).collect();
-    Ok(Some(Found { shape, inscribed, quantities, given: centre.is_some() }))
+    Ok(Some(FoundInscribed { shape, inscribed, quantities, given: centre.is_some() }))
 }
 
-impl Found {
+impl FoundInscribed {
     /// The shape that was found.
     pub fn shape(&self) -> Option<&Inscribed> {
         self.inscribed.as_ref()

@@ -19,11 +19,11 @@ pub struct Column {
     pub name: String,
     /// Whether they are lengths or angles.
     pub quantity: Quantity,
-    pub(crate) kind: Kind,
+    pub(crate) kind: ColumnKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum ColumnKind {
     /// The task coordinate with this number.
     Coordinate(usize),
     /// The dependent coordinate with this number.
@@ -62,26 +62,26 @@ impl Column {
         let column = |quantity, kind| Ok(Self { name: name.to_owned(), quantity, kind });
         let coordinates = manipulator.task_coordinates();
         if let Some(number) = coordinates.iter().position(|c| c.name == name) {
-            return column(coordinates[number].quantity, Kind::Coordinate(number));
+            return column(coordinates[number].quantity, ColumnKind::Coordinate(number));
         }
         let dependent = manipulator.dependent_coordinates();
         if let Some(number) = dependent.iter().position(|c| c.name == name) {
-            return column(dependent[number].quantity, Kind::Dependent(number));
+            return column(dependent[number].quantity, ColumnKind::Dependent(number));
         }
         let joints = manipulator.coordinates();
         if let Some(number) = joints.iter().position(|c| c.name == name) {
             if !manipulator.actuated().contains(&number) {
                 return Err(format!("{name} is a passive joint, expected an actuated one"));
             }
-            return column(joints[number].quantity, Kind::Joint(number));
+            return column(joints[number].quantity, ColumnKind::Joint(number));
         }
         let (what, of) = name.split_once('.').unwrap_or((name, ""));
         let axis = AXES.iter().position(|axis| *axis == of);
         match (what, axis) {
-            ("point", Some(axis)) => column(Quantity::Length, Kind::Point(axis)),
-            ("incline", Some(axis @ (0 | 1))) => column(Quantity::Angle, Kind::Incline(axis)),
+            ("point", Some(axis)) => column(Quantity::Length, ColumnKind::Point(axis)),
+            ("incline", Some(axis @ (0 | 1))) => column(Quantity::Angle, ColumnKind::Incline(axis)),
             ("distance", _) => match points.iter().find(|point| point.name == of) {
-                Some(point) => column(Quantity::Length, Kind::Distance(point.at)),
+                Some(point) => column(Quantity::Length, ColumnKind::Distance(point.at)),
                 None => {
                     let known = points.iter().map(|point| &*point.name).collect::<Vec<_>>();
                     let known = if known.is_empty() {
@@ -119,29 +119,29 @@ impl Column {
     pub fn home(&self, manipulator: &Manipulator) -> f64 {
         let platform = manipulator.mechanism().platform;
         match self.kind {
-            Kind::Coordinate(number) => manipulator.task_coordinates()[number].home,
-            Kind::Dependent(number) => manipulator.dependent_coordinates()[number].home,
-            Kind::Joint(number) => manipulator.coordinates()[number].home,
-            Kind::Point(axis) => platform[axis],
-            Kind::Distance(from) => (platform - from).norm(),
-            Kind::Incline(_) => 0.0,
+            ColumnKind::Coordinate(number) => manipulator.task_coordinates()[number].home,
+            ColumnKind::Dependent(number) => manipulator.dependent_coordinates()[number].home,
+            ColumnKind::Joint(number) => manipulator.coordinates()[number].home,
+            ColumnKind::Point(axis) => platform[axis],
+            ColumnKind::Distance(from) => (platform - from).norm(),
+            ColumnKind::Incline(_) => 0.0,
         }
     }
 
     /// Whether it is the value of a joint.
     pub fn is_joint(&self) -> bool {
-        matches!(self.kind, Kind::Joint(_))
+        matches!(self.kind, ColumnKind::Joint(_))
     }
 
     /// The value at a solved pose.
     pub(crate) fn value(&self, at: &Solution, body: &Body) -> f64 {
         match self.kind {
-            Kind::Coordinate(number) => at.pose()[number],
-            Kind::Dependent(number) => at.dependent()[number],
-            Kind::Joint(number) => at.joints()[number],
-            Kind::Point(axis) => body.point[axis],
-            Kind::Distance(from) => (body.point - from).norm(),
-            Kind::Incline(axis) => body.axes[axis].z.clamp(-1.0, 1.0).asin(),
+            ColumnKind::Coordinate(number) => at.pose()[number],
+            ColumnKind::Dependent(number) => at.dependent()[number],
+            ColumnKind::Joint(number) => at.joints()[number],
+            ColumnKind::Point(axis) => body.point[axis],
+            ColumnKind::Distance(from) => (body.point - from).norm(),
+            ColumnKind::Incline(axis) => body.axes[axis].z.clamp(-1.0, 1.0).asin(),
         }
     }
 
@@ -152,13 +152,15 @@ impl Column {
             RowVector6::from_fn(|_, i| if i < 3 { rotation[i] } else { way[i - 3] })
         };
         Some(match self.kind {
-            Kind::Coordinate(_) | Kind::Dependent(_) | Kind::Joint(_) => return None,
-            Kind::Point(axis) => row(Vector3::zeros(), Vector3::ith(axis, 1.0)),
-            Kind::Distance(from) => {
+            ColumnKind::Coordinate(_) | ColumnKind::Dependent(_) | ColumnKind::Joint(_) => {
+                return None;
+            }
+            ColumnKind::Point(axis) => row(Vector3::zeros(), Vector3::ith(axis, 1.0)),
+            ColumnKind::Distance(from) => {
                 let way = body.point - from;
                 row(Vector3::zeros(), way.try_normalize(0.0).unwrap_or_default())
             }
-            Kind::Incline(axis) => {
+            ColumnKind::Incline(axis) => {
                 let axis = body.axes[axis];
                 row(axis.cross(&Vector3::z()) / axis.xy().norm(), Vector3::zeros())
             }

@@ -10,7 +10,7 @@ use crate::identify::{Identified, range, vector_without, without};
 use crate::minimum::{Evaluation, minimise};
 use crate::parameter::{Instance, Parameter};
 use crate::prediction::Predictor;
-use crate::row::{Row, Solved};
+use crate::row::{MeasuredRow, Solved};
 use nalgebra::{DMatrix, DVector};
 use opm_core::Quantity;
 use opm_core::manipulator::Mode;
@@ -59,8 +59,8 @@ impl Problem<'_> {
         self.parameters.iter().map(unit).collect()
     }
 
-    fn row<'r>(&'r self, number: usize) -> Row<'r> {
-        Row { cells: &self.rows[number], weights: self.weights }
+    fn row<'r>(&'r self, number: usize) -> MeasuredRow<'r> {
+        MeasuredRow { cells: &self.rows[number], weights: self.weights }
     }
 
     /// The rows in the mechanism of the file. A row that nothing in reach fits takes no part.

@@ -21,11 +21,11 @@ pub struct Parameter {
     pub quantity: Quantity,
     /// Its value in the file, metres and radians; zero for a displacement of an axis.
     pub before: f64,
-    kind: Kind,
+    kind: ParameterKind,
 }
 
 #[derive(Clone, Debug)]
-enum Kind {
+enum ParameterKind {
     /// A parameter of the family: the number of its source of errors.
     Family { name: String, part: Option<usize>, source: usize },
     /// An offset of the family that is the home value of an actuated joint coordinate.
@@ -91,12 +91,12 @@ impl Instance {
         let mut twists = DMatrix::zeros(closure.joints.nrows(), parameters.len());
         for (column, parameter) in parameters.iter().enumerate() {
             match &parameter.kind {
-                Kind::Family { source, .. } | Kind::Pitch { source, .. } => {
+                ParameterKind::Family { source, .. } | ParameterKind::Pitch { source, .. } => {
                     twists.set_column(column, &closure.errors.column(*source));
                 }
                 // Where an encoder's zero is moves nothing.
-                Kind::Offset { .. } | Kind::Home { .. } => {}
-                Kind::Axes(displacement) => {
+                ParameterKind::Offset { .. } | ParameterKind::Home { .. } => {}
+                ParameterKind::Axes(displacement) => {
                     let leg = displacement.leg;
                     let carried = &closure.carried[leg];
                     let twist = self.axis_twist(parameters, displacement, carried);
@@ -128,7 +128,7 @@ impl Instance {
     /// The change of the value of an actuated coordinate for a unit of a parameter that is its offset.
     pub fn by_offset(parameter: &Parameter, of: usize) -> f64 {
         match parameter.kind {
-            Kind::Offset { coordinate, .. } | Kind::Home { coordinate } => {
+            ParameterKind::Offset { coordinate, .. } | ParameterKind::Home { coordinate } => {
                 f64::from(u8::from(coordinate == of))
             }
             _ => 0.0,
@@ -145,7 +145,7 @@ fn total(
 ) -> Screw {
     let mut sum = Vector6::zeros();
     for (parameter, value) in parameters.iter().zip(values) {
-        if let Kind::Axes(other) = &parameter.kind
+        if let ParameterKind::Axes(other) = &parameter.kind
             && (other.leg, other.joint) == (displacement.leg, displacement.joint)
         {
             sum += other.twists[number].to_vector() * *value;
@@ -178,7 +178,7 @@ pub fn parameters(instance: &Instance) -> Vec<Parameter> {
         Some(family) => all.extend(offsets(family, manipulator)),
         None => all.extend(manipulator.actuated().iter().map(|&coordinate| {
             let c = &manipulator.coordinates()[coordinate];
-            let kind = Kind::Home { coordinate };
+            let kind = ParameterKind::Home { coordinate };
             let name = format!("{}.home", c.name);
             Parameter { name, quantity: c.quantity, before: c.home, kind }
         })),
@@ -199,7 +199,7 @@ fn of_family(family: &Family, model: &Model<'_>) -> Vec<Parameter> {
                 _ => None,
             }
         })?;
-        let kind = Kind::Family { name: name.clone(), part, source };
+        let kind = ParameterKind::Family { name: name.clone(), part, source };
         Some(Parameter { name: of.name.clone(), quantity: of.quantity, before, kind })
     };
     let sources = model.sources().iter().enumerate().filter(|(_, source)| source.is_parameter());
@@ -232,7 +232,7 @@ fn offsets(family: &Family, manipulator: &Manipulator) -> Vec<Parameter> {
         };
         let coordinate = manipulator.actuated().iter().copied().find(shifted)?;
         let quantity = coordinates[coordinate].quantity;
-        let kind = Kind::Offset { name: name.clone(), coordinate };
+        let kind = ParameterKind::Offset { name: name.clone(), coordinate };
         Some(Parameter { name, quantity, before, kind })
     };
     family.parameters().into_iter().filter_map(offset).collect()
@@ -245,7 +245,7 @@ fn of_joints(manipulator: &Manipulator, model: &Model<'_>) -> Vec<Parameter> {
         for joint in 0..own.joints.len() {
             for displacement in allowed(manipulator, model, leg, joint) {
                 let (name, quantity) = (displacement.name.clone(), displacement.quantity);
-                let kind = Kind::Axes(displacement);
+                let kind = ParameterKind::Axes(displacement);
                 all.push(Parameter { name, quantity, before: 0.0, kind });
             }
             if let JointKind::Helical { pitch } = own.joints[joint].kind
@@ -254,7 +254,7 @@ fn of_joints(manipulator: &Manipulator, model: &Model<'_>) -> Vec<Parameter> {
                 let name = format!("{}.{}.pitch", own.name, own.joints[joint].name);
                 let source = model.sources().iter().position(|source| source.name == name);
                 let Some(source) = source else { continue };
-                let kind = Kind::Pitch { leg, joint, source };
+                let kind = ParameterKind::Pitch { leg, joint, source };
                 all.push(Parameter { name, quantity: Quantity::Length, before: pitch, kind });
             }
         }
@@ -277,20 +277,20 @@ fn apply(
     for (parameter, change) in parameters.iter().zip(changes) {
         let value = parameter.before + change;
         match &parameter.kind {
-            Kind::Family { name, part: None, .. } | Kind::Offset { name, .. } => {
+            ParameterKind::Family { name, part: None, .. } | ParameterKind::Offset { name, .. } => {
                 // An offset that is not given stays away where nothing is changed.
                 if *change != 0.0 {
                     pairs.push((name, ParameterValue::Number(value)));
                 }
             }
-            Kind::Family { name, part: Some(part), .. } => {
+            ParameterKind::Family { name, part: Some(part), .. } => {
                 let known = pairs.iter_mut().find(|(known, _)| known == name);
                 match known {
                     Some((_, ParameterValue::Pair(pair))) => pair[*part] = value,
                     _ => {
                         let of = |number: usize| {
                             let other = parameters.iter().find(|other| {
-                                matches!(&other.kind, Kind::Family { name: known, part: Some(part), .. }
+                                matches!(&other.kind, ParameterKind::Family { name: known, part: Some(part), .. }
                                     if known == name && *part == number)
                             });
                             other.map_or(0.0, |other| other.before)
@@ -301,7 +301,7 @@ fn apply(
                     }
                 }
             }
-            Kind::Home { .. } | Kind::Axes(_) | Kind::Pitch { .. } => {}
+            ParameterKind::Home { .. } | ParameterKind::Axes(_) | ParameterKind::Pitch { .. } => {}
         }
     }
     file.with(pairs)
@@ -311,23 +311,23 @@ fn apply(
 fn displace(mechanism: &mut Mechanism, parameters: &[Parameter], changes: &[f64]) {
     for (parameter, change) in parameters.iter().zip(changes) {
         match &parameter.kind {
-            Kind::Home { coordinate } => {
+            ParameterKind::Home { coordinate } => {
                 let all = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
                 let mut all = all.flat_map(|joint| &mut joint.coordinates);
                 if let Some(c) = all.nth(*coordinate) {
                     c.home += change;
                 }
             }
-            Kind::Pitch { leg, joint, .. } => {
+            ParameterKind::Pitch { leg, joint, .. } => {
                 let joint = &mut mechanism.legs[*leg].joints[*joint];
                 if let JointKind::Helical { pitch } = &mut joint.kind {
                     *pitch += change;
                 }
             }
-            Kind::Axes(displacement) => {
+            ParameterKind::Axes(displacement) => {
                 // All displacements of the joint at once, with its first.
                 let first = parameters.iter().find_map(|other| match &other.kind {
-                    Kind::Axes(of)
+                    ParameterKind::Axes(of)
                         if (of.leg, of.joint) == (displacement.leg, displacement.joint) =>
                     {
                         Some(&other.name)
@@ -342,7 +342,7 @@ fn displace(mechanism: &mut Mechanism, parameters: &[Parameter], changes: &[f64]
                     place(joint, &moved);
                 }
             }
-            Kind::Family { .. } | Kind::Offset { .. } => {}
+            ParameterKind::Family { .. } | ParameterKind::Offset { .. } => {}
         }
     }
 }

@@ -5,10 +5,10 @@
 //! the smallest are taken, and their misfit is the play that the joints need at each measured pose. What no residual shows is
 //! not in it: the real play may be larger.
 
-use crate::column::{Body, Kind};
+use crate::column::{Body, ColumnKind};
 use crate::fit::{Derivatives, Problem, State, stacked};
 use crate::identify::{Identified, range, without};
-use crate::row::Row;
+use crate::row::MeasuredRow;
 use nalgebra::{DMatrix, DVector, RowVector6};
 use opm_accuracy::{Response, Source};
 use opm_core::Quantity;
@@ -72,7 +72,7 @@ pub fn residual_play(
                 let response = model.at(at).ok().filter(|response| response.held)?;
                 let body = Body::new(manipulator, &at.displacement(manipulator));
                 let by = by_errors(problem, &response, &body)?;
-                let cells = Row { cells: &problem.rows[*number], weights: problem.weights };
+                let cells = MeasuredRow { cells: &problem.rows[*number], weights: problem.weights };
                 let mut by = cells.weighted(&by);
                 for (mut column, unit) in by.column_iter_mut().zip(&units) {
                     column.scale_mut(unit / scale);
@@ -122,7 +122,9 @@ fn by_errors(problem: &Problem<'_>, response: &Response, body: &Body) -> Option<
     let mut by = DMatrix::zeros(problem.columns.len(), response.twists.ncols());
     for (row, column) in problem.columns.iter().enumerate() {
         match (column.kind, column.by_twist(body)) {
-            (Kind::Coordinate(number), _) => by.set_row(row, &response.coordinates.row(number)),
+            (ColumnKind::Coordinate(number), _) => {
+                by.set_row(row, &response.coordinates.row(number))
+            }
             (_, Some(by_twist)) => {
                 let by_twist: RowVector6<f64> = by_twist;
                 by.set_row(row, &(by_twist * &response.twists));

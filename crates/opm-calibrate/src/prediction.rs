@@ -4,7 +4,7 @@
 //! displacements `q̇` of its joints, the twist `E` of a change of a parameter, and the twists of the dependent coordinates
 //! add up: `Σ s q̇ + E = Σ t ḋ`.
 
-use crate::column::{Body, Column, Kind};
+use crate::column::{Body, Column, ColumnKind};
 use crate::parameter::{Instance, Parameter};
 use nalgebra::{DMatrix, Isometry3, Vector6};
 use opm_accuracy::Model;
@@ -48,16 +48,17 @@ impl Predictor<'_> {
         let body = Body::new(manipulator, &at.displacement(manipulator));
         let values = self.columns.iter().map(|column| column.value(at, &body)).collect();
         let coordinates = manipulator.task_coordinates().len();
-        let dependent = match self.columns.iter().any(|c| matches!(c.kind, Kind::Dependent(_))) {
-            true => dependent_by_pose(manipulator, at)?,
-            false => DMatrix::zeros(0, coordinates),
-        };
+        let dependent =
+            match self.columns.iter().any(|c| matches!(c.kind, ColumnKind::Dependent(_))) {
+                true => dependent_by_pose(manipulator, at)?,
+                false => DMatrix::zeros(0, coordinates),
+            };
         let mut by_pose = DMatrix::zeros(self.columns.len(), coordinates);
         for (row, column) in self.columns.iter().enumerate() {
             match (column.kind, column.by_twist(&body)) {
-                (Kind::Coordinate(number), _) => by_pose[(row, number)] = 1.0,
-                (Kind::Joint(number), _) => by_pose.set_row(row, &joints.row(number)),
-                (Kind::Dependent(number), _) => by_pose.set_row(row, &dependent.row(number)),
+                (ColumnKind::Coordinate(number), _) => by_pose[(row, number)] = 1.0,
+                (ColumnKind::Joint(number), _) => by_pose.set_row(row, &joints.row(number)),
+                (ColumnKind::Dependent(number), _) => by_pose.set_row(row, &dependent.row(number)),
                 (_, Some(by_twist)) => by_pose.set_row(row, &(by_twist * &twists)),
                 (_, None) => {}
             }
@@ -98,14 +99,14 @@ impl Predictor<'_> {
         let mut by = DMatrix::zeros(self.columns.len(), parameters.len());
         for (row, column) in self.columns.iter().enumerate() {
             match (column.kind, column.by_twist(body)) {
-                (Kind::Coordinate(_), _) => {}
-                (Kind::Joint(number), _) => {
+                (ColumnKind::Coordinate(_), _) => {}
+                (ColumnKind::Joint(number), _) => {
                     by.set_row(row, &found.row(number));
                     for (k, parameter) in parameters.iter().enumerate() {
                         by[(row, k)] += Instance::by_offset(parameter, number);
                     }
                 }
-                (Kind::Dependent(number), _) => by.set_row(row, &found.row(joints + number)),
+                (ColumnKind::Dependent(number), _) => by.set_row(row, &found.row(joints + number)),
                 (_, Some(mut by_twist)) => {
                     by_twist.fixed_columns_mut::<3>(3).scale_mut(length);
                     let rates = found.rows(joints, tied.ncols());

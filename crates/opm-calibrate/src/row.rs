@@ -1,6 +1,6 @@
 //! The pose of one measurement: the one that fits its cells best.
 
-use crate::column::{Column, Kind};
+use crate::column::{Column, ColumnKind};
 use crate::minimum::{Evaluation, minimise};
 use crate::prediction::{Prediction, Predictor};
 use nalgebra::DMatrix;
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 const TOLERANCE: f64 = 1e-12;
 
 /// The cells of a row that count.
-pub struct Row<'a> {
+pub struct MeasuredRow<'a> {
     /// A value for each column; `None` where nothing was measured.
     pub cells: &'a [Option<f64>],
     /// One over the standard deviation of each column.
@@ -30,7 +30,7 @@ pub struct Solved {
     pub by_pose: DMatrix<f64>,
 }
 
-impl Row<'_> {
+impl MeasuredRow<'_> {
     /// The numbers of the columns that were measured.
     pub fn measured(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.cells.len()).filter(|&column| self.cells[column].is_some())
@@ -84,7 +84,7 @@ impl Row<'_> {
         let mut given = home.clone();
         let mut known = 0;
         for (column, cell) in predictor.columns.iter().zip(self.cells) {
-            if let (Kind::Coordinate(number), Some(value)) = (column.kind, cell) {
+            if let (ColumnKind::Coordinate(number), Some(value)) = (column.kind, cell) {
                 given[number] = *value;
                 known += 1;
             }
@@ -114,7 +114,7 @@ impl Row<'_> {
         let value = |joint: &usize| {
             let mut cells = predictor.columns.iter().zip(self.cells);
             cells.find_map(|(column, cell)| match column.kind {
-                Kind::Joint(number) if number == *joint => *cell,
+                ColumnKind::Joint(number) if number == *joint => *cell,
                 _ => None,
             })
         };

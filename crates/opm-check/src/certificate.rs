@@ -118,13 +118,13 @@ impl Certificate {
 }
 
 /// A pose and a mode in a message.
-pub(crate) struct Place<'a> {
+pub(crate) struct PoseInMode<'a> {
     pub manipulator: &'a opm_core::Manipulator,
     pub pose: &'a [f64],
     pub mode: opm_core::manipulator::Mode,
 }
 
-impl fmt::Display for Place<'_> {
+impl fmt::Display for PoseInMode<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "mode {:?}", self.manipulator.format_mode(self.mode))?;
         for (c, value) in self.manipulator.task_coordinates().iter().zip(self.pose) {

@@ -1,6 +1,6 @@
 //! Forward kinematics compared with the poses that joint values came from.
 
-use crate::certificate::{Comparison, Options, Place};
+use crate::certificate::{Comparison, Options, PoseInMode};
 use crate::closure::{apart, gap};
 use crate::poses::{pose, tolerance};
 use opm_core::manipulator::{Manipulator, Mode};
@@ -53,7 +53,7 @@ pub fn forward(
             continue;
         }
         let mode = modes[rng.usize(..modes.len())];
-        let place = || Place { manipulator, pose: &pose, mode }.to_string();
+        let place = || PoseInMode { manipulator, pose: &pose, mode }.to_string();
         let regular = manipulator.solution_in_mode(&all, mode, &mut at).is_some()
             && manipulator.differentiate(&at, &mut jacobians).is_ok_and(|regular| regular);
         if regular {

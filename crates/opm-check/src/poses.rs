@@ -1,7 +1,7 @@
 //! Closures and branches at random poses.
 
 use crate::branches::{Alone, Branches};
-use crate::certificate::{Comparison, Options, Place};
+use crate::certificate::{Comparison, Options, PoseInMode};
 use crate::closure::gap;
 use fastrand::Rng;
 use opm_core::Quantity;
@@ -66,7 +66,7 @@ pub fn closures(
             found.leave_out("out of reach");
         }
         for mode in modes {
-            let place = || Place { manipulator, pose: &pose, mode }.to_string();
+            let place = || PoseInMode { manipulator, pose: &pose, mode }.to_string();
             let Some(solution) = manipulator.solution_in_mode(&all, mode, &mut solution) else {
                 found.fail(|| format!("no solution in a mode that reaches the pose: {}", place()));
                 continue;
@@ -120,7 +120,7 @@ pub fn branches(
                     found.compared += 1;
                     let mode = manipulator.home_mode();
                     found.fail(|| {
-                        let place = Place { manipulator, pose: &pose, mode };
+                        let place = PoseInMode { manipulator, pose: &pose, mode };
                         format!(
                             "{name} has {branches} branches, {distinct} of them different, and a numeric solver \
                              finds {solutions}, together {either}: {place}"

@@ -1,6 +1,6 @@
 //! Rates and accelerations compared with differences of inverse kinematics.
 
-use crate::certificate::{Comparison, Options, Place};
+use crate::certificate::{Comparison, Options, PoseInMode};
 use crate::differences::derivatives as differences;
 use crate::poses::pose;
 use opm_core::Quantity;
@@ -91,7 +91,7 @@ pub fn derivatives(
             let off = numbers.iter().zip(known).map(|(number, d)| (number - d.value).abs());
             let off = off.fold(0.0, |most: f64, off| if off <= most { most } else { off }) / most;
             found.note(off * RATE / tolerance, || {
-                Place { manipulator, pose: &pose, mode }.to_string()
+                PoseInMode { manipulator, pose: &pose, mode }.to_string()
             });
         }
     }

@@ -60,7 +60,7 @@ mod trigonometric;
 
 pub use crate::manipulator::NoClosedForm;
 pub use least::LeastChange;
-pub use near::{NearError, NotFound, Stop};
+pub use near::{NearError, NearStop, NotFound};
 pub use newton::NearBuffer;
 
 use crate::manipulator::{LARGEST, Manipulator, Mode, Section, Unreachable};

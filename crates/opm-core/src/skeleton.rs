@@ -25,7 +25,7 @@ mod solid;
 
 pub use density::{Density, OutOfRange};
 pub use mass::Mass;
-pub use solid::{Material, Part, PartKind, Solid};
+pub use solid::{BodyPart, Material, PartKind, Solid};
 
 use crate::decomposition::{Decomposition, Freedom};
 use crate::group::screw::Screw;
@@ -46,7 +46,7 @@ pub struct Body {
     /// Origin of the body's frame at home, in base coordinates, metres.
     pub origin: Point3<f64>,
     /// The solids that the body consists of, in its own frame.
-    pub parts: Vec<Part>,
+    pub parts: Vec<BodyPart>,
     /// The joints that connect the body to others, in its own frame; of a link, first the one on the base side.
     pub seats: Vec<Seat>,
     /// The radius of its rods, metres.
@@ -358,7 +358,7 @@ impl Builder<'_> {
     /// Adds a solid, given in base coordinates at home, to a body.
     fn draw(&mut self, body: usize, solid: Solid, material: Material, kind: PartKind) {
         let body = &mut self.bodies[body];
-        body.parts.push(Part { solid: solid.moved(-body.origin.coords), material, kind });
+        body.parts.push(BodyPart { solid: solid.moved(-body.origin.coords), material, kind });
     }
 
     /// Connects two bodies by a joint. Its centre is given in base coordinates at home.

@@ -72,7 +72,7 @@ mod search;
 mod violations;
 mod watch;
 
-pub use gauge::{Bound, Gauge, Part, Violation};
+pub use gauge::{Bound, Gauge, GaugedPart, Violation};
 pub use report::ViolationReport;
 pub use violations::Change;
 
@@ -483,9 +483,9 @@ impl Solver<'_> {
                 let Singularities { upper, lower, whole, .. } = &self.measured;
                 let both = upper.parallel.is_some() && lower.parallel.is_some();
                 let measure = match part {
-                    Part::Section(Section::Upper) => upper.parallel,
-                    Part::Section(Section::Lower) => lower.parallel,
-                    Part::Whole => whole.parallel.filter(|_| !both),
+                    GaugedPart::Section(Section::Upper) => upper.parallel,
+                    GaugedPart::Section(Section::Lower) => lower.parallel,
+                    GaugedPart::Whole => whole.parallel.filter(|_| !both),
                 };
                 measure.filter(|_| reached)
             }

@@ -72,7 +72,7 @@ pub fn lower(
     let sweep = Sweep::new(manipulator, &grid, Modes::One(mode));
     let places: Vec<Measure> = places.into_iter().cloned().collect();
     let swept = Swept::new(&sweep, &places, problem.largest_radius(manipulator), progress)?;
-    let none = Found::default();
+    let none = GridFindings::default();
     let value = |measure: &Measure| {
         let other = others.iter().find(|(known, _)| known == measure);
         other.map_or_else(|| swept.value(measure, manipulator, &none), |(_, value)| *value)
@@ -149,7 +149,7 @@ impl Swept {
         Ok(Self { count, visits, radii, largest })
     }
 
-    fn value(&self, measure: &Measure, manipulator: &Manipulator, found: &Found) -> Value {
+    fn value(&self, measure: &Measure, manipulator: &Manipulator, found: &GridFindings) -> Value {
         let reached = share(&self.count);
         let places = |least: u64| {
             let Some(visits) = &self.visits else { return 0.0 };
@@ -208,7 +208,7 @@ struct Asked {
 
 /// What was found over the poses in reach.
 #[derive(Clone, Debug, Default)]
-struct Found {
+struct GridFindings {
     worst: Vec<(Index, f64)>,
     ranges: Ranges,
 }
@@ -244,9 +244,9 @@ impl Asked {
         manipulator: &Manipulator,
         mode: Mode,
         progress: &Progress,
-    ) -> Result<Found, Cancelled> {
+    ) -> Result<GridFindings, Cancelled> {
         if self.indices.is_empty() && self.joints.is_empty() {
-            return Ok(Found::default());
+            return Ok(GridFindings::default());
         }
         let pieces = (0..grid.poses().div_ceil(PIECE)).into_par_iter();
         let found = pieces.map(|piece| {
@@ -274,13 +274,13 @@ impl Asked {
         found.try_reduce(|| self.nothing(), |one, other| Ok(one.with(&other)))
     }
 
-    fn nothing(&self) -> Found {
+    fn nothing(&self) -> GridFindings {
         let best = |index: &Index| {
             let large = index.facts().large_is_good;
             (*index, if large { f64::INFINITY } else { f64::NEG_INFINITY })
         };
         let empty = [f64::INFINITY, f64::NEG_INFINITY];
-        Found {
+        GridFindings {
             worst: self.indices.iter().map(best).collect(),
             ranges: self.joints.iter().map(|(name, _)| (name.clone(), empty)).collect(),
         }
@@ -298,7 +298,7 @@ fn worse(index: Index, one: f64, other: f64) -> f64 {
     if index.facts().large_is_good { one.min(other) } else { one.max(other) }
 }
 
-impl Found {
+impl GridFindings {
     fn with(mut self, other: &Self) -> Self {
         for ((index, own), (_, theirs)) in self.worst.iter_mut().zip(&other.worst) {
             *own = worse(*index, *own, *theirs);

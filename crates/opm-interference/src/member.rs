@@ -13,7 +13,7 @@
 
 use nalgebra::{Point3, Unit, Vector3};
 use opm_core::mechanism::{Mechanism, Obstacle, ObstacleShape};
-use opm_core::skeleton::{Body, Material, Part, PartKind, SeatMotion, Skeleton, Solid};
+use opm_core::skeleton::{Body, BodyPart, Material, PartKind, SeatMotion, Skeleton, Solid};
 use parry3d_f64::math::{Pose, Rot3, Vector};
 use std::ops::Range;
 
@@ -99,7 +99,7 @@ pub fn names_of_parts(body: &Body) -> Vec<Option<String>> {
     // The guides of the base come in the order of the joints that they belong to.
     let sliders = body.seats.iter().filter(|seat| seat.motion == SeatMotion::Slide);
     let mut guides = sliders.map(|seat| format!("{}/{}", body.name, seat.joint));
-    let name = |part: &Part| match part.kind {
+    let name = |part: &BodyPart| match part.kind {
         PartKind::Guide { .. } if body.parent.is_none() => guides.next(),
         PartKind::Rod | PartKind::Guide { .. } => Some(body.name.clone()),
         PartKind::Joint | PartKind::Ring => None,

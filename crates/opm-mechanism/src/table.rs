@@ -21,5 +21,5 @@ mod plausible;
 
 pub use columns::{ColumnNames, Suggestion};
 pub use dialect::{hint, hint_of_row, not_commas};
-pub use lines::{Line, Lines, Place, number};
+pub use lines::{FieldPlace, Line, Lines, number};
 pub use plausible::Plausible;

@@ -38,7 +38,7 @@
 //!
 //! | question | items |
 //! |---|---|
-//! | curves over time | [`TimeFigure`], [`Row`], [`Panel`], [`Curve`], [`Scale`] |
+//! | curves over time | [`TimeFigure`], [`PanelRow`], [`Panel`], [`Curve`], [`Scale`] |
 //! | points in a plane | [`TileFigure`], [`Section`], [`Tile`], [`Cells`], [`Cloud`], [`Histogram`], [`Bar`] |
 //! | solids in space | [`ViewFigure`], [`Body`], [`Named`] |
 //! | axes and units | [`Unit`], [`Steps`], [`Measure`], module [`axis`] |
@@ -74,7 +74,7 @@ pub use heading::Heading;
 pub use tiles::{
     Bar, Cells, Cloud, Content, Histogram, Measure, Paint, Section, Spacing, Tile, TileFigure,
 };
-pub use time::{Panel, Row, Scale, TimeFigure};
+pub use time::{Panel, PanelRow, Scale, TimeFigure};
 pub use views::{Body, Named, Point, ViewFigure};
 
 /// The largest width and height of a figure, in pixels of a screen. A PNG has [`png::SCALE`] pixels for each of

@@ -19,7 +19,7 @@ pub struct TimeFigure {
     /// The first and the last time, or the lowest and the highest of the other value.
     pub range: [f64; 2],
     /// The rows of panels, from top to bottom.
-    pub rows: Vec<Row>,
+    pub rows: Vec<PanelRow>,
     /// Spans in which the values are not valid, which are shaded.
     pub invalid: Vec<[f64; 2]>,
     /// Places that are marked with their numbers, from 1 on, in ascending order.
@@ -28,7 +28,7 @@ pub struct TimeFigure {
 
 /// A row of panels whose curves have the same names: for instance values and their rates.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct PanelRow {
     /// The names of the curves, for the legend.
     pub names: Vec<String>,
     /// One panel for each column; `None` leaves a column empty.
@@ -46,7 +46,7 @@ pub struct Panel {
     pub unit: Unit,
     /// How values are laid out along the vertical axis.
     pub scale: Scale,
-    /// The curves, each with the number of its name in [`Row::names`].
+    /// The curves, each with the number of its name in [`PanelRow::names`].
     pub curves: Vec<(usize, Curve)>,
 }
 
@@ -202,7 +202,7 @@ impl TimeFigure {
         }
     }
 
-    fn panel(&self, panel: &Panel, row: &Row, spot: &Spot) -> Shape {
+    fn panel(&self, panel: &Panel, row: &PanelRow, spot: &Spot) -> Shape {
         let Spot { place, left, ends, first } = *spot;
         let most = (place.width / 50.0) as usize;
         let x = Axis::linear(widened(self.range), self.over.unit.steps, most, fits(place.width));

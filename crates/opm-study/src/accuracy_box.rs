@@ -55,7 +55,7 @@ pub struct BoxErrors {
 }
 
 /// A part of the box.
-struct Part {
+struct BoxPart {
     ends: Vec<[f64; 2]>,
     /// Bounds of the displacement and of the rotation: those of a larger part until its own are known.
     bounds: [f64; 2],
@@ -63,7 +63,7 @@ struct Part {
 
 /// What was found of a part that has poses in reach.
 struct Seen {
-    part: Part,
+    part: BoxPart,
     /// The number of the side to bisect; `None` if it is a single pose.
     split: Option<usize>,
     /// Displacement and rotation at poses.
@@ -82,7 +82,7 @@ impl BoxRequest<'_> {
         self.model.check_boxes(self.sizes)?;
         let none = || Bounded { found: f64::NAN, pose: Vec::new(), bound: 0.0 };
         let mut worst = [none(), none()];
-        let mut parts = vec![Part { ends: over.clone(), bounds: [f64::INFINITY; 2] }];
+        let mut parts = vec![BoxPart { ends: over.clone(), bounds: [f64::INFINITY; 2] }];
         let mut boxes = 0;
         while !parts.is_empty() && (boxes == 0 || boxes + parts.len() as u64 <= self.most) {
             boxes += parts.len() as u64;
@@ -123,7 +123,7 @@ impl BoxRequest<'_> {
     }
 
     /// Bounds the errors in a part, and computes them at a pose where they are large. `None` if no pose is in reach.
-    fn look(&self, mut part: Part) -> Option<Seen> {
+    fn look(&self, mut part: BoxPart) -> Option<Seen> {
         let manipulator = self.model.manipulator();
         let sides: Vec<Side> = part.sides().collect();
         if manipulator.enclose(BoxQuery::Whole, Some(self.mode), &sides).upper <= 0.0 {
@@ -166,7 +166,7 @@ impl BoxRequest<'_> {
     }
 }
 
-impl Part {
+impl BoxPart {
     fn sides(&self) -> impl Iterator<Item = Side> + '_ {
         self.ends.iter().map(|[low, high]| Side {
             middle: 0.5 * (low + high),

@@ -93,14 +93,14 @@ fn of_joints(file: &MechanismFile) -> Vec<Dimension> {
     add("platform", PLATFORM.to_owned(), length, SPACE, point(file.mechanism.platform));
     for leg in &file.mechanism.legs {
         for joint in &leg.joints {
-            for &part in Part::of(joint) {
+            for &part in PlacePart::of(joint) {
                 let label = format!("{}.{}", joint.name, part.key());
                 let (unit, parts, values) = match (part, joint.kind) {
-                    (Part::Point, _) => (length, SPACE, point(joint.point)),
-                    (Part::Axis2, JointKind::Universal { second }) => {
+                    (PlacePart::Point, _) => (length, SPACE, point(joint.point)),
+                    (PlacePart::Axis2, JointKind::Universal { second }) => {
                         ("", SPACE, direction(second))
                     }
-                    (Part::Pitch, JointKind::Helical { pitch }) => {
+                    (PlacePart::Pitch, JointKind::Helical { pitch }) => {
                         (length, SINGLE, vec![shown(pitch, Quantity::Length, units)])
                     }
                     _ => ("", SPACE, direction(joint.axis)),
@@ -124,14 +124,14 @@ const PLATFORM: &str = "platform.point";
 
 /// What of a joint's place can be changed.
 #[derive(Clone, Copy, PartialEq)]
-enum Part {
+enum PlacePart {
     Point,
     Axis,
     Axis2,
     Pitch,
 }
 
-impl Part {
+impl PlacePart {
     const ALL: [Self; 4] = [Self::Point, Self::Axis, Self::Axis2, Self::Pitch];
 
     /// Its key in files.
@@ -202,17 +202,21 @@ fn place(
         return Some(point(given, units).map(|point| mechanism.platform = point));
     }
     let (joint, key) = name.rsplit_once('.')?;
-    let part = Part::ALL.into_iter().find(|part| part.key() == key)?;
+    let part = PlacePart::ALL.into_iter().find(|part| part.key() == key)?;
     let mut joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
     let joint = joints.find(|known| known.name == joint)?;
-    if !Part::of(joint).contains(&part) {
+    if !PlacePart::of(joint).contains(&part) {
         return None;
     }
     Some(match part {
-        Part::Point => point(given, units).map(|point| joint.point = point),
-        Part::Axis => direction(given).map(|axis| joint.axis = axis),
-        Part::Axis2 => direction(given).map(|second| joint.kind = JointKind::Universal { second }),
-        Part::Pitch => pitch(given, units).map(|pitch| joint.kind = JointKind::Helical { pitch }),
+        PlacePart::Point => point(given, units).map(|point| joint.point = point),
+        PlacePart::Axis => direction(given).map(|axis| joint.axis = axis),
+        PlacePart::Axis2 => {
+            direction(given).map(|second| joint.kind = JointKind::Universal { second })
+        }
+        PlacePart::Pitch => {
+            pitch(given, units).map(|pitch| joint.kind = JointKind::Helical { pitch })
+        }
     })
 }
 

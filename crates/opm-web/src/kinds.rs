@@ -17,7 +17,7 @@ const TURNS: u64 = 5;
 
 /// A kind, and why this mechanism has no workspace of it.
 #[derive(Serialize)]
-struct Kind {
+struct KindAnswer {
     name: &'static str,
     description: &'static str,
     /// Whether orientations about that of the pose can be asked for.
@@ -62,7 +62,7 @@ pub fn kinds(explorer: &Explorer) -> Reply {
     let shown = WorkspaceKind::ALL.into_iter().filter(|kind| *kind != WorkspaceKind::Aspects);
     let list = shown.map(|kind| {
         let checked = WorkspaceRequest::new(kind).check(explorer.manipulator().clone());
-        Kind {
+        KindAnswer {
             name: kind.name(),
             description: kind.description(),
             turns: kind.is_of_places(),

@@ -19,7 +19,7 @@ mod rectangle;
 mod search;
 
 use crate::set::GridSet;
-use cells::{Cells, Found};
+use cells::{Cells, CentreAndRadii};
 
 /// Most points of the lattice, which take a GiB of memory.
 const MOST: u64 = 1 << 27;
@@ -159,7 +159,7 @@ pub fn inscribed(
         return Err(InscribedError::Size { given: lattice, most: MOST });
     }
     let cells = Cells::new(set, &axes);
-    let exact = |found: Option<Found>| found.map(|found| (found, 0.0));
+    let exact = |found: Option<CentreAndRadii>| found.map(|found| (found, 0.0));
     let found = match (shape, centre) {
         (InscribedShape::Disc | InscribedShape::Ball, None) => distance::largest_ball(&cells),
         (InscribedShape::Disc | InscribedShape::Ball, Some(at)) => exact(centred::ball(&cells, at)),

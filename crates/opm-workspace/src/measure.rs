@@ -79,7 +79,7 @@ impl Default for Goal {
 
 /// Why a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stop {
+pub enum SearchEnd {
     /// The measure is within the tolerance.
     Tolerance,
     /// The next round would be beyond the budget.
@@ -104,7 +104,7 @@ pub struct Measured {
     /// The number of boxes that were evaluated.
     pub boxes: u64,
     /// Why there are no more boxes.
-    pub stop: Stop,
+    pub stop: SearchEnd,
 }
 
 impl Measured {
@@ -255,7 +255,7 @@ pub struct Search<'a> {
     /// The numbers of the open boxes that they are the halves of, two of each. It is empty in the first
     /// round, whose boxes are those of the domain.
     halved: Vec<usize>,
-    stop: Option<Stop>,
+    stop: Option<SearchEnd>,
 }
 
 impl<'a> Search<'a> {
@@ -284,11 +284,11 @@ impl<'a> Search<'a> {
         }
         let count = (self.open.len() / SHARE).max(ROUND).min(self.open.len());
         self.stop = if self.found().meets(self.goal.tolerance) {
-            Some(Stop::Tolerance)
+            Some(SearchEnd::Tolerance)
         } else if count == 0 {
-            Some(Stop::Exhausted)
+            Some(SearchEnd::Exhausted)
         } else if self.boxes + 2 * count as u64 > self.goal.budget {
-            Some(Stop::Budget)
+            Some(SearchEnd::Budget)
         } else {
             None
         };
@@ -370,10 +370,10 @@ impl<'a> Search<'a> {
         self.bounds[1] = self.bounds[1].min(rounded(upper, 1.0));
     }
 
-    /// The measure as far as it is known. A search that is not over stops with [`Stop::Cancelled`].
+    /// The measure as far as it is known. A search that is not over stops with [`SearchEnd::Cancelled`].
     pub fn found(&self) -> Measured {
         let [lower, upper] = self.bounds;
-        let (whole, stop) = (self.domain.whole(), self.stop.unwrap_or(Stop::Cancelled));
+        let (whole, stop) = (self.domain.whole(), self.stop.unwrap_or(SearchEnd::Cancelled));
         Measured { lower, upper, whole, boxes: self.boxes, stop }
     }
 }

@@ -31,18 +31,18 @@ pub fn in_order<I: Send, S: Send, T: Send, E: From<Cancelled> + Send>(
     let mut batch = || -> Result<Vec<T>, E> {
         let mut places = Vec::new();
         for item in items.by_ref().take(ahead) {
-            places.push(Mutex::new(Place::Item(item?)));
+            places.push(Mutex::new(Slot::Item(item?)));
         }
         share(places.len(), &|number| {
-            let Place::Item(item) = take(&places[number]) else { return };
+            let Slot::Item(item) = take(&places[number]) else { return };
             let mut own = locked(&idle, Vec::pop).unwrap_or_else(&scratch);
             let made = make(&mut own, item);
             locked(&idle, |idle| idle.push(own));
-            locked(&places[number], |place| *place = Place::Made(made));
+            locked(&places[number], |place| *place = Slot::Made(made));
         });
         let made = places.iter().filter_map(|place| match take(place) {
-            Place::Made(made) => Some(made),
-            Place::Item(_) | Place::Empty => None,
+            Slot::Made(made) => Some(made),
+            Slot::Item(_) | Slot::Empty => None,
         });
         Ok(made.collect::<Result<_, _>>()?)
     };
@@ -60,14 +60,14 @@ pub fn in_order<I: Send, S: Send, T: Send, E: From<Cancelled> + Send>(
 
 /// Where an item is, and then what was made of it.
 #[derive(Default)]
-enum Place<I, T> {
+enum Slot<I, T> {
     Item(I),
     Made(Result<T, Cancelled>),
     #[default]
     Empty,
 }
 
-fn take<I, T>(place: &Mutex<Place<I, T>>) -> Place<I, T> {
+fn take<I, T>(place: &Mutex<Slot<I, T>>) -> Slot<I, T> {
     locked(place, mem::take)
 }
 
@@ -117,19 +117,19 @@ mod tests {
     #[test]
     fn the_first_error_ends_the_work() {
         #[derive(Debug, PartialEq)]
-        enum Stop {
+        enum FirstError {
             Cancelled,
             Item(u32),
             Visit(u32),
         }
-        impl From<Cancelled> for Stop {
+        impl From<Cancelled> for FirstError {
             fn from(_: Cancelled) -> Self {
                 Self::Cancelled
             }
         }
         let run = |items: &[Result<u32, u32>], cancel: u32, stop: u32| {
             let mut seen = Vec::new();
-            let items = items.iter().map(|item| item.map_err(Stop::Item));
+            let items = items.iter().map(|item| item.map_err(FirstError::Item));
             let make = |_: &mut (), item| if item == cancel { Err(Cancelled) } else { Ok(item) };
             let done = in_order(
                 items,
@@ -137,17 +137,17 @@ mod tests {
                 make,
                 |item| {
                     seen.push(item);
-                    if item == stop { Err(Stop::Visit(item)) } else { Ok(()) }
+                    if item == stop { Err(FirstError::Visit(item)) } else { Ok(()) }
                 },
             );
             (done, seen)
         };
         let whole: Vec<_> = (1..=40).map(Ok).collect();
         assert_eq!(run(&whole, 0, 0), (Ok(()), (1..=40).collect()));
-        assert_eq!(run(&whole, 0, 30), (Err(Stop::Visit(30)), (1..=30).collect()));
-        assert_eq!(run(&whole, 40, 0).0, Err(Stop::Cancelled));
+        assert_eq!(run(&whole, 0, 30), (Err(FirstError::Visit(30)), (1..=30).collect()));
+        assert_eq!(run(&whole, 40, 0).0, Err(FirstError::Cancelled));
         let mut broken = whole;
         broken[39] = Err(7);
-        assert_eq!(run(&broken, 0, 0).0, Err(Stop::Item(7)));
+        assert_eq!(run(&broken, 0, 0).0, Err(FirstError::Item(7)));
     }
 }

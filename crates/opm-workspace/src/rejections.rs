@@ -2,7 +2,7 @@
 
 mod causes;
 
-use self::causes::{Causes, Found, Part};
+use self::causes::{CauseRole, Causes, PoseCauses};
 use crate::grid::Grid;
 use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
@@ -88,7 +88,7 @@ impl Rejections {
         let causes = Causes::new(manipulator, modes);
         let chunks = grid.poses().div_ceil(CHUNK);
         let none = || Tally::none(&causes);
-        let of_chunk = |(mut found, mut tally): (Found, Tally), chunk: u64| {
+        let of_chunk = |(mut found, mut tally): (PoseCauses, Tally), chunk: u64| {
             let first = chunk * CHUNK;
             let last = (first + CHUNK).min(grid.poses());
             let mut pose = vec![0.0; grid.axes().len()];
@@ -187,7 +187,7 @@ impl Rejections {
         let together = (CHUNK / each.max(1)).max(1);
         let chunks = (0..points.div_ceil(together)).map(Ok);
         let made = || (causes.none(), vec![0.0; set.grid.axes().len()]);
-        let make = |(found, pose): &mut (Found, Vec<f64>), chunk: u64| {
+        let make = |(found, pose): &mut (PoseCauses, Vec<f64>), chunk: u64| {
             let (first, last) = (chunk * together, ((chunk + 1) * together).min(points));
             let mut rejected = Vec::new();
             for point in first..last {
@@ -222,7 +222,7 @@ impl Rejections {
 }
 
 /// The only cause of a pose, or `None` within where it has several; `None` where it is reached.
-fn only(found: &Found) -> Option<Option<usize>> {
+fn only(found: &PoseCauses) -> Option<Option<usize>> {
     let mut causes = found.causes();
     let (first, _) = causes.next()?;
     Some(causes.next().is_none().then_some(first))
@@ -241,10 +241,10 @@ impl Tally {
         Self { reachable: 0, counts: vec![[0; 2]; causes.all().len()] }
     }
 
-    fn add(&mut self, found: &Found) {
+    fn add(&mut self, found: &PoseCauses) {
         self.reachable += u64::from(found.causes().next().is_none());
         for (cause, part) in found.causes() {
-            self.counts[cause][usize::from(part == Part::WithOthers)] += 1;
+            self.counts[cause][usize::from(part == CauseRole::WithOthers)] += 1;
         }
     }
 

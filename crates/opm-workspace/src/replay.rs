@@ -62,7 +62,7 @@ pub fn replay<T: Send, E: From<Cancelled> + Send>(
     });
     in_order(
         blocks,
-        || Row::new(grid),
+        || ReplayedRow::new(grid),
         |scratch, (block, poses): (Vec<Run>, u64)| {
             let mut made = empty();
             for run in block {
@@ -111,7 +111,7 @@ impl<E, I: Iterator<Item = Result<Run, E>>> Iterator for Blocks<I> {
 }
 
 /// The row that poses are in, with working memory for their coordinates.
-struct Row<'a> {
+struct ReplayedRow<'a> {
     grid: &'a Grid,
     number: Option<u64>,
     /// The number of rows in a slice.
@@ -124,7 +124,7 @@ struct Row<'a> {
     others: Vec<f64>,
 }
 
-impl<'a> Row<'a> {
+impl<'a> ReplayedRow<'a> {
     fn new(grid: &'a Grid) -> Self {
         let others = vec![0.0; grid.axes().len() - 1];
         let slice = grid.poses() / grid.row() / grid.slices();

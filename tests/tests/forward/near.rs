@@ -4,7 +4,7 @@
 use super::{Reached, apart, check, example};
 use fastrand::Rng;
 use opm_core::Quantity;
-use opm_core::forward::{NearError, Stop};
+use opm_core::forward::{NearError, NearStop};
 use opm_core::manipulator::Manipulator;
 
 /// The percentage of regular poses for which the joint values lead back to the pose, in its own
@@ -35,7 +35,8 @@ fn returns(rng: &mut Rng, m: &Manipulator, reach: [f64; 2], count: usize) -> usi
             }
             Err(NearError::NotFound(not_found)) => {
                 // Some modes are singular everywhere: two rods side by side act as one.
-                singular += usize::from(not_found.why == Stop::Singular && not_found.steps == 0);
+                singular +=
+                    usize::from(not_found.why == NearStop::Singular && not_found.steps == 0);
                 assert!(not_found.off.is_finite() && not_found.pose.len() == start.len());
             }
             Err(other) => panic!("{other}"),
@@ -99,7 +100,7 @@ fn a_failure_says_why() {
     let error = error.expect_err("an assembly");
     let NearError::NotFound(not_found) = error else { panic!("{error}") };
     assert!(
-        matches!(not_found.why, Stop::OutOfReach(_) | Stop::Stalled | Stop::Steps),
+        matches!(not_found.why, NearStop::OutOfReach(_) | NearStop::Stalled | NearStop::Steps),
         "{not_found}"
     );
     assert!(not_found.off > 0.01 && not_found.off.is_finite(), "{not_found}");
@@ -108,7 +109,7 @@ fn a_failure_says_why() {
     far[2] += 1.0;
     let error = m.forward_near(&[0.0; 4], &far, m.home_mode()).unwrap_err();
     assert!(
-        matches!(&error, NearError::NotFound(n) if n.steps == 0 && matches!(n.why, Stop::OutOfReach(_))),
+        matches!(&error, NearError::NotFound(n) if n.steps == 0 && matches!(n.why, NearStop::OutOfReach(_))),
         "{error}"
     );
     // Values with which nothing can be computed.

@@ -7,11 +7,11 @@ use opm_core::decomposition::mobility::mobility;
 use opm_core::forward::{NearError, NoClosedForm};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::joint::JointKind;
-use opm_tests::random::{Kind, Meet, Options, PAIRS, mechanism};
+use opm_tests::random::{Meet, Options, PAIRS, RandomSubspace, mechanism};
 
 /// A mechanism whose actuators control it, as many as it has freedoms: as many as possible in one
 /// leg and the first joint of the others, or any joints.
-fn driven(rng: &mut Rng, pair: [Kind; 2]) -> Manipulator {
+fn driven(rng: &mut Rng, pair: [RandomSubspace; 2]) -> Manipulator {
     loop {
         let options = Options { limited: 0.0, balls: rng.bool() };
         let (mechanism, decomposition) = mechanism(rng, pair, options);
@@ -50,8 +50,8 @@ fn driven(rng: &mut Rng, pair: [Kind; 2]) -> Manipulator {
 }
 
 /// Whether a screw's revolutions are lost: revolutes of the other subspace pass them on to it.
-fn loses_turns(m: &Manipulator, pair: [Kind; 2]) -> bool {
-    pair.contains(&Kind::Cylindrical(Meet::Rotation))
+fn loses_turns(m: &Manipulator, pair: [RandomSubspace; 2]) -> bool {
+    pair.contains(&RandomSubspace::Cylindrical(Meet::Rotation))
         && m.mechanism().joints().any(|j| matches!(j.kind, JointKind::Helical { .. }))
 }
 

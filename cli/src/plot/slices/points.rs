@@ -2,7 +2,7 @@
 
 use super::{Seen, Slices};
 use crate::plot::grid::nearest;
-use crate::plot::layout::Place;
+use crate::plot::layout::ValueSource;
 use opm_mcap::Cloud as Points;
 use opm_mcap::rejected::{CAUSE, SLICE};
 use opm_plot::Content;
@@ -96,13 +96,13 @@ impl Slices<'_> {
         let coordinate = &self.layout.coordinates[number];
         let axis = coordinate.axis.as_ref()?;
         match &coordinate.place {
-            Place::Slice(divisor) => Some(match slice {
+            ValueSource::Slice(divisor) => Some(match slice {
                 In::Slice(slice) => Numbers::All(slice / divisor % axis.count),
                 In::Slices(slices) => {
                     Numbers::Each(slices.iter().map(|slice| slice / divisor % axis.count).collect())
                 }
             }),
-            Place::Field(field, scale) => {
+            ValueSource::Field(field, scale) => {
                 let column = cloud.column(field)?;
                 Some(Numbers::Each(column.map(|value| nearest(axis, value / scale)).collect()))
             }
@@ -112,7 +112,7 @@ impl Slices<'_> {
     fn values(&self, cloud: &Points<'_>, slice: In<'_>, number: usize) -> Option<Values> {
         let coordinate = &self.layout.coordinates[number];
         match &coordinate.place {
-            Place::Slice(divisor) => {
+            ValueSource::Slice(divisor) => {
                 let axis = coordinate.axis.as_ref()?;
                 let value = |slice: u64| axis.value(slice / divisor % axis.count);
                 Some(match slice {
@@ -122,7 +122,7 @@ impl Slices<'_> {
                     }
                 })
             }
-            Place::Field(field, scale) => {
+            ValueSource::Field(field, scale) => {
                 Some(Values::Each(cloud.column(field)?.in_units_of(*scale)))
             }
         }

@@ -178,14 +178,16 @@ impl Mechanism {
         for chain in &self.chains {
             for (place, member) in chain.members.iter().enumerate().filter(|(_, m)| m.input) {
                 let wrench = chain.wrench(place, self.kind);
-                let of = Row { wrench, basis: &self.basis, along: (chain.along, &self.along) };
+                let of =
+                    WrenchRow { wrench, basis: &self.basis, along: (chain.along, &self.along) };
                 of.write(&mut self.system, row, wrench.dot(&member.twist));
                 row += 1;
             }
         }
         if let Some(chain) = self.constraining.first().map(|&leg| &self.chains[leg]) {
             for wrench in chain.constraints(self.kind).into_iter().take(self.lacks) {
-                let of = Row { wrench, basis: &self.basis, along: (chain.along, &self.along) };
+                let of =
+                    WrenchRow { wrench, basis: &self.basis, along: (chain.along, &self.along) };
                 of.write(&mut self.system, row, wrench.norm());
                 row += 1;
             }
@@ -349,14 +351,14 @@ impl Reference {
 }
 
 /// What a wrench does to the unknowns.
-struct Row<'a> {
+struct WrenchRow<'a> {
     wrench: Local,
     basis: &'a [Local],
     /// The column of the rate along the intersection motion, and that motion.
     along: (Option<usize>, &'a Local),
 }
 
-impl Row<'_> {
+impl WrenchRow<'_> {
     /// Writes the row of a system, with its power on the right.
     fn write(&self, system: &mut DMatrix<f64>, row: usize, power: f64) {
         let scale = self.wrench.norm();

@@ -171,7 +171,7 @@ fn between(a: Unit<Vector3<f64>>, b: Unit<Vector3<f64>>) -> f64 {
 
 /// The kinds of groups that are fitted, smallest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum GroupKind {
     Rotation,
     Translation,
     Helical,
@@ -184,17 +184,17 @@ enum Kind {
     Schoenflies,
 }
 
-const KINDS: [Kind; 10] = [
-    Kind::Rotation,
-    Kind::Translation,
-    Kind::Helical,
-    Kind::Cylindrical,
-    Kind::TranslationalPlane,
-    Kind::Planar,
-    Kind::Spherical,
-    Kind::PlanarHelical,
-    Kind::TranslationalSpace,
-    Kind::Schoenflies,
+const KINDS: [GroupKind; 10] = [
+    GroupKind::Rotation,
+    GroupKind::Translation,
+    GroupKind::Helical,
+    GroupKind::Cylindrical,
+    GroupKind::TranslationalPlane,
+    GroupKind::Planar,
+    GroupKind::Spherical,
+    GroupKind::PlanarHelical,
+    GroupKind::TranslationalSpace,
+    GroupKind::Schoenflies,
 ];
 
 /// The smallest group from which no element is farther than `tolerance`: radians, and shares of the
@@ -228,7 +228,7 @@ const BLUNT: f64 = 1e-2;
 ///
 /// Iteratively reweighted least squares, each element weighted by one over its offset.
 pub(super) fn robust(group: SubspaceClass, elements: &[Element], length: f64) -> SubspaceClass {
-    let Some(kind) = Kind::of(&group) else { return group };
+    let Some(kind) = GroupKind::of(&group) else { return group };
     let mut best = group;
     for round in 0..ROUNDS {
         let blunt = BLUNT * SHARPER.powi(round);
@@ -245,7 +245,7 @@ pub(super) fn robust(group: SubspaceClass, elements: &[Element], length: f64) ->
     best
 }
 
-impl Kind {
+impl GroupKind {
     /// The kind of a group with a geometry to fit.
     fn of(group: &SubspaceClass) -> Option<Self> {
         match group {
@@ -267,7 +267,7 @@ impl Kind {
 
 /// The group of a kind that is nearest to weighted elements, by least squares; `None` if an element
 /// has no place in such a group, or if the elements do not determine it.
-fn fitted(kind: Kind, elements: &[Element], weights: &[f64]) -> Option<SubspaceClass> {
+fn fitted(kind: GroupKind, elements: &[Element], weights: &[f64]) -> Option<SubspaceClass> {
     let all = || elements.iter().zip(weights.iter().copied());
     let rotates = |e: &Element| !matches!(e, Element::Slide { .. });
     // Directions along the axis, or perpendicular to the normal.
@@ -297,30 +297,34 @@ fn fitted(kind: Kind, elements: &[Element], weights: &[f64]) -> Option<SubspaceC
         (weight > 0.0).then(|| pitches().map(|(p, w)| p * w).sum::<f64>() / weight)
     };
     let group = match kind {
-        Kind::Rotation => {
+        GroupKind::Rotation => {
             let axis = common_axis();
             SubspaceClass::Rotation { axis, point: on_axis(axis) }
         }
-        Kind::Translation => SubspaceClass::Translation { axis: common_axis() },
-        Kind::Helical => {
+        GroupKind::Translation => SubspaceClass::Translation { axis: common_axis() },
+        GroupKind::Helical => {
             let axis = common_axis();
             SubspaceClass::Helical { axis, point: on_axis(axis), pitch: pitch()? }
         }
-        Kind::Cylindrical if elements.iter().any(rotates) => {
+        GroupKind::Cylindrical if elements.iter().any(rotates) => {
             let axis = common_axis();
             SubspaceClass::Cylindrical { axis, point: on_axis(axis) }
         }
-        Kind::Cylindrical => return None,
-        Kind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal: normal() },
-        Kind::Planar if elements.iter().any(rotates) => SubspaceClass::Planar { normal: normal() },
-        Kind::Planar => return None,
-        Kind::Spherical => SubspaceClass::Spherical { centre: centre(all())? },
-        Kind::PlanarHelical => SubspaceClass::PlanarHelical { axis: normal(), pitch: pitch()? },
-        Kind::TranslationalSpace => SubspaceClass::TranslationalSpace,
-        Kind::Schoenflies if elements.iter().any(rotates) => {
+        GroupKind::Cylindrical => return None,
+        GroupKind::TranslationalPlane => SubspaceClass::TranslationalPlane { normal: normal() },
+        GroupKind::Planar if elements.iter().any(rotates) => {
+            SubspaceClass::Planar { normal: normal() }
+        }
+        GroupKind::Planar => return None,
+        GroupKind::Spherical => SubspaceClass::Spherical { centre: centre(all())? },
+        GroupKind::PlanarHelical => {
+            SubspaceClass::PlanarHelical { axis: normal(), pitch: pitch()? }
+        }
+        GroupKind::TranslationalSpace => SubspaceClass::TranslationalSpace,
+        GroupKind::Schoenflies if elements.iter().any(rotates) => {
             SubspaceClass::Schoenflies { axis: eigenvector(&along(lines), Order::Largest) }
         }
-        Kind::Schoenflies => return None,
+        GroupKind::Schoenflies => return None,
     };
     elements.iter().all(|e| e.offset(&group).is_some()).then_some(group)
 }

@@ -24,7 +24,7 @@ const SAME: f64 = 1e-9;
 
 /// Where an assembly is looked for.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct AssemblyPlace<'a> {
     /// The independent task coordinates, metres and radians.
     pub pose: &'a [f64],
     /// All task coordinates, dependent ones too.
@@ -79,7 +79,7 @@ impl Manipulator {
     /// does not close to rounding.
     pub(super) fn write_assembly(
         &self,
-        Place { pose, all, target, mode }: Place<'_>,
+        AssemblyPlace { pose, all, target, mode }: AssemblyPlace<'_>,
         solved: Solved<'_>,
         residual: f64,
         buffer: &mut ClosureBuffer,
@@ -136,9 +136,15 @@ impl Outcome {
     }
 
     /// Adds an assembly to the list, unless it does not close or is listed already.
-    pub fn accept(&mut self, held: &Held<'_>, place: Place<'_>, solved: Solved<'_>, residual: f64) {
+    pub fn accept(
+        &mut self,
+        held: &Held<'_>,
+        place: AssemblyPlace<'_>,
+        solved: Solved<'_>,
+        residual: f64,
+    ) {
         let Held { manipulator: m, displacements, .. } = *held;
-        let Place { pose, mode, .. } = place;
+        let AssemblyPlace { pose, mode, .. } = place;
         let mut assembly = self.spare.pop().unwrap_or_else(|| Assembly::buffer(m));
         m.write_assembly(place, solved, residual, &mut self.closure, &mut assembly);
         if assembly.residual > SETTLED && assembly.residual < MATCH {

@@ -1,7 +1,7 @@
 //! Candidates of the search: poses and working modes. They are checked together, by inverse kinematics of many poses at
 //! once, which give the actuated joints back.
 
-use super::accept::{APART, MATCH, Place, Solved};
+use super::accept::{APART, AssemblyPlace, MATCH, Solved};
 use super::matches::Matches;
 use super::search::{Memory, Search};
 use crate::group::Displacement;
@@ -76,8 +76,8 @@ impl Candidates {
     }
 
     /// Notes a working mode of the pose that was begun last.
-    fn note(&mut self, place: Place<'_>) {
-        let Place { pose, all, target, mode } = place;
+    fn note(&mut self, place: AssemblyPlace<'_>) {
+        let AssemblyPlace { pose, all, target, mode } = place;
         self.poses.extend_from_slice(pose);
         if all.len() > pose.len() {
             self.all.extend_from_slice(all);
@@ -139,10 +139,10 @@ impl Candidates {
     }
 
     /// A row as an assembly.
-    fn row(&self, manipulator: &Manipulator, row: usize) -> (Place<'_>, Solved<'_>) {
+    fn row(&self, manipulator: &Manipulator, row: usize) -> (AssemblyPlace<'_>, Solved<'_>) {
         let of = |values, width| row_of(values, width, row);
         let pose = of(&self.poses, manipulator.task_coordinates().len());
-        let place = Place {
+        let place = AssemblyPlace {
             pose,
             all: match manipulator.dependent {
                 None => pose,
@@ -247,7 +247,8 @@ impl Search<'_> {
             if m.check_pose(&pose).is_ok() {
                 let place = lower * m.task().upper.isometry(b);
                 let target = m.task().raised(self.rise, place);
-                let place = Place { pose: &pose, all, target: &target, mode: Mode::default() };
+                let place =
+                    AssemblyPlace { pose: &pose, all, target: &target, mode: Mode::default() };
                 self.note_modes(&matches, place);
             }
         }
@@ -266,7 +267,7 @@ impl Search<'_> {
     }
 
     /// Notes every combination of the legs' choices at a place.
-    fn note_modes(&mut self, matches: &[Matches], place: Place<'_>) {
+    fn note_modes(&mut self, matches: &[Matches], place: AssemblyPlace<'_>) {
         self.memory.candidates.begun += 1;
         let count: usize = matches.iter().map(|of_leg| of_leg.list.len()).product();
         for combination in 0..count {
@@ -276,7 +277,7 @@ impl Search<'_> {
                 rest /= list.len();
                 mode.with(own)
             });
-            let place = Place { mode, ..place };
+            let place = AssemblyPlace { mode, ..place };
             match &self.manipulator.dependent {
                 None => self.memory.candidates.note(place),
                 Some(dependent) => self.note_completed(dependent, place),
@@ -286,8 +287,8 @@ impl Search<'_> {
 
     /// Notes a working mode with the choices of dependent coordinates that give the pose's displacement, if there are any;
     /// that of the place has the choices of the legs.
-    fn note_completed(&mut self, dependent: &Dependent, place: Place<'_>) {
-        let (m, Place { pose, all, mode: legs, .. }) = (self.manipulator, place);
+    fn note_completed(&mut self, dependent: &Dependent, place: AssemblyPlace<'_>) {
+        let (m, AssemblyPlace { pose, all, mode: legs, .. }) = (self.manipulator, place);
         // The displacement of what is given as the pose: the legs are held against that.
         let target = &m.task().displacement(all);
         let modes = dependent.step_modes().map(|steps| legs.with(steps));
@@ -299,7 +300,7 @@ impl Search<'_> {
             self.memory.outcome.reject();
             return;
         }
-        self.memory.candidates.note(Place { mode, target, ..place });
+        self.memory.candidates.note(AssemblyPlace { mode, target, ..place });
     }
 
     /// Checks all candidates, and accepts those that are assemblies.

@@ -31,7 +31,7 @@ pub enum NearError {
 )]
 pub struct NotFound {
     /// What stopped the steps.
-    pub why: Stop,
+    pub why: NearStop,
     /// The number of steps that were taken.
     pub steps: u32,
     /// The largest distance of an actuated joint from its value, in radians or shares of the mechanism's
@@ -43,7 +43,7 @@ pub struct NotFound {
 
 /// What stopped the steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stop {
+pub enum NearStop {
     /// A leg is out of reach in the direction of the step, in this working mode.
     OutOfReach(Unreachable),
     /// The Jacobian is singular: at a serial singularity of a leg, or at a parallel singularity.
@@ -54,7 +54,7 @@ pub enum Stop {
     Steps,
 }
 
-impl fmt::Display for Stop {
+impl fmt::Display for NearStop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OutOfReach(unreachable) => {

@@ -1,9 +1,9 @@
 //! The assembly near a pose: the sections one after the other, or else the steps of Newton's method; and the buffers of
 //! both.
 
-use super::accept::{MATCH, Place, SETTLED, Solved};
+use super::accept::{AssemblyPlace, MATCH, SETTLED, Solved};
 use super::held::Held;
-use super::near::{NotFound, Stop};
+use super::near::{NearStop, NotFound};
 use super::nearest::{NearestBuffer, distance};
 use super::{Assembly, NearError};
 use crate::chain::limits::Limits;
@@ -223,7 +223,7 @@ impl Newton<'_> {
     /// Starts at a pose, goes to where the joints have the wanted values, and writes the assembly to the buffer.
     pub fn run(&self, start: &[f64], at: &mut NearBuffer) -> Result<(), NearError> {
         if !self.manipulator.close(start, self.mode, &mut at.solution)? {
-            let why = Stop::OutOfReach(at.solution.unreachable[0]);
+            let why = NearStop::OutOfReach(at.solution.unreachable[0]);
             return Err(NotFound { why, steps: 0, off: f64::INFINITY, pose: start.to_vec() }.into());
         }
         self.write_error(&at.solution, &at.driven, &mut at.error);
@@ -231,7 +231,7 @@ impl Newton<'_> {
         self.assemble(at);
         let residual = at.assembly.residual;
         match residual > self.manipulator.largest_residual() {
-            true => Err(self.ended(at, Stop::Stalled, steps, residual)),
+            true => Err(self.ended(at, NearStop::Stalled, steps, residual)),
             false => Ok(()),
         }
     }
@@ -271,7 +271,7 @@ impl Newton<'_> {
             let arrived = before <= ARRIVED;
             kept |= arrived && steps > 0;
             let regular = kept || self.linearise(at);
-            match if regular { self.step(at) } else { Err(Stop::Singular) } {
+            match if regular { self.step(at) } else { Err(NearStop::Singular) } {
                 Ok(()) => steps += 1,
                 Err(_) if arrived => break,
                 // Another Jacobian may do what the last one does not.
@@ -285,14 +285,14 @@ impl Newton<'_> {
         }
         let off = most(&at.error);
         match off.is_nan() || off > ARRIVED {
-            true => Err(self.ended(at, Stop::Steps, steps, off)),
+            true => Err(self.ended(at, NearStop::Steps, steps, off)),
             false => Ok(steps),
         }
     }
 
     /// The report of a run without an assembly.
     #[cold]
-    fn ended(&self, at: &mut NearBuffer, why: Stop, steps: u32, off: f64) -> NearError {
+    fn ended(&self, at: &mut NearBuffer, why: NearStop, steps: u32, off: f64) -> NearError {
         self.write_pose(at);
         NotFound { why, steps, off, pose: at.pose.clone() }.into()
     }
@@ -318,13 +318,13 @@ impl Newton<'_> {
     }
 
     /// Takes one step with the last Jacobian, shortened until it reduces the error.
-    fn step(&self, at: &mut NearBuffer) -> Result<(), Stop> {
+    fn step(&self, at: &mut NearBuffer) -> Result<(), NearStop> {
         at.right.fill(0.0);
         at.right[..at.error.len()].copy_from_slice(&at.error);
         let step = at.system.solve(&mut at.right);
         let longest = most(&step);
         let share = (LONGEST / longest).min(1.0);
-        let mut stop = Stop::Stalled;
+        let mut stop = NearStop::Stalled;
         for halving in 0..HALVINGS {
             let scale = share * 0.5_f64.powi(halving as i32);
             match self.try_step(&step, scale, at) {
@@ -335,7 +335,7 @@ impl Newton<'_> {
                         std::mem::swap(&mut at.error, &mut at.error_after);
                         return Ok(());
                     }
-                    stop = Stop::Stalled;
+                    stop = NearStop::Stalled;
                 }
                 Err(why) => stop = why,
             }
@@ -347,7 +347,12 @@ impl Newton<'_> {
     }
 
     /// Solves the pose that a share of a step leads to.
-    fn try_step(&self, step: &[f64; MOST], scale: f64, at: &mut NearBuffer) -> Result<(), Stop> {
+    fn try_step(
+        &self,
+        step: &[f64; MOST],
+        scale: f64,
+        at: &mut NearBuffer,
+    ) -> Result<(), NearStop> {
         let m = self.manipulator;
         let (lower, upper) = (m.task().lower.kind, m.task().upper.kind);
         let [mut upper_twist, mut lower_twist] = [LocalTwist::zeros(); 2];
@@ -374,7 +379,7 @@ impl Newton<'_> {
         [v, b]: [&Displacement; 2],
         rise: f64,
         at: &mut NearBuffer,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), NearStop> {
         let m = self.manipulator;
         let reached = if m.dependent_coordinates().is_empty() {
             // The legs need no coordinates, which would cost sines and arctangents.
@@ -386,11 +391,11 @@ impl Newton<'_> {
         } else {
             m.task().write_pose(v, b, rise, &mut at.all);
             m.write_independent(Some(self.mode), &mut at.all, &mut at.pose);
-            m.close(&at.pose, self.mode, &mut at.tried).map_err(|_| Stop::Stalled)?
+            m.close(&at.pose, self.mode, &mut at.tried).map_err(|_| NearStop::Stalled)?
         };
         match reached {
             true => Ok(()),
-            false => Err(Stop::OutOfReach(at.tried.unreachable[0])),
+            false => Err(NearStop::OutOfReach(at.tried.unreachable[0])),
         }
     }
 
@@ -419,7 +424,7 @@ impl Newton<'_> {
             Some(_) => m.task().displacement(all),
         };
         let residual = m.closure.residual(&solution.joints, &target);
-        let place = Place { pose, all, target: &target, mode: self.mode };
+        let place = AssemblyPlace { pose, all, target: &target, mode: self.mode };
         let solved = Solved {
             joints: solution.joints(),
             imaginary: solution.imaginary(),

@@ -151,7 +151,7 @@ fn on_cone(
     first: usize,
     cone: impl Fn(usize) -> (Vector3<f64>, Vector3<f64>, f64),
     found: &mut Vec<Matrix3<f64>>,
-) -> Found {
+) -> Elimination {
     let (fixed, carried, level) = cone(first);
     let (from, to) = (triad(&fixed), triad(&carried));
     let sine = (1.0 - level * level).max(0.0).sqrt();
@@ -231,7 +231,7 @@ fn from_circle(
     conditions: &[Condition; 3],
     first: usize,
     found: &mut Vec<PlanarDisplacement>,
-) -> Found {
+) -> Elimination {
     let Condition::Circle { point, centre, radius } = conditions[first] else {
         unreachable!("`planar` eliminates with circles only")
     };
@@ -309,7 +309,7 @@ fn on_circle(
 
 /// What one elimination has found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Found {
+enum Elimination {
     /// All solutions.
     All,
     /// Some roots are nearly double, so that solutions may be missing.
@@ -323,14 +323,14 @@ enum Found {
 /// others.
 fn solve<G: Group>(
     order: &[usize],
-    eliminate: impl Fn(usize, &mut Vec<G>) -> Found,
+    eliminate: impl Fn(usize, &mut Vec<G>) -> Elimination,
 ) -> Solutions<G> {
     let mut found = Vec::with_capacity(8);
     for &first in order {
         match eliminate(first, &mut found) {
-            Found::All => break,
-            Found::Doubtful => {}
-            Found::Dependent => return Solutions::Dependent,
+            Elimination::All => break,
+            Elimination::Doubtful => {}
+            Elimination::Dependent => return Solutions::Dependent,
         }
     }
     Solutions::At(found)
@@ -342,7 +342,7 @@ fn eliminate_angle<G: Group>(
     conditions: &[Condition; 3],
     place: impl Fn(Complex<f64>, Complex<f64>) -> G,
     found: &mut Vec<G>,
-) -> Found {
+) -> Elimination {
     let [[c1, a1, b1], [c2, a2, b2]]: [[[f64; 3]; 3]; 2] =
         rest.each_ref().map(|equation| equation.coefficients.into());
     // Two equations a cos φ + b sin φ + c = 0 give cos φ = x / z and sin φ = y / z.
@@ -353,7 +353,7 @@ fn eliminate_angle<G: Group>(
     let polynomial = x.square().plus(&y.square()).minus(&z.square());
     let product = rest[0].size * rest[1].size;
     let Roots::At { roots, doubtful } = polynomial.roots(product * product) else {
-        return Found::Dependent;
+        return Elimination::Dependent;
     };
     for theta in roots {
         let at = |[constant, cos, sin]: [f64; 3]| constant + cos * theta.re + sin * theta.im;
@@ -362,7 +362,7 @@ fn eliminate_angle<G: Group>(
             collect(polish(place(theta, phi), conditions), found);
         }
     }
-    if doubtful { Found::Doubtful } else { Found::All }
+    if doubtful { Elimination::Doubtful } else { Elimination::All }
 }
 
 /// The unit complex numbers `e(φ)` that satisfy two equations `a cos φ + b sin φ + c = 0`, not both of which

@@ -87,7 +87,7 @@ pub enum PartKind {
 
 /// A solid that is a part of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
+pub struct BodyPart {
     /// The shape, in the body's frame.
     pub solid: Solid,
     /// The kind of body or joint, which decides the colour.

@@ -41,13 +41,13 @@ pub enum Gauge {
     /// A parallel singularity measure. It may have either sign, but it must not be zero.
     Parallel {
         /// The part of the mechanism that is measured.
-        part: Part,
+        part: GaugedPart,
     },
 }
 
 /// A part of the mechanism that has a parallel singularity measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Part {
+pub enum GaugedPart {
     /// One section.
     Section(Section),
     /// The whole mechanism. Its measure is used if one of the sections has none.
@@ -97,7 +97,11 @@ pub(super) fn gauges(manipulator: &Manipulator) -> Vec<Gauge> {
             MotionLimit::ALL.into_iter().filter(|limit| limit.of(&c.motion_limits).is_some());
         given.map(move |limit| Gauge::Motion { coordinate, limit })
     });
-    let parts = [Part::Section(Section::Upper), Part::Section(Section::Lower), Part::Whole];
+    let parts = [
+        GaugedPart::Section(Section::Upper),
+        GaugedPart::Section(Section::Lower),
+        GaugedPart::Whole,
+    ];
     let parallel = parts.into_iter().map(|part| Gauge::Parallel { part });
     reach.chain(limits).chain(motion).chain(parallel).collect()
 }

@@ -1,6 +1,6 @@
 //! The report of a violation, with names instead of numbers.
 
-use super::gauge::{Bound, Gauge, Part, Violation};
+use super::gauge::{Bound, Gauge, GaugedPart, Violation};
 use crate::manipulator::{Manipulator, Section};
 use crate::mechanism::joint::MotionLimit;
 
@@ -104,7 +104,7 @@ impl<'a> ViolationReport<'a> {
             Gauge::Motion { limit, .. } => {
                 format!("{leg}: {} above its {}", self.joint.unwrap_or_default(), limit.key())
             }
-            Gauge::Parallel { part: Part::Whole } => "parallel singularity".to_owned(),
+            Gauge::Parallel { part: GaugedPart::Whole } => "parallel singularity".to_owned(),
             Gauge::Parallel { .. } => format!("parallel singularity of the {section}section"),
         }
     }

@@ -1,6 +1,6 @@
 //! The record of violations: when they begin and end, and how large they are at worst.
 
-use super::{Gauge, Part, Sample, Trajectory, Violation};
+use super::{Gauge, GaugedPart, Sample, Trajectory, Violation};
 use crate::velocity::SINGULAR;
 
 /// A violation begins or ends.
@@ -120,8 +120,8 @@ impl Trajectory<'_> {
             Gauge::Limit { coordinate, .. } | Gauge::Motion { coordinate, .. } => {
                 (level, Some(self.solver.manipulator.coordinates()[coordinate].quantity), None)
             }
-            Gauge::Parallel { part: Part::Section(section) } => (level, None, Some(section)),
-            Gauge::Parallel { part: Part::Whole } => (level, None, None),
+            Gauge::Parallel { part: GaugedPart::Section(section) } => (level, None, Some(section)),
+            Gauge::Parallel { part: GaugedPart::Whole } => (level, None, None),
         };
         Violation { gauge, start: time, end: time, worst: time, amount, quantity, section }
     }

@@ -3,7 +3,7 @@
 use crate::color::{MATERIALS, color};
 use crate::xml::Element;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
-use opm_core::skeleton::{Body, Mass, Part, Solid};
+use opm_core::skeleton::{Body, BodyPart, Mass, Solid};
 
 /// MuJoCo refuses cylinders between ends that are nearer than 3e-8 m. Those of a length below this are written by their middle.
 const SHORT: f64 = 1e-6;
@@ -30,7 +30,7 @@ pub fn materials() -> Element {
     }))
 }
 
-fn geom(part: &Part) -> Element {
+fn geom(part: &BodyPart) -> Element {
     let geom = Element::new("geom");
     let shape = match part.solid {
         Solid::Cylinder { from, to, radius } if (to - from).norm() < SHORT => {

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 const UNLIMITED: f64 = 1000.0;
 
 /// A joint with one degree of freedom.
-pub struct Part {
+pub struct UrdfJoint {
     pub name: String,
     quantity: Quantity,
     axis: Unit<Vector3<f64>>,
@@ -44,15 +44,15 @@ pub fn names(mechanism: &Mechanism) -> BTreeSet<String> {
 }
 
 /// The joints of which a joint consists, the one nearest to the base first.
-pub fn parts(joint: &Joint, names: &mut BTreeSet<String>) -> Vec<Part> {
-    let own = |number: usize, axis| Part::own(&joint.coordinates[number], axis);
+pub fn parts(joint: &Joint, names: &mut BTreeSet<String>) -> Vec<UrdfJoint> {
+    let own = |number: usize, axis| UrdfJoint::own(&joint.coordinates[number], axis);
     match joint.kind {
         JointKind::Revolute | JointKind::Prismatic => vec![own(0, joint.axis)],
         JointKind::Cylindrical => vec![own(0, joint.axis), own(1, joint.axis)],
         JointKind::Universal { second } => vec![own(0, joint.axis), own(1, second)],
         JointKind::Spherical => {
             let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
-            let turn = |(number, axis)| Part {
+            let turn = |(number, axis)| UrdfJoint {
                 name: unique(names, format!("{}.{number}", joint.name)),
                 quantity: Quantity::Angle,
                 axis,
@@ -66,9 +66,9 @@ pub fn parts(joint: &Joint, names: &mut BTreeSet<String>) -> Vec<Part> {
             (1..).zip(axes).map(turn).collect()
         }
         JointKind::Helical { pitch } => {
-            let hinge = Part { counts: true, ..own(0, joint.axis) };
+            let hinge = UrdfJoint { counts: true, ..own(0, joint.axis) };
             let (leader, from) = (hinge.name.clone(), hinge.home);
-            let slide = Part {
+            let slide = UrdfJoint {
                 name: unique(names, format!("{}.slide", joint.name)),
                 quantity: Quantity::Length,
                 axis: joint.axis,
@@ -84,7 +84,7 @@ pub fn parts(joint: &Joint, names: &mut BTreeSet<String>) -> Vec<Part> {
     }
 }
 
-impl Part {
+impl UrdfJoint {
     /// A joint with opm's own value.
     fn own(coordinate: &JointCoordinate, axis: Unit<Vector3<f64>>) -> Self {
         Self {

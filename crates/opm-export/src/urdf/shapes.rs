@@ -3,7 +3,7 @@
 use super::joints::origin;
 use crate::xml::Element;
 use nalgebra::{Point3, Unit, UnitQuaternion, Vector3};
-use opm_core::skeleton::{Body, Mass, Part, Solid};
+use opm_core::skeleton::{Body, BodyPart, Mass, Solid};
 
 /// A link with the shapes of a body, whose frame is at `place`.
 pub fn link(name: &str, body: &Body, place: Point3<f64>) -> Element {
@@ -29,7 +29,7 @@ pub fn inertial(mass: &Mass, shift: Vector3<f64>) -> Element {
         .child(tensor)
 }
 
-fn visual(part: &Part, shift: Vector3<f64>) -> Element {
+fn visual(part: &BodyPart, shift: Vector3<f64>) -> Element {
     let (centre, axis, shape) = match part.solid {
         Solid::Cylinder { from, to, radius } => {
             let axis = Unit::try_new(to - from, 0.0).unwrap_or(Vector3::z_axis());

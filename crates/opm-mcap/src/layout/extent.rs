@@ -55,9 +55,9 @@ pub struct Frames {
 }
 
 /// A place: rotation (rows), then translation.
-type Place = ([[f64; 3]; 3], [f64; 3]);
+type FramePlace = ([[f64; 3]; 3], [f64; 3]);
 
-const AT_ROOT: Place = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
+const AT_ROOT: FramePlace = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
 
 impl Frames {
     pub fn add(&mut self, message: &Message<'_>) -> Result<(), ReadError> {
@@ -83,7 +83,7 @@ impl Frames {
 
     /// Extends the box of all bodies to where they are now. Parents come first.
     fn place(&mut self, frames: &FrameTransforms) {
-        let mut places: BTreeMap<&str, Place> = BTreeMap::new();
+        let mut places: BTreeMap<&str, FramePlace> = BTreeMap::new();
         for frame in &frames.transforms {
             let parent = *places.entry(&frame.parent_frame_id).or_insert(AT_ROOT);
             let rotation = frame.rotation.unwrap_or(Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 });
@@ -114,7 +114,7 @@ impl Frames {
     }
 }
 
-fn moved((rotation, shift): Place, point: [f64; 3]) -> [f64; 3] {
+fn moved((rotation, shift): FramePlace, point: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| shift[i] + (0..3).map(|j| rotation[i][j] * point[j]).sum::<f64>())
 }
 

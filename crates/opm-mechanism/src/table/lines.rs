@@ -134,7 +134,7 @@ impl<'a> Line<'a> {
     /// ```
     pub fn numbers(
         self,
-        places: &[Option<Place>],
+        places: &[Option<FieldPlace>],
         row: &mut [f64],
     ) -> Result<bool, (usize, &'static str)> {
         let mut usual = true;
@@ -155,7 +155,7 @@ impl<'a> Line<'a> {
 
 /// Where the number of a field belongs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct FieldPlace {
     /// Its place in the row.
     pub number: usize,
     /// Whether the field may be empty.

@@ -2,7 +2,9 @@
 
 use crate::picture::decoded;
 use crate::seen::{ROUNDING, across, assert_legible, class, label, named, paths, pieces, text, up};
-use opm_plot::{Curve, Heading, Measure, Panel, Row, Scale, Size, Steps, TimeFigure, Unit, png};
+use opm_plot::{
+    Curve, Heading, Measure, Panel, PanelRow, Scale, Size, Steps, TimeFigure, Unit, png,
+};
 use roxmltree::Document;
 
 const SAMPLES: u32 = 201;
@@ -32,11 +34,11 @@ fn panel(symbol: &str, curves: Vec<(usize, Curve)>) -> Panel {
     Panel { title, name, unit: unit(symbol), scale: Scale::Linear, curves }
 }
 
-fn row(names: &[&str], panels: Vec<Option<Panel>>) -> Row {
-    Row { names: names.iter().map(ToString::to_string).collect(), panels }
+fn row(names: &[&str], panels: Vec<Option<Panel>>) -> PanelRow {
+    PanelRow { names: names.iter().map(ToString::to_string).collect(), panels }
 }
 
-fn figure(rows: Vec<Row>) -> TimeFigure {
+fn figure(rows: Vec<PanelRow>) -> TimeFigure {
     let heading = Heading {
         title: "A figure".into(),
         lines: vec!["of curves".into()],

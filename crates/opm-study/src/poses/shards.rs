@@ -57,11 +57,11 @@ pub(crate) fn runs_of(
     mut visit: impl FnMut(Vec<Run>) -> Result<(), StudyError>,
 ) -> Result<Recording, StudyError> {
     /// The error that ended the reading.
-    enum Stop {
+    enum ReadEnd {
         Unread(ReadError),
         Study(StudyError),
     }
-    impl From<ReadError> for Stop {
+    impl From<ReadError> for ReadEnd {
         fn from(error: ReadError) -> Self {
             Self::Unread(error)
         }
@@ -69,12 +69,12 @@ pub(crate) fn runs_of(
     let read = read(file, |message| match message.runs()? {
         Some(runs) => {
             let runs = runs.into_iter().map(|[from, to]| Run { from, to }).collect();
-            visit(runs).map_err(Stop::Study)
+            visit(runs).map_err(ReadEnd::Study)
         }
         None => Ok(()),
     });
     read.map_err(|stop| match stop {
-        Stop::Unread(error) => StudyError::Read { place: file.display().to_string(), error },
-        Stop::Study(error) => error,
+        ReadEnd::Unread(error) => StudyError::Read { place: file.display().to_string(), error },
+        ReadEnd::Study(error) => error,
     })
 }

@@ -4,7 +4,7 @@ use crate::grid::Axis;
 use crate::set::GridSet;
 
 /// The centre and the radii that are found; beyond the set's coordinates without meaning.
-pub(super) type Found = ([f64; 3], [f64; 3]);
+pub(super) type CentreAndRadii = ([f64; 3], [f64; 3]);
 
 /// Which cells of a grid are inside.
 pub(super) struct Cells {

@@ -1,6 +1,6 @@
 //! The largest ball and the largest box about a given centre. Both are exact for the union of the cells that are inside.
 
-use super::cells::{Cells, Found};
+use super::cells::{Cells, CentreAndRadii};
 
 /// The distances from the centre to the nearer ends of the grid; infinite across a layer alone.
 fn ends(cells: &Cells, centre: [f64; 3]) -> [f64; 3] {
@@ -15,7 +15,7 @@ fn in_space(at: &[f64]) -> [f64; 3] {
 }
 
 /// The largest disc or ball about a centre; `None` where that is not inside.
-pub(super) fn ball(cells: &Cells, at: &[f64]) -> Option<Found> {
+pub(super) fn ball(cells: &Cells, at: &[f64]) -> Option<CentreAndRadii> {
     let centre = in_space(at);
     let to_end = ends(cells, centre).into_iter().fold(f64::INFINITY, f64::min);
     let radius = cells.outside().fold(to_end, |least, cell| {
@@ -29,7 +29,7 @@ pub(super) fn ball(cells: &Cells, at: &[f64]) -> Option<Found> {
 ///
 /// A box of half sides `h` is inside if no cell outside has a gap below `h` along all axes. In a largest box, each half
 /// side is such a gap, or ends with the grid: for each pair of gaps along the last two axes, the first one follows.
-pub(super) fn cuboid(cells: &Cells, at: &[f64]) -> Option<Found> {
+pub(super) fn cuboid(cells: &Cells, at: &[f64]) -> Option<CentreAndRadii> {
     let centre = in_space(at);
     let ends = ends(cells, centre);
     if ends.iter().any(|&end| end <= 0.0) {

@@ -1,11 +1,11 @@
 //! The largest disc or ball with a free centre: an exact Euclidean distance transform finds where its centre can be, and
 //! branch and bound on the distance where it is.
 
-use super::cells::{Cells, Found};
+use super::cells::{Cells, CentreAndRadii};
 use super::search::{Best, Search};
 
 /// The largest disc or ball, and by how much its radius may be smaller than the largest.
-pub(super) fn largest_ball(cells: &Cells) -> Option<(Found, f64)> {
+pub(super) fn largest_ball(cells: &Cells) -> Option<(CentreAndRadii, f64)> {
     let dimension = cells.dimension();
     // One layer has no lattice across it.
     let counts: [usize; 3] = std::array::from_fn(|axis| match axis < dimension {

@@ -1,6 +1,6 @@
 //! The largest box with a free centre: of each range of layers, the largest rectangle in all of them.
 
-use super::cells::{Cells, Found};
+use super::cells::{Cells, CentreAndRadii};
 
 /// A rectangle of cells, from the first to before the last along both axes.
 #[derive(Clone, Copy, Default)]
@@ -16,7 +16,7 @@ impl Rectangle {
 }
 
 /// The largest box of cells. All cells are equally large, so that their number is the measure.
-pub(super) fn largest_box(cells: &Cells) -> Option<Found> {
+pub(super) fn largest_box(cells: &Cells) -> Option<CentreAndRadii> {
     let [nx, ny, nz] = cells.counts;
     let mut best = (0, Rectangle::default(), [0, 0]);
     for bottom in 0..nz {

@@ -29,12 +29,12 @@ pub struct DomainAxis {
     pub min: f64,
     /// The highest value, radians or metres.
     pub max: f64,
-    kind: Kind,
+    kind: SideKind,
 }
 
 /// How a coordinate becomes a side of a box.
 #[derive(Clone, Debug, PartialEq)]
-enum Kind {
+enum SideKind {
     /// The side is the coordinate itself.
     Plain,
     /// A tilt in a sphere, which is weighted by `|sin α|`, where `α` is the tilt plus `shift`; and the formula
@@ -53,7 +53,7 @@ impl DomainAxis {
     /// weight is one.
     pub fn weight(&self) -> Option<&'static str> {
         match self.kind {
-            Kind::Tilt { weight, .. } if self.has_width() => Some(weight),
+            SideKind::Tilt { weight, .. } if self.has_width() => Some(weight),
             _ => None,
         }
     }
@@ -65,9 +65,9 @@ impl DomainAxis {
             vec![Side { middle: 0.5 * (min + max), half: 0.5 * (max - min), half_turn: None }]
         };
         let shift = match &self.kind {
-            Kind::Tilt { shift, .. } if self.has_width() => *shift,
-            Kind::Plain | Kind::Tilt { .. } => return plain([min, max]),
-            Kind::Imaginary(joint) => {
+            SideKind::Tilt { shift, .. } if self.has_width() => *shift,
+            SideKind::Plain | SideKind::Tilt { .. } => return plain([min, max]),
+            SideKind::Imaginary(joint) => {
                 let [from, to] = [min, max].map(|value| joint.displacement(value));
                 return plain([from.min(to), from.max(to)]);
             }
@@ -197,7 +197,8 @@ impl Domain {
         let ends = CoordinateRange::of_each(manipulator, sections, given)?;
         for (axis, [min, max]) in axes.iter_mut().zip(ends) {
             (axis.min, axis.max) = (min, max);
-            if matches!(axis.kind, Kind::Tilt { .. }) && (max - min) / PI > (MOST_PIECES - 2) as f64
+            if matches!(axis.kind, SideKind::Tilt { .. })
+                && (max - min) / PI > (MOST_PIECES - 2) as f64
             {
                 return Err(DomainError::Turns { name: axis.name.clone(), min, max });
             }
@@ -272,7 +273,7 @@ impl Domain {
                     continue;
                 }
                 let value = match (part.half_turn, &axis.kind) {
-                    (Some(half_turn), Kind::Tilt { shift, .. }) => {
+                    (Some(half_turn), SideKind::Tilt { shift, .. }) => {
                         half_turn.angle(part.middle - part.half + left) - shift
                     }
                     _ => axis.min + share * (axis.max - axis.min),
@@ -332,11 +333,11 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
     let lower = manipulator.lower_coordinates();
     let kind = |number: usize, kind: Option<CoordinateKind>, home: f64| match kind {
         // In a domain of the lower section the values of the imaginary joints follow its coordinates.
-        None => Kind::Imaginary(cuts[number - lower].clone()),
-        Some(CoordinateKind::Xi) => Kind::Tilt { shift: 0.0, weight: "sin xi" },
+        None => SideKind::Imaginary(cuts[number - lower].clone()),
+        Some(CoordinateKind::Xi) => SideKind::Tilt { shift: 0.0, weight: "sin xi" },
         // The Euler angles are linear in tilt and torsion, with a determinant of one.
-        Some(CoordinateKind::Tilt) => Kind::Tilt { shift: 0.0, weight: "sin tilt" },
-        Some(CoordinateKind::Nu) => Kind::Tilt {
+        Some(CoordinateKind::Tilt) => SideKind::Tilt { shift: 0.0, weight: "sin tilt" },
+        Some(CoordinateKind::Nu) => SideKind::Tilt {
             shift: FRAC_PI_2 - home,
             weight: if home == 0.0 { "cos nu" } else { "cos(nu - home)" },
         },
@@ -353,14 +354,14 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
             | CoordinateKind::Azimuth
             | CoordinateKind::Torsion
             | CoordinateKind::Mu,
-        ) => Kind::Plain,
+        ) => SideKind::Plain,
     };
     // An orientation of which a part follows from the rest has no measure of all orientations.
     let tied = |name: &str| is_tied(manipulator, name);
     let coordinates = sections.coordinates(manipulator).into_iter().enumerate();
     coordinates
         .map(|(number, c)| DomainAxis {
-            kind: if tied(&c.name) { Kind::Plain } else { kind(number, c.kind, c.home) },
+            kind: if tied(&c.name) { SideKind::Plain } else { kind(number, c.kind, c.home) },
             name: c.name,
             quantity: c.quantity,
             min: c.home,

@@ -7,7 +7,7 @@ use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
 
 /// How a cause takes part in rejecting a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum CauseRole {
     /// Without it, the pose would be reached.
     Alone,
     /// Other causes reject the pose too.
@@ -57,26 +57,26 @@ impl Family {
 }
 
 /// What rejects a pose, and buffers to find it.
-pub struct Found {
+pub struct PoseCauses {
     solution: Solution,
     /// The causes in each mode of a family.
     in_modes: Vec<Vec<usize>>,
     /// For each leg, the number of a mode of the family in which nothing of that leg rejects the pose.
     open: Vec<Option<usize>>,
     /// The part of each cause.
-    parts: Vec<Option<Part>>,
+    parts: Vec<Option<CauseRole>>,
 }
 
-impl Found {
+impl PoseCauses {
     /// The numbers of the causes, ascending, with their parts; none where the pose is reached.
-    pub fn causes(&self) -> impl Iterator<Item = (usize, Part)> + '_ {
+    pub fn causes(&self) -> impl Iterator<Item = (usize, CauseRole)> + '_ {
         let parts = self.parts.iter().enumerate();
         parts.filter_map(|(number, part)| part.map(|part| (number, part)))
     }
 
-    fn add(&mut self, cause: usize, part: Part) {
+    fn add(&mut self, cause: usize, part: CauseRole) {
         let known = &mut self.parts[cause];
-        if *known != Some(Part::Alone) {
+        if *known != Some(CauseRole::Alone) {
             *known = Some(part);
         }
     }
@@ -113,9 +113,9 @@ impl<'a> Causes<'a> {
     }
 
     /// Empty buffers.
-    pub fn none(&self) -> Found {
+    pub fn none(&self) -> PoseCauses {
         let most = self.families.iter().map(|family| family.modes.len()).max().unwrap_or(0);
-        Found {
+        PoseCauses {
             solution: self.manipulator.solution(),
             in_modes: vec![Vec::new(); most],
             open: vec![None; self.manipulator.mechanism().legs.len()],
@@ -124,7 +124,7 @@ impl<'a> Causes<'a> {
     }
 
     /// Finds what rejects a pose of the grid.
-    pub fn find(&self, pose: &[f64], found: &mut Found) {
+    pub fn find(&self, pose: &[f64], found: &mut PoseCauses) {
         found.parts.fill(None);
         for family in &self.families {
             if self.reached(family, pose, found) {
@@ -135,7 +135,7 @@ impl<'a> Causes<'a> {
     }
 
     /// Whether a mode of a family reaches a pose. If none does, adds what rejects it.
-    fn reached(&self, family: &Family, pose: &[f64], found: &mut Found) -> bool {
+    fn reached(&self, family: &Family, pose: &[f64], found: &mut PoseCauses) -> bool {
         found.open.fill(None);
         for (number, &mode) in family.modes.iter().enumerate() {
             let mut causes = std::mem::take(&mut found.in_modes[number]);
@@ -162,7 +162,7 @@ impl<'a> Causes<'a> {
             let mode = parts.fold(Mode::default(), Mode::with);
             let mut causes = Vec::new();
             self.in_mode(pose, mode, &mut found.solution, &mut causes);
-            let part = if causes.len() == 1 { Part::Alone } else { Part::WithOthers };
+            let part = if causes.len() == 1 { CauseRole::Alone } else { CauseRole::WithOthers };
             causes.iter().for_each(|&cause| found.add(cause, part));
             return causes.is_empty();
         }
@@ -172,8 +172,8 @@ impl<'a> Causes<'a> {
                 let leg = self.all[cause].0;
                 let same = |&&other: &&usize| self.all[other].0 == leg;
                 let part = match (closed, causes.iter().filter(same).count()) {
-                    (1, 1) => Part::Alone,
-                    _ => Part::WithOthers,
+                    (1, 1) => CauseRole::Alone,
+                    _ => CauseRole::WithOthers,
                 };
                 if found.open[leg].is_none() {
                     found.add(cause, part);

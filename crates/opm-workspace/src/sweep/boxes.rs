@@ -6,7 +6,7 @@
 
 use super::reach::Reach;
 use super::runs::{self, Run};
-use super::tile::{Part, Tile, TileBox};
+use super::tile::{Tile, TileBox, TilePart};
 use super::worker::{Ranges, Visitor};
 use super::{Count, Hits, Sweep};
 use crate::grid::{Axis, Sections};
@@ -166,7 +166,7 @@ impl<'a> Boxes<'a> {
         self.known.resize(rows * first.len(), Known::Nothing);
         self.bound.begin(&self.pose);
         let tile = Tile { axes: [0, across], first: &first, second: &second };
-        let all = Part { rows: 0..rows, poses: 0..first.len() };
+        let all = TilePart { rows: 0..rows, poses: 0..first.len() };
         self.decide_part(&tile, &all, false, found);
         let mut next = 0;
         while next < self.known.len() {
@@ -180,7 +180,7 @@ impl<'a> Boxes<'a> {
     }
 
     /// Decides what boxes tell of a part of a tile, of which all poses are in reach if it is `inside`.
-    fn decide_part(&mut self, tile: &Tile<'_>, part: &Part, inside: bool, found: &mut Count) {
+    fn decide_part(&mut self, tile: &Tile<'_>, part: &TilePart, inside: bool, found: &mut Count) {
         if part.len() <= FEW {
             return;
         }
@@ -210,7 +210,7 @@ impl<'a> Boxes<'a> {
 
     /// Whether the imaginary joints are within known ranges in all of a box, which is in reach. If they are not, its corners
     /// widen these first.
-    fn widens_no_range(&mut self, tile: &Tile<'_>, part: &Part, found: &mut Count) -> bool {
+    fn widens_no_range(&mut self, tile: &Tile<'_>, part: &TilePart, found: &mut Count) -> bool {
         if !self.ranges {
             return true;
         }
@@ -227,7 +227,7 @@ impl<'a> Boxes<'a> {
             return true;
         }
         self.poses.clear();
-        let Part { rows, poses } = part;
+        let TilePart { rows, poses } = part;
         for row in [rows.start, rows.end - 1] {
             for column in [poses.start, poses.end - 1] {
                 place(&mut self.pose, tile, row, column);
@@ -266,9 +266,9 @@ impl<'a> Boxes<'a> {
     }
 
     /// Notes what a box tells.
-    fn fill(&mut self, tile: &Tile<'_>, part: &Part, known: Known) {
+    fn fill(&mut self, tile: &Tile<'_>, part: &TilePart, known: Known) {
         self.saved = SAVED.min(self.saved + part.len() as i64);
-        let Part { rows, poses } = part;
+        let TilePart { rows, poses } = part;
         for row in self.known.chunks_mut(tile.first.len()).take(rows.end).skip(rows.start) {
             row[poses.clone()].fill(known);
         }

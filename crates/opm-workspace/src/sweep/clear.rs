@@ -7,7 +7,7 @@
 
 use super::Sweep;
 use super::asked::AskedRows;
-use super::tile::{Part, Tile, TileBox};
+use super::tile::{Tile, TileBox, TilePart};
 use crate::clearance::ClearanceLimit;
 use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_interference::{BoxTest, Clearance, Open};
@@ -99,12 +99,12 @@ impl<'a> ClearPoses<'a> {
     fn decide_all(&mut self, tile: &Tile<'_>, rows: Range<usize>) {
         self.bound.begin(&self.pose);
         let all = std::mem::take(&mut self.all);
-        self.decide(tile, &Part { rows, poses: 0..tile.first.len() }, &all);
+        self.decide(tile, &TilePart { rows, poses: 0..tile.first.len() }, &all);
         self.all = all;
     }
 
     /// Decides the open poses of a part of a tile, for the pairs that are open.
-    fn decide(&mut self, tile: &Tile<'_>, part: &Part, open: &Open) {
+    fn decide(&mut self, tile: &Tile<'_>, part: &TilePart, open: &Open) {
         let width = tile.first.len();
         let of_rows = part.rows.clone().map(|row| &self.open[row * width..][part.poses.clone()]);
         let count = of_rows.flatten().filter(|&&open| open).count();
@@ -133,7 +133,7 @@ impl<'a> ClearPoses<'a> {
     fn decide_each(
         &mut self,
         tile: &Tile<'_>,
-        Part { rows, poses }: &Part,
+        TilePart { rows, poses }: &TilePart,
         mut test: impl FnMut(&mut Self) -> Clearance,
     ) {
         let width = tile.first.len();

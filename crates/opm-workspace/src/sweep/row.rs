@@ -4,14 +4,14 @@ use super::runs::{self, Run};
 
 /// The row that is being decided.
 #[derive(Default)]
-pub struct Row {
+pub struct DecidedRow {
     /// The reachable poses, as far as they were decided.
     pub reached: Vec<Run>,
     /// The next value of `reached`.
     next: Vec<Run>,
 }
 
-impl Row {
+impl DecidedRow {
     /// Takes these poses for the reachable ones; returns how many they are.
     pub fn take(&mut self, runs: impl Iterator<Item = Run>) -> u64 {
         self.reached.clear();

@@ -21,12 +21,12 @@ pub struct Tile<'t> {
 
 /// A part of a tile: some of its rows, and the same poses of each.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct TilePart {
     pub rows: Range<usize>,
     pub poses: Range<usize>,
 }
 
-impl Part {
+impl TilePart {
     /// The number of its poses.
     pub fn len(&self) -> usize {
         self.rows.len() * self.poses.len()
@@ -70,7 +70,7 @@ impl TileBox {
     }
 
     /// Bounds a part of a tile; returns half of the lengths in both coordinates, metres.
-    pub fn bound(&mut self, tile: &Tile<'_>, Part { rows, poses }: &Part) -> [f64; 2] {
+    pub fn bound(&mut self, tile: &Tile<'_>, TilePart { rows, poses }: &TilePart) -> [f64; 2] {
         let mut set = |number: usize, values: &[f64]| {
             let ends = [values[0], values[values.len() - 1]];
             let middle = 0.5 * (ends[0] + ends[1]);

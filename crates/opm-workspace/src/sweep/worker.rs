@@ -6,7 +6,7 @@ use super::clear::ClearPoses;
 use super::clip::{Clip, ClippedRows, Intersect, Intersection, ROWS, RowState, Rows};
 use super::known_range::KnownRanges;
 use super::limited::LimitedRows;
-use super::row::Row;
+use super::row::DecidedRow;
 use super::runs::{self, Run};
 use super::sheet::{Sheet, SheetKind, SliceBranch};
 use super::together::Together;
@@ -31,7 +31,7 @@ pub struct Worker<'a> {
     ranges: Ranges,
     pub sheet: Sheet<'a>,
     clipping: Clipping,
-    row: Row,
+    row: DecidedRow,
     asked: Option<Box<AskedRows>>,
     /// The poses that the legs reach that are the same in every slice, of the rows of the range.
     fixed: Option<(Range<u64>, Box<AskedRows>)>,
@@ -183,7 +183,7 @@ impl<'a> Worker<'a> {
             ranges,
             sheet: Sheet::new(sweep),
             clipping: Clipping::new(),
-            row: Row::default(),
+            row: DecidedRow::default(),
             asked: None,
             fixed: None,
             hits: HitPoses { window: Run { from: 0, to: 0 }, values: vec![], hits: vec![] },

@@ -106,7 +106,7 @@ fn moved(joint: &Joint, constraints: &[(usize, SubspaceClass)], length: f64) -> 
             *axis_of(&mut moved, *index) = direction;
         }
     }
-    let places: Vec<(usize, Place)> = constraints
+    let places: Vec<(usize, PointPlace)> = constraints
         .iter()
         .filter_map(|(index, group)| Some((*index, place(&Element::of(&moved, *index)?, group)?)))
         .collect();
@@ -155,7 +155,7 @@ fn direction(element: &Element, group: &SubspaceClass, fixed: bool) -> Option<Un
 }
 
 /// Where a joint's point has to be: at a point, up to motions that a projector leaves free.
-struct Place {
+struct PointPlace {
     point: Point3<f64>,
     projector: Matrix3<f64>,
     /// Whether the point is a centre that the axis passes through.
@@ -163,16 +163,18 @@ struct Place {
 }
 
 /// Where the point of an element in a group has to be; `None` if anywhere.
-fn place(element: &Element, group: &SubspaceClass) -> Option<Place> {
+fn place(element: &Element, group: &SubspaceClass) -> Option<PointPlace> {
     let across =
         |axis: Unit<Vector3<f64>>| Matrix3::identity() - axis.into_inner() * axis.transpose();
     let Guides { line, centre, .. } = Guides::of(group);
-    let at_centre = |projector| centre.map(|point| Place { point, projector, centre: true });
+    let at_centre = |projector| centre.map(|point| PointPlace { point, projector, centre: true });
     match *element {
         Element::Slide { .. } => None,
         Element::Ball { .. } => at_centre(Matrix3::identity()),
         Element::Line { axis, .. } | Element::Helix { axis, .. } => match line {
-            Some((axis, point)) => Some(Place { point, projector: across(axis), centre: false }),
+            Some((axis, point)) => {
+                Some(PointPlace { point, projector: across(axis), centre: false })
+            }
             None => at_centre(across(axis)),
         },
     }
@@ -180,7 +182,7 @@ fn place(element: &Element, group: &SubspaceClass) -> Option<Place> {
 
 /// A point, moved as little as possible to where it has to be; by least squares if it cannot be
 /// everywhere at once.
-fn placed(point: Point3<f64>, places: &[(usize, Place)]) -> Point3<f64> {
+fn placed(point: Point3<f64>, places: &[(usize, PointPlace)]) -> Point3<f64> {
     let sum: Matrix3<f64> = places.iter().map(|(_, place)| place.projector).sum();
     let offset: Vector3<f64> =
         places.iter().map(|(_, place)| place.projector * (place.point - point)).sum();

@@ -44,11 +44,11 @@ impl Complete<'_> {
                         self.demand(block, constraint, values);
                     }
                     let (values, coordinate) = (&values, *coordinate);
-                    self.part(block, Part::Zeros { function, values, sign, coordinate });
+                    self.part(block, SharedWork::Zeros { function, values, sign, coordinate });
                 }
                 Closed::Joint(joint) => {
                     self.find_tau_before(block, joint.leg, joint.section);
-                    self.part(block, Part::Joint(joint, sign));
+                    self.part(block, SharedWork::Joint(joint, sign));
                 }
             }
         }
@@ -83,22 +83,22 @@ impl Complete<'_> {
         let bridge = leg.section(bridge);
         SolveSection { section: bridge, branches, target, found, lanes: LANES }.run(arch);
         status.note(found);
-        self.part(block, Part::Tau(leg, joint));
+        self.part(block, SharedWork::Tau(leg, joint));
     }
 
     /// Computes the values of a constraint's condition at the present poses.
     fn demand(&self, block: &mut Block, constraint: &Constraint, values: &mut Column) {
         block.displace_only(self.manipulator, constraint.section, self.arch);
-        self.part(block, Part::Demand(constraint, values));
+        self.part(block, SharedWork::Demand(constraint, values));
     }
 
-    fn part(&self, block: &mut Block, part: Part<'_>) {
+    fn part(&self, block: &mut Block, part: SharedWork<'_>) {
         self.arch.dispatch(OnBlock { complete: self, block, part });
     }
 }
 
 /// A part of the work. Several steps need the same part, of which there is one copy for each set of instructions.
-enum Part<'a> {
+enum SharedWork<'a> {
     /// See [`Block::take_tau`].
     Tau(&'a CompiledLeg, usize),
     /// See [`Block::demand`].
@@ -113,7 +113,7 @@ enum Part<'a> {
 struct OnBlock<'a, 'p> {
     complete: &'a Complete<'a>,
     block: &'a mut Block,
-    part: Part<'p>,
+    part: SharedWork<'p>,
 }
 
 impl WithSimd for OnBlock<'_, '_> {
@@ -123,13 +123,13 @@ impl WithSimd for OnBlock<'_, '_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { complete: &Complete { manipulator, .. }, block, part } = self;
         match part {
-            Part::Tau(leg, joint) => block.take_tau(leg, joint),
-            Part::Demand(constraint, values) => block.demand(manipulator, constraint, values),
-            Part::Zeros { function, values, sign, coordinate } => {
+            SharedWork::Tau(leg, joint) => block.take_tau(leg, joint),
+            SharedWork::Demand(constraint, values) => block.demand(manipulator, constraint, values),
+            SharedWork::Zeros { function, values, sign, coordinate } => {
                 let home = manipulator.home[coordinate];
                 block.take_zeros(function, values, sign, home, coordinate);
             }
-            Part::Joint(joint, sign) => block.take_joint(manipulator, joint, sign),
+            SharedWork::Joint(joint, sign) => block.take_joint(manipulator, joint, sign),
         }
     }
 }

@@ -23,7 +23,7 @@ pub struct Flat {
 
 /// An equation of the system: on the left the coefficients of `v`, `b` and the legs' τ, on the right those of
 /// the actuated joints.
-struct Row {
+struct LinearEquation {
     left: Vec<f64>,
     right: Vec<f64>,
 }
@@ -42,7 +42,7 @@ impl Flat {
             };
             let coefficients = &coefficients.as_slice()[..kind.dimension()];
             left[first..first + kind.dimension()].copy_from_slice(coefficients);
-            Row { left, right: vec![0.0; actuated_count] }
+            LinearEquation { left, right: vec![0.0; actuated_count] }
         };
         // b has no component along the intersection motion: v has all of it.
         let mut rows = vec![row(Section::Upper, &task.upper_intersection.sum())];

@@ -15,7 +15,7 @@ impl MechanismFile {
             Some(family) => family.quantity_of(name),
             None => {
                 let (joint, part) = split(name)?;
-                if part == Part::Drive(DriveLimit::Effort) {
+                if part == JointEntry::Drive(DriveLimit::Effort) {
                     return None;
                 }
                 let mut all = self.mechanism.coordinates();
@@ -102,13 +102,13 @@ pub fn text(mechanism: &Mechanism, family: Option<&Family>, units: FileUnits) ->
 
 /// What is changed of a joint.
 #[derive(Clone, Copy, PartialEq)]
-enum Part {
+enum JointEntry {
     Home,
     Limits,
     Drive(DriveLimit),
 }
 
-impl Part {
+impl JointEntry {
     /// Whether it is a limit that the coordinate has.
     fn is_limit_of(self, coordinate: &JointCoordinate) -> bool {
         match self {
@@ -120,15 +120,15 @@ impl Part {
 }
 
 /// The joint coordinate of a name, or all of them, and what of it the name changes.
-fn split(name: &str) -> Option<(Option<&str>, Part)> {
+fn split(name: &str) -> Option<(Option<&str>, JointEntry)> {
     let (joint, part) = match name.rsplit_once('.') {
         Some((joint, part)) => (Some(joint), part),
         None => (None, name),
     };
     let part = match part {
-        "home" if joint.is_some() => Part::Home,
-        "limits" => Part::Limits,
-        part => Part::Drive(DriveLimit::ALL.into_iter().find(|limit| limit.key() == part)?),
+        "home" if joint.is_some() => JointEntry::Home,
+        "limits" => JointEntry::Limits,
+        part => JointEntry::Drive(DriveLimit::ALL.into_iter().find(|limit| limit.key() == part)?),
     };
     Some((joint, part))
 }
@@ -170,25 +170,25 @@ fn change(
     for coordinate in chosen {
         let quantity = coordinate.quantity;
         match (part, value) {
-            (Part::Home, ParameterValue::Number(value)) => {
+            (JointEntry::Home, ParameterValue::Number(value)) => {
                 coordinate.home = size(value, quantity)?;
             }
-            (Part::Limits, ParameterValue::None) => coordinate.limits = None,
-            (Part::Limits, ParameterValue::Pair([low, high])) => {
+            (JointEntry::Limits, ParameterValue::None) => coordinate.limits = None,
+            (JointEntry::Limits, ParameterValue::Pair([low, high])) => {
                 let limits = [size(low, quantity)?, size(high, quantity)?];
                 coordinate.limits = Some(checks::ordered(limits, quantity, units)?);
             }
-            (Part::Drive(limit), ParameterValue::None) => {
+            (JointEntry::Drive(limit), ParameterValue::None) => {
                 *limit.of_mut(coordinate) = None;
             }
-            (Part::Drive(limit), ParameterValue::Number(value)) => {
+            (JointEntry::Drive(limit), ParameterValue::Number(value)) => {
                 let value = checks::finite(value)?;
                 let value = checks::drive_limit(value, limit, quantity, units)?;
                 *limit.of_mut(coordinate) = Some(value);
             }
-            (Part::Home, _) => return Err("expected a number".into()),
-            (Part::Drive(_), _) => return Err("expected a number, or none".into()),
-            (Part::Limits, _) => return Err("expected limits LOWEST:HIGHEST, or none".into()),
+            (JointEntry::Home, _) => return Err("expected a number".into()),
+            (JointEntry::Drive(_), _) => return Err("expected a number, or none".into()),
+            (JointEntry::Limits, _) => return Err("expected limits LOWEST:HIGHEST, or none".into()),
         }
     }
     Ok(())
