@@ -20,7 +20,7 @@ fn by_chain(chain: &PlanarChain, targets: &[[f64; 4]; LANES], out: &mut [[f64; 6
             rotation: Complex::new(a, b),
             translation: Complex::new(x, y),
         };
-        let found = chain.attempt(&g, 1.0).displacements.map(|joint| match joint {
+        let found = ClosedForm::<f64>::attempt(chain, &g, 1.0).displacements.map(|joint| match joint {
             opm_core::group::JointDisplacement::Direction(z) => z,
             opm_core::group::JointDisplacement::Value(value) => Complex::new(value, 0.0),
         });

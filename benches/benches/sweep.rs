@@ -10,8 +10,9 @@ use opm_benches::{
     with_limits_on_passive_angles,
 };
 use opm_core::chain::region::{Convex, Region};
-use opm_core::manipulator::{ActuatedJoints, LegBranch, Manipulator};
+use opm_core::manipulator::{ActuatedJoints, Manipulator};
 use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::reach::LegBranch;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep, default_grid};
 use rayon::ThreadPool;
 use std::time::{Duration, Instant};
@@ -131,7 +132,7 @@ fn factorised(manipulator: &Manipulator, grid: &Grid) -> u64 {
         for index in slice * in_slice..(slice + 1) * in_slice {
             grid.pose_into(index, &mut pose);
             let v = task.lower(&pose[..grid.lower()]);
-            count += u64::from(ways.iter().all(|way| manipulator.reaches(way, &v)));
+            count += u64::from(ways.iter().all(|way| manipulator.reach().reaches(way, &v)));
         }
     }
     count
@@ -144,7 +145,7 @@ fn ways(manipulator: &Manipulator, grid: &Grid, slice: u64) -> Option<Vec<LegBra
     let b = manipulator.task().upper(&pose[grid.lower()..]);
     let mut ways = Vec::new();
     for leg in 0..manipulator.legs() {
-        manipulator.leg_branches(leg, &b, Some(manipulator.home_mode()), &mut ways);
+        manipulator.reach().leg_branches(leg, &b, Some(manipulator.home_mode()), &mut ways);
     }
     (ways.len() == manipulator.legs()).then_some(ways)
 }
@@ -303,7 +304,7 @@ fn roots_a_row(manipulator: &Manipulator, grid: &Grid) -> usize {
     let ways = ways(manipulator, grid, grid.slices() / 2).expect("the middle is in reach");
     let v = manipulator.task().lower(&manipulator.home_pose()[..grid.lower()]);
     let regions = ways.iter().map(|way| {
-        let region = manipulator.region(way, &v, 1.0);
+        let region = manipulator.reach().region(way, &v, 1.0);
         region.expect("only sliders are limited")
     });
     regions.map(|Region { whole, .. }| of(&whole)).sum()

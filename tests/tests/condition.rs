@@ -4,6 +4,7 @@
 use fastrand::Rng;
 use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::reach::AT_ONCE;
 use opm_core::velocity::ConditionQuery;
 use opm_tests::random::{LACKS, Options, PAIRS, constrained, mechanism};
 use opm_workspace::{Conditioned, Modes, PoseLimit};
@@ -75,7 +76,7 @@ fn compare(
     let mut batch = manipulator.condition_batch();
     for every in [false, true] {
         let query = ConditionQuery { mode, length: limit.length(), most: limit.most, every };
-        for block in poses.chunks(Manipulator::DECIDED * width) {
+        for block in poses.chunks(AT_ONCE * width) {
             let count = block.len() / width;
             let mut conditions = vec![0.0; count];
             let mut ranges = vec![NOTHING; manipulator.imaginary().len()];

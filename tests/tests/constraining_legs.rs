@@ -437,7 +437,7 @@ fn large_sweeps_agree_with_the_inverse() {
                         let mut values = vec![vec![]; m.imaginary().len()];
                         let mut note = |number: usize, value: f64| values[number].push(value);
                         let within =
-                            found.is_some_and(|all| m.within_limits_in_any(all, &mut note));
+                            found.is_some_and(|all| all.within_limits_in_any(&m, &mut note));
                         let count = values.iter().map(Vec::len).max().unwrap_or(0);
                         // As many rows of values as the joint with the most has.
                         for row in 0..count {

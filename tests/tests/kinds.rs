@@ -4,7 +4,8 @@
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
 use opm_core::Section;
-use opm_core::manipulator::{LegBranch, Manipulator, Mode};
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::reach::LegBranch;
 use opm_core::task::{TaskCoordinate, euler};
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::height;
@@ -39,7 +40,7 @@ fn all_modes(manipulator: &Manipulator) -> Vec<Mode> {
 fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) -> bool {
     let task = manipulator.task();
     if !manipulator.lifts_straight() {
-        let raised = manipulator.raised(task.rise(pose));
+        let raised = manipulator.reach().raised(task.rise(pose));
         return raised.is_some_and(|raised| sections_meet(&raised, pose, mode));
     }
     let (v, b) = (task.lower(pose), task.upper(&pose[task.lower_count..]));
@@ -48,14 +49,14 @@ fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) ->
     {
         return false;
     }
-    let mut ways: Vec<LegBranch> = vec![];
-    if !manipulator.upper_closes(&b, mode, &mut ways) {
+    let (reach, mut ways) = (manipulator.reach(), Vec::<LegBranch>::new());
+    if !reach.upper_closes(&b, mode, &mut ways) {
         return false;
     }
     // No two legs share an imaginary joint or a choice.
     (0..manipulator.legs()).all(|leg| {
         ways.clear();
-        manipulator.leg_branches(leg, &b, mode, &mut ways);
+        reach.leg_branches(leg, &b, mode, &mut ways);
         let mut taus: Vec<f64> =
             ways.iter().filter_map(LegBranch::intersection_displacement).collect();
         if taus.is_empty() {
@@ -63,8 +64,8 @@ fn sections_meet(manipulator: &Manipulator, pose: &[f64], mode: Option<Mode>) ->
         }
         taus.into_iter().any(|tau| {
             ways.clear();
-            manipulator.lower_leg_branches(leg, tau, mode, &mut ways);
-            ways.iter().any(|way| manipulator.reaches(way, &v))
+            reach.lower_leg_branches(leg, tau, mode, &mut ways);
+            ways.iter().any(|way| reach.reaches(way, &v))
         })
     })
 }
@@ -141,21 +142,22 @@ fn a_grid_of_the_lower_section_has_its_imaginary_joints_as_axes() {
                 _ => Modes::One(manipulator.home_mode()),
             };
             let set = reached(&Sweep::new(&manipulator, &grid, modes));
-            let cuts = manipulator.intersection_joints();
+            let cuts = manipulator.reach().intersection_joints();
             for number in 0..grid.poses() {
                 let pose = grid.pose(number);
                 let v = manipulator.task().lower(&pose);
                 let admitted = height::within(&manipulator, Section::Lower, &pose);
                 let rise = manipulator.task().rise_in(Section::Lower, &pose[..lower]);
-                let raised = manipulator.raised(rise.unwrap_or(0.0));
+                let raised = manipulator.reach().raised(rise.unwrap_or(0.0));
                 let expected = admitted
                     && raised.as_ref().is_some_and(|manipulator| {
+                        let reach = manipulator.reach();
                         (0..manipulator.legs()).all(|leg| {
                             let cut = cuts.iter().position(|cut| cut.leg == leg);
                             let tau = cut.map_or(0.0, |i| cuts[i].displacement(pose[lower + i]));
                             let mut ways = vec![];
-                            manipulator.lower_leg_branches(leg, tau, modes.one(), &mut ways);
-                            ways.iter().any(|way| manipulator.reaches(way, &v))
+                            reach.lower_leg_branches(leg, tau, modes.one(), &mut ways);
+                            ways.iter().any(|way| reach.reaches(way, &v))
                         })
                     });
                 assert_eq!(set.contains(number), expected, "{pair:?} {pose:?}");

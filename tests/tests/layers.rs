@@ -17,6 +17,7 @@ const CRATES: [(&str, &[&str]); 3] = [
             "decomposition",
             "task",
             "manipulator",
+            "reach",
             "velocity",
             "forward",
             "motion",

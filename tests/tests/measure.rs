@@ -2,9 +2,10 @@
 //! poses, and with Monte-Carlo estimates.
 
 use fastrand::Rng;
-use opm_core::manipulator::{LegBranch, Manipulator, Mode, Solution};
+use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::OrientationCoordinates;
 use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::reach::LegBranch;
 use opm_core::task::Task;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
@@ -37,12 +38,12 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
             Sections::Upper => m.task().rise_in(Section::Upper, pose),
         };
         // A section without the height does not depend on it.
-        let raised = m.raised(rise.unwrap_or(0.0));
+        let raised = m.reach().raised(rise.unwrap_or(0.0));
         return raised.is_some_and(|raised| counts(&raised, domain, mode, pose));
     }
     if domain.sections() == Sections::Upper {
         return height::within(m, Section::Upper, pose)
-            && m.upper_closes(&m.task().upper(pose), mode, &mut ways);
+            && m.reach().upper_closes(&m.task().upper(pose), mode, &mut ways);
     }
     let (v, others) = (m.task().lower(&pose[..lower]), &pose[lower..]);
     let whole = domain.sections() == Sections::Whole;
@@ -51,17 +52,17 @@ fn counts(m: &Manipulator, domain: &Domain, mode: Option<Mode>, pose: &[f64]) ->
     {
         return false;
     }
-    let cuts = m.intersection_joints();
+    let cuts = m.reach().intersection_joints();
     (0..m.legs()).all(|leg| {
         ways.clear();
         if domain.sections() == Sections::Whole {
-            m.leg_branches(leg, &m.task().upper(others), mode, &mut ways);
+            m.reach().leg_branches(leg, &m.task().upper(others), mode, &mut ways);
         } else {
             let cut = cuts.iter().zip(others).find(|(cut, _)| cut.leg == leg);
             let tau = cut.map_or(0.0, |(cut, value)| cut.displacement(*value));
-            m.lower_leg_branches(leg, tau, mode, &mut ways);
+            m.reach().lower_leg_branches(leg, tau, mode, &mut ways);
         }
-        ways.iter().any(|way| m.reaches(way, &v))
+        ways.iter().any(|way| m.reach().reaches(way, &v))
     })
 }
 
@@ -76,7 +77,7 @@ fn reached(m: &Manipulator, mode: Option<Mode>, pose: &[f64]) -> bool {
         None => {
             let mut all = m.all_modes();
             let found = m.inverse_all(pose, &mut all).unwrap();
-            found.is_some_and(|all| m.within_limits_in_any(all, |_, _| {}))
+            found.is_some_and(|all| all.within_limits_in_any(m, |_, _| {}))
         }
     }
 }
@@ -418,7 +419,7 @@ fn cuts_of_half_a_turn_are_no_exception() {
         let mut ways = Vec::new();
         let mut cut = |pose: &[f64]| {
             ways.clear();
-            m.leg_branches(leg, &m.task().upper(&pose[lower..]), Some(mode), &mut ways);
+            m.reach().leg_branches(leg, &m.task().upper(&pose[lower..]), Some(mode), &mut ways);
             ways.first().and_then(LegBranch::intersection_displacement).unwrap_or(0.0)
         };
         let mut draw = || -> Vec<f64> {
@@ -489,7 +490,10 @@ fn boxes_of_constrained_mechanisms_are_never_contradicted() {
                     // There are no such angles, or the height is inclined.
                     continue;
                 };
-                if m.shares_height() || !m.has_enclosures() || m.task_coordinates().is_empty() {
+                if m.task().shares_height()
+                    || !m.has_enclosures()
+                    || m.task_coordinates().is_empty()
+                {
                     continue;
                 }
                 for _ in 0..8 {
@@ -526,7 +530,7 @@ fn constrained_mechanisms_have_measures() {
                 continue;
             };
             let m = Manipulator::with_decomposition(mechanism, decomposition).unwrap();
-            if m.shares_height() || m.task_coordinates().is_empty() {
+            if m.task().shares_height() || m.task_coordinates().is_empty() {
                 continue;
             }
             // Two coordinates about home.

@@ -4,9 +4,10 @@
 
 use fastrand::Rng;
 use opm_core::decomposition::Decomposition;
-use opm_core::manipulator::{LegBranch, Manipulator, Solution};
+use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::{Mechanism, examples, file};
+use opm_core::reach::LegBranch;
 use opm_core::{Quantity, Section};
 use opm_tests::height;
 use opm_tests::random::{LEVEL, Options, PAIRS, mechanism, order};
@@ -30,11 +31,12 @@ fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
     let in_slice = grid.poses() / grid.slices();
     let mut count = 0;
     for slice in 0..grid.slices() {
+        let reach = manipulator.reach();
         let b = manipulator.task().upper(&grid.pose(slice * in_slice)[lower..]);
         let legs: Vec<Vec<LegBranch>> = (0..manipulator.legs())
             .map(|leg| {
                 let mut ways = Vec::new();
-                manipulator.leg_branches(leg, &b, mode, &mut ways);
+                reach.leg_branches(leg, &b, mode, &mut ways);
                 ways
             })
             .collect();
@@ -46,7 +48,7 @@ fn by_predicate(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
                 let within = |section, values: &[f64]| height::within(manipulator, section, values);
                 within(Section::Lower, &pose[..lower])
                     && within(Section::Upper, &pose[lower..])
-                    && legs.iter().all(|ways| ways.iter().any(|way| manipulator.reaches(way, &v)))
+                    && legs.iter().all(|ways| ways.iter().any(|way| reach.reaches(way, &v)))
             })
             .count() as u64;
     }
@@ -65,7 +67,7 @@ fn by_solutions(manipulator: &Manipulator, grid: &Grid, modes: Modes) -> u64 {
             }
             Modes::Any => {
                 let found = manipulator.inverse_all(&pose, all).unwrap();
-                found.is_some_and(|all| manipulator.within_limits_in_any(all, |_, _| {}))
+                found.is_some_and(|all| all.within_limits_in_any(manipulator, |_, _| {}))
             }
         }
     });
@@ -296,9 +298,9 @@ fn legs_independent_of_the_slice_are_joined() {
             [manipulator.task().lower(&home[..lower]), manipulator.task().upper(&home[lower..])];
         let differ = (0..manipulator.legs()).any(|leg| {
             let mut ways = Vec::new();
-            manipulator.leg_branches(leg, &b, None, &mut ways);
+            manipulator.reach().leg_branches(leg, &b, None, &mut ways);
             let regions: Vec<_> =
-                ways.iter().filter_map(|way| manipulator.region(way, &v, 1.0)).collect();
+                ways.iter().filter_map(|way| manipulator.reach().region(way, &v, 1.0)).collect();
             ways[0].is_independent_of_slice() && regions.iter().any(|region| region != &regions[0])
         });
         if !differ {
@@ -465,12 +467,12 @@ fn rows_that_touch_a_boundary_are_no_exception() {
         let b = manipulator.task().upper(&pose[lower..]);
         for leg in rings {
             let mut ways = Vec::new();
-            manipulator.leg_branches(leg, &b, Some(mode), &mut ways);
+            manipulator.reach().leg_branches(leg, &b, Some(mode), &mut ways);
             let [way] = &ways[..] else { continue };
             let closes = |[x, y]: [f64; 2]| -> bool {
                 let mut v = pose[..lower].to_vec();
                 [v[0], v[1]] = [x, y];
-                manipulator.reaches(way, &manipulator.task().lower(&v))
+                manipulator.reach().reaches(way, &manipulator.task().lower(&v))
             };
             let Some([middle, high]) = top(closes, [pose[0], pose[1]]) else { continue };
             // At a pose above the centre, or beside it by less than a step.
@@ -554,9 +556,10 @@ fn rows_along_an_edge_are_no_exception() {
         let modes = Modes::One(manipulator.home_mode());
         let b = manipulator.task().upper(&pose[2..]);
         let mut ways = Vec::new();
-        manipulator.leg_branches(2, &b, modes.one(), &mut ways);
+        manipulator.reach().leg_branches(2, &b, modes.one(), &mut ways);
         let [way] = &ways[..] else { continue };
-        let within = |at: [f64; 2]| manipulator.reaches(way, &manipulator.task().lower(&at));
+        let within =
+            |at: [f64; 2]| manipulator.reach().reaches(way, &manipulator.task().lower(&at));
         let [x, y] = [pose[0], pose[1]];
         for beyond in [y - 5.0, y + 5.0] {
             if !within([x, y]) || within([x, beyond]) {

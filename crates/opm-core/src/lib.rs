@@ -42,6 +42,7 @@
 //! | [`decomposition`] | mobility, partial subspaces, and where each leg is split |
 //! | [`task`] | task coordinates: how a pose is written |
 //! | [`manipulator`] | a compiled mechanism; inverse kinematics of one pose and of many, working modes |
+//! | [`reach`] | what sweeps ask: branches of a slice, regions, rows, the decision of many poses |
 //! | [`forward`] | forward kinematics: the poses for given actuated joints |
 //! | [`velocity`] | joint and platform velocities and accelerations, Jacobians, singularities |
 //! | [`motion`] | motions of the platform: splines, tables, motion files |
@@ -72,7 +73,7 @@
 //! * A pose out of reach is an answer (`None`), not an error; an error means that the input is not valid.
 //!   A pose on the boundary of reach, or on a limit, counts as inside.
 
-// Layers: mechanism, decomposition, task, manipulator, velocity, forward, motion, trajectory, enclosure, linkage,
+// Layers: mechanism, decomposition, task, manipulator, reach, velocity, forward, motion, trajectory, enclosure, linkage,
 // skeleton. Each uses only those before it, and the modules of opm-geometry and opm-mechanism (tests/tests/layers.rs).
 pub mod decomposition;
 // Public for the sibling crates of the workspace only.
@@ -83,6 +84,7 @@ pub mod linkage;
 pub mod manipulator;
 pub mod mechanism;
 pub mod motion;
+pub mod reach;
 pub mod skeleton;
 pub mod task;
 pub mod trajectory;

@@ -10,14 +10,16 @@
 //!
 //! In both cases the two sections have as many freedoms as their subspace, and each is one
 //! [`Chain`](crate::chain::Chain).
+//!
+//! A [`Manipulator`] solves poses, one ([`Manipulator::inverse`]) or many ([`Manipulator::inverse_many`]). What sweeps ask
+//! without the values of joints is in [`reach`](crate::reach), rates are in [`velocity`](crate::velocity), and the closed
+//! forms as data, for programs that write code, in [`form`].
 
 mod all_modes;
 mod angles;
 pub(crate) mod batch;
 mod closure;
 pub(crate) mod dependent;
-// Public for the sibling crates of the workspace only.
-#[doc(hidden)]
 pub mod form;
 mod inverse;
 mod judged;
@@ -27,16 +29,14 @@ mod locate;
 mod mode;
 pub(crate) mod plan;
 mod pose;
-mod reach;
 #[cfg(feature = "files")]
 mod read;
 mod refused;
 mod section;
 mod solution;
-mod transitions;
 
 pub use all_modes::AllModes;
-pub use batch::{Batch, BatchError, BatchOutput, RowArcs, RowEnds, SheetRows};
+pub use batch::{Batch, BatchError, BatchOutput};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
 pub use leg::Section;
@@ -45,17 +45,11 @@ pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
 pub use plan::NoClosedForm;
 pub use pose::{FollowingCoordinate, LARGEST, PoseError};
-// Public for the sibling crates of the workspace only.
-#[doc(hidden)]
-pub use reach::LegBranch;
 #[cfg(feature = "files")]
 pub use read::ReadError;
 pub use refused::RefusedLeg;
 pub(crate) use section::{ChainCoordinate, CompiledSection, chain_joints, coordinate_number};
 pub use solution::{ActuatedJoints, Solution, Unreachable};
-// Public for the sibling crates of the workspace only.
-#[doc(hidden)]
-pub use transitions::Transitions;
 
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
@@ -210,6 +204,7 @@ impl Manipulator {
     }
 
     /// The frames of the two subspaces, and the task coordinates.
+    #[inline]
     pub fn task(&self) -> &Task {
         &self.task
     }
@@ -293,6 +288,20 @@ impl Manipulator {
         self.legs.iter().any(|leg| leg.section(section).chain.counts_turns())
     }
 
+    /// The number of legs.
+    pub fn legs(&self) -> usize {
+        self.legs.len()
+    }
+
+    /// Whether the two sections together decide the reachability of every pose: no leg that is split in its
+    /// lower section has upper joints that are limited, actuated, or may be out of reach, and no imaginary joint has a part
+    /// in a height.
+    pub fn workspace_factorises(&self) -> bool {
+        let free = |leg: &CompiledLeg| !leg.upper_constrains;
+        !self.task.shares_height()
+            && self.legs.iter().all(|leg| leg.split_section == Section::Upper || free(leg))
+    }
+
     /// Every joint coordinate, leg by leg. This is the order of [`Solution::joints`].
     pub fn coordinates(&self) -> &[JointCoordinate] {
         &self.coordinates
@@ -370,6 +379,7 @@ impl Manipulator {
     }
 
     /// The branches of a leg's chains in a mode.
+    #[inline]
     pub(crate) fn branches(&self, mode: Mode, leg: usize) -> LegBranches {
         self.modes.branches(mode, leg)
     }

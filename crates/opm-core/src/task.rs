@@ -280,7 +280,6 @@ impl Task {
     ///
     /// # Panics
     /// If there are fewer coordinates.
-    #[doc(hidden)]
     #[inline]
     pub fn lower(&self, pose: &[f64]) -> Displacement {
         self.section(pose, Section::Lower)
@@ -377,7 +376,6 @@ impl Task {
 
     /// The displacement `b` for the coordinates of a pose after the first [`Task::lower_count`], with which
     /// the slice starts.
-    #[doc(hidden)]
     #[inline]
     pub fn upper(&self, pose: &[f64]) -> Displacement {
         self.section(pose, Section::Upper)
@@ -410,7 +408,6 @@ impl Task {
     ///
     /// # Panics
     /// If there are fewer than [`Task::lower_count`] coordinates.
-    #[doc(hidden)]
     pub fn displacement(&self, pose: &[f64]) -> Isometry3<f64> {
         self.raised(
             self.rise(pose),

@@ -66,8 +66,6 @@ mod weighted;
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;
 pub(crate) use jacobian::Rows;
-// Public for the sibling crates of the workspace only.
-#[doc(hidden)]
 pub use many::{ConditionBatch, ConditionQuery};
 pub use singularity::{Cause, Measures, Singularities};
 

@@ -382,7 +382,7 @@ fn check_kind(
         {
             return Err(RequestError::Dependent { kind, dependent });
         }
-        WorkspaceKind::Upper | WorkspaceKind::Lower if manipulator.shares_height() => {
+        WorkspaceKind::Upper | WorkspaceKind::Lower if manipulator.task().shares_height() => {
             return Err(RequestError::Inclined { kind });
         }
         _ => {}

@@ -6,6 +6,7 @@ use crate::progress::Cancelled;
 use crate::sweep::Modes;
 use opm_analysis::{Index, IndexBounds, IndexError, Indices, Setup};
 use opm_core::manipulator::{AllModes, Manipulator, Solution};
+use opm_core::reach::AT_ONCE;
 use opm_core::velocity::{ConditionBatch, ConditionQuery, Jacobians};
 use std::sync::Arc;
 
@@ -221,8 +222,8 @@ impl<'a> Conditioned<'a> {
         let PoseLimit { most, ref setup, indices: bounds } = self.limit;
         let length = setup.length;
         let query = ConditionQuery { mode: modes.one(), length, most, every };
-        let blocks = poses.chunks(Manipulator::DECIDED * width);
-        for (poses, conditions) in blocks.zip(conditions.chunks_mut(Manipulator::DECIDED)) {
+        let blocks = poses.chunks(AT_ONCE * width);
+        for (poses, conditions) in blocks.zip(conditions.chunks_mut(AT_ONCE)) {
             let mut each = |number: usize, range: [f64; 2]| {
                 if let Some(used) = &mut used {
                     used(number, range);

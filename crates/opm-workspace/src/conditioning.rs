@@ -5,7 +5,7 @@
 use crate::condition::{ConditionError, Conditioned, PoseLimit};
 use crate::progress::{Cancelled, Progress};
 use crate::sweep::{Hits, Sweep};
-use opm_core::manipulator::Manipulator;
+use opm_core::reach::AT_ONCE;
 
 /// Local indices are summed as whole numbers, in units of one over this: such a sum is the same in any order.
 const UNIT: f64 = (1_u64 << 60) as f64;
@@ -132,14 +132,14 @@ impl<'a> Indexing<'a> {
         for &first in hits.first {
             self.poses.push(first);
             self.poses.extend_from_slice(hits.others);
-            if self.poses.len() == Manipulator::DECIDED * width {
+            if self.poses.len() == AT_ONCE * width {
                 self.decide(sweep);
             }
         }
     }
 
     fn decide(&mut self, sweep: &Sweep<'_>) {
-        let mut indices = [0.0; Manipulator::DECIDED];
+        let mut indices = [0.0; AT_ONCE];
         let indices = &mut indices[..self.poses.len() / sweep.grid().axes().len()];
         self.conditioned.local_indices(&self.poses, sweep.modes(), indices);
         indices.iter().for_each(|&local| self.index.take(local));

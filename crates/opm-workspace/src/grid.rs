@@ -150,7 +150,7 @@ pub enum Sections {
     Upper,
     /// The lower section alone: the grid's points are its displacements `v`, together with the
     /// displacements of the imaginary joints of the legs that are split in the upper section
-    /// ([`Manipulator::intersection_joints`]).
+    /// ([`Reach::intersection_joints`](opm_core::reach::Reach::intersection_joints)).
     Lower,
 }
 
@@ -192,12 +192,12 @@ impl Sections {
         });
         let lower = manipulator.lower_coordinates();
         let cuts = || {
-            manipulator.intersection_joints().into_iter().map(|joint| Coordinate {
+            manipulator.reach().intersection_joints().into_iter().map(|joint| Coordinate {
                 name: joint.name,
                 kind: None,
                 quantity: joint.quantity,
                 home: joint.home,
-                counts_turns: manipulator.intersection_counts_turns(),
+                counts_turns: manipulator.reach().intersection_counts_turns(),
             })
         };
         match self {
@@ -270,7 +270,8 @@ impl Grid {
         if coordinates.is_empty() && one_subspace {
             return Err(GridError::NoUpperSection);
         }
-        let alone = manipulator.dependent_coordinates().is_empty() && !manipulator.shares_height();
+        let alone =
+            manipulator.dependent_coordinates().is_empty() && !manipulator.task().shares_height();
         if sections != Sections::Whole && !alone {
             return Err(GridError::NotAlone);
         }
@@ -304,7 +305,7 @@ impl Grid {
             Sections::Lower | Sections::Upper => 0..lower,
         };
         let cuts = match sections {
-            Sections::Lower => manipulator.intersection_joints(),
+            Sections::Lower => manipulator.reach().intersection_joints(),
             Sections::Whole | Sections::Upper => vec![],
         };
         match poses {

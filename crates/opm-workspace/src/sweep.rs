@@ -32,7 +32,8 @@ use crate::ordered::in_order;
 use crate::progress::{Cancelled, Progress};
 use clip::ROWS;
 use known_range::KnownRanges;
-use opm_core::manipulator::{LegBranch, Manipulator, Mode};
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::reach::LegBranch;
 use rayon::prelude::*;
 use sheet::SheetKind;
 use std::ops::Range;
@@ -111,7 +112,7 @@ impl Count {
         if known.contain_or_widen(branch) {
             return;
         }
-        if let Some((imaginary, value)) = manipulator.imaginary_value(branch) {
+        if let Some((imaginary, value)) = manipulator.reach().imaginary_value(branch) {
             self.widen(imaginary, value);
         }
     }

@@ -2,7 +2,8 @@
 
 use super::{ROUNDING, wrapped};
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use opm_core::manipulator::{LegBranch, Manipulator, Mode};
+use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::reach::LegBranch;
 use opm_core::task::Displacement;
 use opm_tests::paper::PlanoSpherical;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
@@ -38,8 +39,8 @@ fn theta(
     ways: &mut Vec<LegBranch>,
 ) -> f64 {
     ways.clear();
-    manipulator.leg_branches(leg, &Displacement::Spherical(rotation), Some(mode), ways);
-    let (number, value) = manipulator.imaginary_value(&ways[0]).unwrap();
+    manipulator.reach().leg_branches(leg, &Displacement::Spherical(rotation), Some(mode), ways);
+    let (number, value) = manipulator.reach().imaginary_value(&ways[0]).unwrap();
     assert_eq!(number, leg);
     let geometry = PlanoSpherical::printed().legs[leg];
     let v = Vector3::from(geometry.proximal_axis(value));
@@ -148,7 +149,7 @@ fn the_reachable_share_of_all_orientations() {
             let mut whole = true;
             for (leg, axis) in axes.iter().enumerate() {
                 ways.clear();
-                manipulator.leg_branches(leg, &b, None, &mut ways);
+                manipulator.reach().leg_branches(leg, &b, None, &mut ways);
                 let above = (rotation * axis).z + cap.cos();
                 // The boundary of reach is left to rounding.
                 assert!(above.abs() < 1e-9 || ways.is_empty() == (above < 0.0), "{rotation} {leg}");

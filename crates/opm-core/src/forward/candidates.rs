@@ -195,7 +195,7 @@ impl Search<'_> {
             return;
         }
         self.know_legs(v);
-        if !self.manipulator.shares_height() {
+        if !self.manipulator.task().shares_height() {
             return self.assemble_at_height(v, bs);
         }
         for b in bs {

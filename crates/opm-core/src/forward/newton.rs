@@ -242,7 +242,7 @@ impl Newton<'_> {
     fn follow_plan(&self, at: &mut NearBuffer) -> bool {
         let m = self.manipulator;
         let Ok(plan) = &m.plan else { return false };
-        if most(&at.error) <= MATCH || !m.lifts_straight() || m.shares_height() {
+        if most(&at.error) <= MATCH || !m.lifts_straight() || m.task().shares_height() {
             return false;
         }
         let held = Held::new(m, plan, &at.displacements);

@@ -101,7 +101,7 @@ impl<'a> Search<'a> {
     fn find(&mut self) {
         let (m, plan) = (self.manipulator, self.held.plan);
         let apart = self.held.contradiction_of_heights();
-        if apart > MATCH && !m.shares_height() {
+        if apart > MATCH && !m.task().shares_height() {
             self.memory.outcome.reject();
             return;
         }

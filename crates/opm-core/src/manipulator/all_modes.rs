@@ -162,35 +162,6 @@ impl Manipulator {
         }
         Some(first)
     }
-
-    /// Whether any mode reaches the pose of `all` within the limits. `used` is called with the number and the value
-    /// of the imaginary joints in all these modes.
-    #[doc(hidden)]
-    pub fn within_limits_in_any(&self, all: &AllModes, mut used: impl FnMut(usize, f64)) -> bool {
-        let mut reached = false;
-        for completion in all.completions.iter().filter(|c| c.missed.is_none()) {
-            let rise = self.task.rise(&completion.solved.pose);
-            let within = |(leg, modes): (&CompiledLeg, &LegModes)| {
-                [0, 1, 2, 3].map(|part| {
-                    let solution = modes.solution(part);
-                    solution.filter(|solution| self.admits(leg, solution, rise)).copied()
-                })
-            };
-            let legs = || self.legs.iter().zip(&completion.legs);
-            if !legs().all(|leg| within(leg).iter().any(Option::is_some)) {
-                continue;
-            }
-            reached = true;
-            for leg in legs() {
-                let Some(imaginary) = leg.0.imaginary else { continue };
-                let joint = &self.imaginary[imaginary];
-                for solution in within(leg).iter().flatten() {
-                    used(imaginary, joint.value(solution.tau, joint.home));
-                }
-            }
-        }
-        reached
-    }
 }
 
 impl Completion {
@@ -278,6 +249,37 @@ impl AllModes {
         manipulator.modes().filter(move |&mode| self.reached_in(manipulator, mode))
     }
 
+    /// Whether any mode reaches the pose within the limits. `used` is called with the number and the value
+    /// of the imaginary joints in all these modes.
+    pub fn within_limits_in_any(
+        &self,
+        manipulator: &Manipulator,
+        mut used: impl FnMut(usize, f64),
+    ) -> bool {
+        let mut reached = false;
+        for completion in self.completions.iter().filter(|c| c.missed.is_none()) {
+            let rise = manipulator.task.rise(&completion.solved.pose);
+            let within = |(leg, modes): (&CompiledLeg, &LegModes)| {
+                [0, 1, 2, 3].map(|part| {
+                    let solution = modes.solution(part);
+                    solution.filter(|solution| manipulator.admits(leg, solution, rise)).copied()
+                })
+            };
+            let legs = || manipulator.legs.iter().zip(&completion.legs);
+            if !legs().all(|leg| within(leg).iter().any(Option::is_some)) {
+                continue;
+            }
+            reached = true;
+            for leg in legs() {
+                let Some(imaginary) = leg.0.imaginary else { continue };
+                let joint = &manipulator.imaginary[imaginary];
+                for solution in within(leg).iter().flatten() {
+                    used(imaginary, joint.value(solution.tau, joint.home));
+                }
+            }
+        }
+        reached
+    }
     /// Whether the pose is in reach in a mode.
     fn reached_in(&self, manipulator: &Manipulator, mode: Mode) -> bool {
         let layout = &manipulator.modes;

@@ -7,9 +7,8 @@
 //! rare: they are marked and left to [`Manipulator::inverse`].
 
 mod block;
-mod decide;
+pub(crate) mod decide;
 pub(crate) mod lanes;
-mod rows;
 mod rows_and_columns;
 pub(crate) mod section;
 
@@ -19,11 +18,11 @@ use super::pose::PoseError;
 use super::solution::Solution;
 use super::{Manipulator, Mode};
 pub(crate) use block::Block;
+use block::Give;
 pub(in crate::manipulator) use block::SolveSection;
-use block::{Give, Status, columns_of};
+pub(crate) use block::{Status, columns_of};
 use lanes::{BranchesOfLeg, LANES};
 use pulp::{Arch, Simd, WithSimd};
-pub use rows::{RowArcs, RowEnds, SheetRows};
 
 /// The slices to which [`Manipulator::inverse_many`] writes its results: one row for every pose. See the
 /// example there.
@@ -101,15 +100,15 @@ impl BatchOutput<'_> {
 }
 
 /// Fewer poses than this are solved one by one: it takes longer to begin a block.
-const FEW: usize = 6;
+pub(crate) const FEW: usize = 6;
 
 /// Working memory of [`Manipulator::inverse_many`]; made by [`Manipulator::batch`]. See the example there.
 #[derive(Clone, Debug)]
 pub struct Batch {
     pub(crate) arch: Arch,
     pub(crate) block: Box<Block>,
-    solution: Solution,
-    all: AllModes,
+    pub(crate) solution: Solution,
+    pub(crate) all: AllModes,
 }
 
 impl Manipulator {

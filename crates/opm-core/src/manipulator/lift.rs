@@ -243,32 +243,9 @@ impl Manipulator {
         self.legs.iter().map(at).collect()
     }
 
-    /// The manipulator for poses at a height above home, metres, of which no lift leans: its legs' chains are those of that
-    /// height. `None` where a leg has no closed form there.
-    #[doc(hidden)]
-    pub fn raised(&self, rise: f64) -> Option<Self> {
-        let mut raised = self.clone();
-        for (leg, of_height) in self.legs.iter().zip(&mut raised.legs) {
-            if let Some(lean) = &leg.lean {
-                *of_height = leg.raised(lean, rise).ok()?;
-                of_height.shapes = of_height.lower.shapes();
-                of_height.bounds = of_height.lower.bounds();
-            }
-        }
-        Some(raised)
-    }
-
     /// Whether the legs' chains are the same at every height.
-    #[doc(hidden)]
     pub fn lifts_straight(&self) -> bool {
         self.leaning_joints().next().is_none()
-    }
-
-    /// Whether the sections share a translation that is inclined to the direction of a Schoenflies section. Then the
-    /// displacements of imaginary joints have a part in the height, and each leg has a height of its own.
-    #[doc(hidden)]
-    pub fn shares_height(&self) -> bool {
-        self.task().slope() != 0.0
     }
 
     /// The height above home of a leg's own section at a solution, metres.
@@ -288,18 +265,11 @@ impl Manipulator {
 
     /// The value and whether it is within its limits of a lift at a height above home, metres.
     #[inline]
-    pub(super) fn lifted(&self, lift: &Lift, rise: f64) -> (f64, bool) {
+    pub(crate) fn lifted(&self, lift: &Lift, rise: f64) -> (f64, bool) {
         let number = lift.coordinate.number;
         let displacement = lift.displacement(rise);
         let within = self.limits()[number].admits(JointDisplacement::Value(displacement));
         (self.coordinates()[number].home + displacement, within)
-    }
-
-    /// Whether all lifts are within their limits at a height above home, metres.
-    #[inline]
-    #[doc(hidden)]
-    pub fn lifts_admit(&self, rise: f64) -> bool {
-        self.lifts().all(|lift| self.lifted(lift, rise).1)
     }
 
     /// The limits of the heights above home that the lifts admit.

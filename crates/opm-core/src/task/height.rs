@@ -71,8 +71,13 @@ impl Task {
         if slope == 0.0 { rise } else { rise + slope * tau.value() }
     }
 
+    /// Whether the sections share a translation that is inclined to the direction of a Schoenflies section. Then the
+    /// displacements of imaginary joints have a part in the height, and each leg has a height of its own.
+    pub fn shares_height(&self) -> bool {
+        self.slope() != 0.0
+    }
+
     /// The height of the Schoenflies section above its home at a pose, metres; zero where there is none.
-    #[doc(hidden)]
     #[inline]
     pub fn rise(&self, pose: &[f64]) -> f64 {
         self.height.as_ref().map_or(0.0, |height| {
@@ -89,7 +94,6 @@ impl Task {
     }
 
     /// The height above its home, metres, for the values of a section's coordinates; `None` if the section has no height.
-    #[doc(hidden)]
     pub fn rise_in(&self, section: Section, of_section: &[f64]) -> Option<f64> {
         let place = self.height_in(section)?;
         Some(of_section[place] - self.coordinates[self.range(section)][place].home)

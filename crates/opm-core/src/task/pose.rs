@@ -30,7 +30,6 @@ impl Task {
     ///
     /// # Panics
     /// If `v` or `b` is a displacement of another kind of subspace.
-    #[doc(hidden)]
     pub fn pose(&self, v: &Displacement, b: &Displacement, rise: f64) -> Vec<f64> {
         let mut pose = Vec::with_capacity(self.coordinates.len());
         self.write_pose(v, b, rise, &mut pose);

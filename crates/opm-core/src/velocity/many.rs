@@ -22,7 +22,6 @@ use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
 /// What [`Manipulator::condition_many`] is asked for.
-#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionQuery {
     /// The working mode; `None` for any.
@@ -36,7 +35,6 @@ pub struct ConditionQuery {
 }
 
 /// Working memory of [`Manipulator::condition_many`]; made by [`Manipulator::condition_batch`].
-#[doc(hidden)]
 #[derive(Clone, Debug)]
 pub struct ConditionBatch {
     batch: Batch,
@@ -71,7 +69,6 @@ struct Work {
 
 impl Manipulator {
     /// Working memory for [`Manipulator::condition_many`].
-    #[doc(hidden)]
     pub fn condition_batch(&self) -> ConditionBatch {
         let basis = Basis::new(self.task(), &self.mechanism().platform);
         let freedoms = basis.in_base.len();
@@ -117,8 +114,22 @@ impl Manipulator {
     /// Returns a bit for each pose, set where it is not decided, and has to be asked for by itself.
     ///
     /// # Panics
-    /// If there are more answers than [`Manipulator::DECIDED`], or fewer poses than answers.
-    #[doc(hidden)]
+    /// If there are more answers than [`AT_ONCE`](crate::reach::AT_ONCE), or fewer poses than answers.
+    ///
+    /// ```
+    /// use opm_core::Manipulator;
+    /// use opm_core::velocity::ConditionQuery;
+    ///
+    /// let manipulator = Manipulator::example("plano-spherical-5dof")?;
+    /// let (mode, length) = (Some(manipulator.home_mode()), manipulator.characteristic_length());
+    /// let query = ConditionQuery { mode, length, most: 1e6, every: false };
+    /// let poses = [0.01, 0.0, 0.0, 0.26, 0.0, /* out of reach: */ 9.0, 0.0, 0.0, 0.26, 0.0];
+    /// let (mut batch, mut found) = (manipulator.condition_batch(), [0.0; 2]);
+    /// let open = manipulator.condition_many(&poses, &query, &mut batch, &mut found, &mut |_, _| {});
+    /// assert_eq!(open & 0b11, 0); // both poses are decided
+    /// assert!(found[0] >= 1.0 && found[1].is_nan());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn condition_many(
         &self,
         poses: &[f64],
@@ -169,7 +180,7 @@ impl Manipulator {
         }
         let mut reached = [false; LANES];
         let reached = &mut reached[..conditions.len()];
-        self.decide_many(poses, mode, batch, reached, &mut |_, _| {});
+        self.reach().decide_many(poses, mode, batch, reached, &mut |_, _| {});
         conditions.fill(f64::NAN);
         reached.iter().rev().fold(0, |bits, &reached| bits << 1 | u64::from(reached))
     }

@@ -7,7 +7,7 @@ use crate::analysis::Analysis;
 use crate::columns::{Column, PointChoice, PointColumns};
 use crate::error::{RequestError, SetPart, StudyError};
 use crate::workspace::Workspace;
-use opm_core::manipulator::LegBranch;
+use opm_core::reach::LegBranch;
 use opm_mcap::{ClosedLine, CloudLayout, MAX_SLICES, Slices};
 use opm_workspace::{Grid, GridSet, Outline, Visits};
 
@@ -157,12 +157,12 @@ impl<'a> SetCloud<'a> {
     /// Every imaginary joint at the upper section's coordinates, in the first mode that closes.
     fn imaginary(&self, upper: &[f64], branches: &mut Vec<LegBranch>) -> Vec<f64> {
         let manipulator = &self.workspace.manipulator;
-        let upper = manipulator.task().upper(upper);
+        let (reach, upper) = (manipulator.reach(), manipulator.task().upper(upper));
         let value = |leg: usize| {
             branches.clear();
-            manipulator.leg_branches(leg, &upper, self.workspace.modes.one(), branches);
+            reach.leg_branches(leg, &upper, self.workspace.modes.one(), branches);
             let first = branches.first();
-            first.and_then(|branch| manipulator.imaginary_value(branch)).map_or(0.0, |v| v.1)
+            first.and_then(|branch| reach.imaginary_value(branch)).map_or(0.0, |v| v.1)
         };
         manipulator.imaginary().iter().map(|joint| joint.leg).map(value).collect()
     }

@@ -191,7 +191,7 @@ impl Domain {
         if !manipulator.has_enclosures() {
             return Err(DomainError::Repeated);
         }
-        if manipulator.shares_height() {
+        if manipulator.task().shares_height() {
             return Err(DomainError::Inclined);
         }
         let ends = CoordinateRange::of_each(manipulator, sections, given)?;
@@ -329,7 +329,7 @@ impl Domain {
 
 /// The coordinates of what is measured, each at its home value.
 fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
-    let cuts = manipulator.intersection_joints();
+    let cuts = manipulator.reach().intersection_joints();
     let lower = manipulator.lower_coordinates();
     let kind = |number: usize, kind: Option<CoordinateKind>, home: f64| match kind {
         // In a domain of the lower section the values of the imaginary joints follow its coordinates.

@@ -1,17 +1,22 @@
 //! Rows of legs that regions do not decide: the ends of every boundary, sorted, and one answer between two of them.
 //!
-//! In a sphere, what the middle joint of a leg leaves of a row is known without asking ([`Manipulator::row_arcs`]).
+//! In a sphere, what the middle joint of a leg leaves of a row is known without asking ([`Reach::row_arcs`]).
 //!
 //! A leg's feasibility along a row changes only where the row meets one of few surfaces. For one leg after the other, the
-//! ends are found for many rows at once ([`Manipulator::row_ends`]). Where an end falls on what is left of a row, that is cut,
+//! ends are found for many rows at once ([`Reach::row_ends`]). Where an end falls on what is left of a row, that is cut,
 //! and each piece is asked for, and every pose too close to an end, again for many rows at once
-//! ([`Manipulator::reaches_many`]).
+//! ([`Reach::reaches_many`]).
+//!
+//! [`Reach::row_arcs`]: opm_core::reach::Reach::row_arcs
+//! [`Reach::row_ends`]: opm_core::reach::Reach::row_ends
+//! [`Reach::reaches_many`]: opm_core::reach::Reach::reaches_many
 
 use super::Sweep;
 use super::clip::ROWS;
 use super::runs::Run;
 use super::sheet::{Sheet, SliceBranch};
-use opm_core::manipulator::{Batch, Manipulator, RowArcs, RowEnds, SheetRows};
+use opm_core::manipulator::{Batch, Manipulator};
+use opm_core::reach::{AT_ONCE, RowArcs, RowEnds, SheetRows};
 
 /// Poses of a row of a window, from one number up to, not including, another one. The numbers begin with the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,7 +223,7 @@ impl AskedRows {
                 }
             }
             let rows = rows_of(sweep, sheet, &self.first, &self.cuts.second);
-            sheet.manipulator().row_arcs(&branch.follow, &rows, &mut self.batch, &mut self.arcs);
+            sheet.reach().row_arcs(&branch.follow, &rows, &mut self.batch, &mut self.arcs);
             self.questions.clear();
             self.doubts.clear();
             lanes = Lanes::new();
@@ -341,7 +346,6 @@ impl AskedRows {
 
     /// Answers each question for a branch by its middle pose.
     fn answer(&mut self, sweep: &Sweep<'_>, sheet: &Sheet<'_>, branch: &SliceBranch) {
-        let manipulator = sheet.manipulator();
         let [first, second] = &mut self.poses;
         first.clear();
         second.clear();
@@ -351,11 +355,10 @@ impl AskedRows {
         }
         self.answers.clear();
         self.answers.resize(self.questions.len(), false);
-        const MOST: usize = Manipulator::DECIDED;
-        let poses = first.chunks(MOST).zip(second.chunks(MOST));
-        for ((first, second), answers) in poses.zip(self.answers.chunks_mut(MOST)) {
+        let poses = first.chunks(AT_ONCE).zip(second.chunks(AT_ONCE));
+        for ((first, second), answers) in poses.zip(self.answers.chunks_mut(AT_ONCE)) {
             let (others, batch) = (others_of_sheet(sweep, sheet), &mut self.batch);
-            manipulator.reaches_many(&branch.follow, [first, second], others, batch, answers);
+            sheet.reach().reaches_many(&branch.follow, [first, second], others, batch, answers);
         }
     }
 
@@ -380,13 +383,13 @@ impl AskedRows {
         if second.is_empty() {
             return;
         }
-        let (manipulator, count) = (sheet.manipulator(), self.first.len() as u64);
-        let surfaces = branch.transitions.get_or_init(|| manipulator.transitions(&branch.follow));
+        let (reach, count) = (sheet.reach(), self.first.len() as u64);
+        let surfaces = branch.transitions.get_or_init(|| reach.transitions(&branch.follow));
         match surfaces.as_ref().filter(|_| count > 1) {
             Some(surfaces) => {
                 let rows = rows_of(sweep, sheet, &self.first, second);
                 let batch = &mut self.batch;
-                manipulator.row_ends(&branch.follow, surfaces, &rows, !closes, batch, ends);
+                reach.row_ends(&branch.follow, surfaces, &rows, !closes, batch, ends);
             }
             None => ends.push(RowEnds::everything(count)),
         }

@@ -77,7 +77,7 @@ impl Sweep<'_> {
         self.grid.sections() == Sections::Whole
             && self.clearance.is_none()
             && !manipulator.dependent_coordinates().is_empty()
-            && !manipulator.shares_height()
+            && !manipulator.task().shares_height()
             && manipulator.has_enclosures()
     }
 }

@@ -2,7 +2,7 @@
 //! that its angle need not be computed.
 
 use nalgebra::Complex;
-use opm_core::manipulator::LegBranch;
+use opm_core::reach::LegBranch;
 
 /// How far inside a range a direction has to lie, radians: far more than an angle is rounded.
 const MARGIN: f64 = 1e-12;

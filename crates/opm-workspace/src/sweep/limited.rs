@@ -4,6 +4,7 @@ use super::runs::Run;
 use super::{Count, Sweep};
 use crate::condition::{Conditioned, PoseLimit};
 use opm_core::manipulator::Manipulator;
+use opm_core::reach::AT_ONCE;
 
 /// A thread's working memory for poses that are held against a limit.
 pub struct LimitedRows<'a> {
@@ -44,7 +45,7 @@ impl<'a> LimitedRows<'a> {
         for number in runs.flat_map(|run| run.from..run.to) {
             self.poses.push(axis.value(number));
             self.poses.extend_from_slice(others);
-            if self.poses.len() == Manipulator::DECIDED * (1 + others.len()) {
+            if self.poses.len() == AT_ONCE * (1 + others.len()) {
                 self.decide(sweep, found);
             }
         }
@@ -52,7 +53,7 @@ impl<'a> LimitedRows<'a> {
 
     /// Decides the poses that were added last.
     pub fn decide(&mut self, sweep: &Sweep<'_>, found: &mut Count) {
-        let mut conditions = [0.0; Manipulator::DECIDED];
+        let mut conditions = [0.0; AT_ONCE];
         let conditions = &mut conditions[..self.poses.len() / sweep.grid.axes().len()];
         let mut used = |imaginary: usize, range: [f64; 2]| {
             range.into_iter().for_each(|end| found.widen(imaginary, end));

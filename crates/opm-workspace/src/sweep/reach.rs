@@ -3,6 +3,7 @@
 use super::{Modes, Sweep};
 use crate::condition::Conditioned;
 use opm_core::manipulator::{Batch, Manipulator};
+use opm_core::reach::AT_ONCE;
 
 /// Decides which poses are in reach, and within the limit if there is one.
 pub struct Reach<'a> {
@@ -30,8 +31,8 @@ impl<'a> Reach<'a> {
         mut used: impl FnMut(usize, [f64; 2]),
     ) {
         let width = self.manipulator.task_coordinates().len();
-        let poses = poses.chunks(Manipulator::DECIDED * width);
-        for (poses, reached) in poses.zip(reached.chunks_mut(Manipulator::DECIDED)) {
+        let poses = poses.chunks(AT_ONCE * width);
+        for (poses, reached) in poses.zip(reached.chunks_mut(AT_ONCE)) {
             let mut take = |imaginary: usize, range: [f64; 2]| {
                 if wanted {
                     used(imaginary, range);
@@ -39,10 +40,10 @@ impl<'a> Reach<'a> {
             };
             let Some(conditioned) = &mut self.limited else {
                 let (mode, batch) = (self.modes.one(), &mut self.batch);
-                self.manipulator.decide_many(poses, mode, batch, reached, &mut take);
+                self.manipulator.reach().decide_many(poses, mode, batch, reached, &mut take);
                 continue;
             };
-            let mut conditions = [0.0; Manipulator::DECIDED];
+            let mut conditions = [0.0; AT_ONCE];
             let conditions = &mut conditions[..reached.len()];
             let used: Option<&mut dyn FnMut(usize, [f64; 2])> =
                 if wanted { Some(&mut take) } else { None };

@@ -6,7 +6,8 @@ use crate::grid::{Axis, Sections, fill};
 use opm_core::Section;
 use opm_core::chain::region::Region;
 use opm_core::group::Displacement;
-use opm_core::manipulator::{LegBranch, Manipulator, Transitions};
+use opm_core::manipulator::Manipulator;
+use opm_core::reach::{LegBranch, Reach, Transitions};
 use std::cell::OnceCell;
 
 /// One branch of a leg in the present sheet: one way in which it can follow.
@@ -75,23 +76,17 @@ impl SliceBranch {
 
     /// Finds its regions in a sheet whose first pose has the displacement `v`.
     #[inline(always)]
-    fn find_regions(
-        &mut self,
-        manipulator: &Manipulator,
-        v: &Displacement,
-        scale: &RowScale,
-        last: f64,
-    ) {
+    fn find_regions(&mut self, reach: Reach<'_>, v: &Displacement, scale: &RowScale, last: f64) {
         let per_unit = scale.step.recip();
-        self.region = manipulator.region(&self.follow, v, per_unit);
-        self.decided = manipulator.regions_decide(&self.follow);
-        self.arcs = manipulator.has_arcs(&self.follow);
+        self.region = reach.region(&self.follow, v, per_unit);
+        self.decided = reach.regions_decide(&self.follow);
+        self.arcs = reach.has_arcs(&self.follow);
         // Steps may be too small to count in.
         let region = self.region.as_ref().filter(|_| per_unit.is_finite());
         self.plan = region.and_then(|region| ClipPlan::new(region, last, scale.extent));
         self.links.clear();
         let Self { follow, plan, links, .. } = self;
-        manipulator.link_regions(follow, v, per_unit, |region| {
+        reach.link_regions(follow, v, per_unit, |region| {
             match ClipPlan::new(&region, last, scale.extent) {
                 Some(of_link) => links.push((region, of_link)),
                 None => *plan = None,
@@ -208,9 +203,9 @@ impl<'a> Sheet<'a> {
         self.slice.unwrap_or_default()
     }
 
-    /// The manipulator, at the sheet's height where lifts lean.
-    pub fn manipulator(&self) -> &Manipulator {
-        at_height(self.sweep, &self.raised)
+    /// What the manipulator is asked, at the sheet's height where lifts lean.
+    pub fn reach(&self) -> Reach<'_> {
+        reach_at(self.sweep, &self.raised)
     }
 
     /// Goes to a height above home, metres, if the section has one. Returns whether the lifts admit it, and the legs have
@@ -218,14 +213,14 @@ impl<'a> Sheet<'a> {
     fn rise_to(&mut self, rise: Option<f64>) -> bool {
         let Some(rise) = rise else { return true };
         let manipulator = self.sweep.manipulator;
-        if !manipulator.lifts_admit(rise) {
+        if !manipulator.reach().lifts_admit(rise) {
             return false;
         }
         let known = |(at, _): &(f64, Manipulator)| *at == rise;
         if manipulator.lifts_straight() || self.raised.as_ref().is_some_and(known) {
             return true;
         }
-        self.raised = manipulator.raised(rise).map(|raised| (rise, raised));
+        self.raised = manipulator.reach().raised(rise).map(|raised| (rise, raised));
         // Places where feasibility changes belong to the chains of one height.
         for branch in self.legs.iter_mut().flatten() {
             branch.transitions.take();
@@ -270,7 +265,7 @@ impl<'a> Sheet<'a> {
             self.kind = SheetKind::Unreachable;
             return;
         }
-        let manipulator = at_height(sweep, &self.raised);
+        let reach = reach_at(sweep, &self.raised);
         let mode = sweep.modes.one();
         let upper = &self.others[first..];
         let b = whole.then(|| task.upper(upper));
@@ -281,10 +276,10 @@ impl<'a> Sheet<'a> {
             }
             self.found.clear();
             match &b {
-                Some(b) => manipulator.leg_branches(leg, b, mode, &mut self.found),
+                Some(b) => reach.leg_branches(leg, b, mode, &mut self.found),
                 None => {
                     let tau = sweep.grid.cut(leg, upper);
-                    manipulator.lower_leg_branches(leg, tau, mode, &mut self.found);
+                    reach.lower_leg_branches(leg, tau, mode, &mut self.found);
                 }
             }
             branches.clear();
@@ -314,7 +309,7 @@ impl<'a> Sheet<'a> {
             self.kind = SheetKind::Unreachable;
             return;
         }
-        let manipulator = at_height(sweep, &self.raised);
+        let reach = reach_at(sweep, &self.raised);
         let v = task.lower(&first[..axes.len()]);
         let last = (axes[0].count - 1) as f64;
         let fixed_are_known = self.fixed_regions_of == Some(self.number);
@@ -323,7 +318,7 @@ impl<'a> Sheet<'a> {
         for branches in &mut self.legs {
             for branch in branches.iter_mut() {
                 if !(fixed_are_known && branch.follow.is_independent_of_slice()) {
-                    branch.find_regions(manipulator, &v, &self.scale, last);
+                    branch.find_regions(reach, &v, &self.scale, last);
                 }
                 if !branch.is_clippable() {
                     self.kind = SheetKind::Branches;
@@ -344,7 +339,7 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// The manipulator of a sweep, as it is at a height where lifts lean.
-fn at_height<'m>(sweep: &Sweep<'m>, raised: &'m Option<(f64, Manipulator)>) -> &'m Manipulator {
-    raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised)
+/// What the manipulator of a sweep is asked, as it is at a height where lifts lean.
+fn reach_at<'m>(sweep: &Sweep<'m>, raised: &'m Option<(f64, Manipulator)>) -> Reach<'m> {
+    raised.as_ref().map_or(sweep.manipulator, |(_, raised)| raised).reach()
 }

@@ -50,9 +50,11 @@ impl<'a> Sweep<'a> {
     /// the grid, or heights of legs from imaginary joints.
     pub(super) fn takes_poses_together(&self) -> bool {
         let manipulator = self.manipulator;
-        let tied = !manipulator.dependent_coordinates().is_empty() || manipulator.shares_height();
+        let tied =
+            !manipulator.dependent_coordinates().is_empty() || manipulator.task().shares_height();
         let few = self.side * self.sheets <= FEW / self.grid.row().max(1);
-        self.grid.sections() == Sections::Whole && (tied || few && manipulator.decides_many())
+        self.grid.sections() == Sections::Whole
+            && (tied || few && manipulator.reach().decides_many())
     }
 }
 

@@ -43,7 +43,7 @@ pub struct Block {
     joints: Vec<Column>,
     imaginary: Vec<Column>,
     pub status: Status,
-    pub(super) decided: Decided,
+    pub decided: Decided,
 }
 
 /// What is known of the reachability of each pose of a block.
@@ -390,7 +390,7 @@ impl Block {
 
 /// The columns of a section's coordinates without its height, of zeros beyond the last, and their values at home.
 #[inline(always)]
-pub(super) fn columns_of<'p>(
+pub fn columns_of<'p>(
     task: &Task,
     section: Section,
     pose: &'p [Column],

@@ -2,30 +2,30 @@
 //! [`Manipulator::inverse_many`] without the joints' values.
 
 use super::lanes::{BranchesOfLeg, Column, LANES, Lanes, Mask};
-use super::{Batch, Block, Status, section};
+use super::{Block, Status, section};
 use crate::manipulator::{Choices, CompiledLeg, Dependent, LegBranches, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use pulp::{Arch, Simd, WithSimd};
 
 /// What is known of the poses of a block.
 #[derive(Clone, Debug)]
-pub(super) struct Decided {
+pub struct Decided {
     /// Whether a pose is certainly out of reach, or beyond limits, in every mode asked for.
-    missed: Mask,
+    pub missed: Mask,
     /// Whether a pose has to be decided by itself.
-    open: Mask,
+    pub open: Mask,
     /// The imaginary joints of the branches of every leg.
-    imaginary: Vec<OfBranch>,
+    pub imaginary: Vec<OfBranch>,
 }
 
 /// The imaginary joint of one branch of a leg.
 #[derive(Clone, Debug)]
-struct OfBranch {
+pub struct OfBranch {
     /// The number of the imaginary joint.
-    number: usize,
+    pub number: usize,
     /// Whether the branch reaches a pose within the leg's limits.
-    reaches: Mask,
-    values: Column,
+    pub reaches: Mask,
+    pub values: Column,
 }
 
 impl Decided {
@@ -36,9 +36,8 @@ impl Decided {
 
 impl Manipulator {
     /// Whether many poses are solved together: chains are the same at all poses.
-    #[doc(hidden)]
-    pub fn decides_many(&self) -> bool {
-        self.lifts_straight() && !self.shares_height()
+    pub(crate) fn decides_many(&self) -> bool {
+        self.lifts_straight() && !self.task.shares_height()
     }
 
     /// The branches of a leg in the modes with some choices, all-plus first.
@@ -64,80 +63,11 @@ impl Manipulator {
         let each = (0..combinations).filter_map(move |i| Some(each?.choices(i)));
         one.into_iter().chain(each)
     }
-
-    /// Finds which of some poses, row after row, are in reach within all limits, in one working mode or (`None`) in any:
-    /// `reached` gets one answer for each. `used` is called with the number of an imaginary joint and the least and the
-    /// largest of its values in solutions of reached poses.
-    ///
-    /// # Panics
-    /// If there are more answers than [`Manipulator::DECIDED`], or fewer poses than answers.
-    #[doc(hidden)]
-    pub fn decide_many(
-        &self,
-        poses: &[f64],
-        mode: Option<Mode>,
-        batch: &mut Batch,
-        reached: &mut [bool],
-        used: &mut dyn FnMut(usize, [f64; 2]),
-    ) {
-        let (width, rows) = (self.task_coordinates().len(), reached.len());
-        let Batch { arch, block, solution, all, .. } = batch;
-        let together = self.decides_many();
-        let mut alone = Lanes::all(u64::from(!together));
-        reached.fill(false);
-        if together {
-            block.take(self, poses);
-        }
-        for choices in self.completions(mode).take_while(|_| together) {
-            self.complete_block(choices.chosen, *arch, block);
-            block.displace(self, *arch);
-            arch.dispatch(Decide { manipulator: self, choices, arch: *arch, block });
-            let Decided { missed, open, imaginary } = &block.decided;
-            for (lane, reached) in reached.iter_mut().enumerate() {
-                *reached |= missed[lane] | open[lane] == 0;
-                alone[lane] |= open[lane] & !missed[lane];
-            }
-            for OfBranch { number, reaches, values } in imaginary {
-                let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-                for lane in 0..rows {
-                    let counts = reaches[lane] != 0 && missed[lane] | open[lane] == 0;
-                    let value = values[lane];
-                    range[0] = if counts { range[0].min(value) } else { range[0] };
-                    range[1] = if counts { range[1].max(value) } else { range[1] };
-                }
-                if range[0] <= range[1] {
-                    used(*number, range);
-                }
-            }
-        }
-        for lane in (0..rows).filter(|&lane| alone[lane] & 1 == 1) {
-            let pose = &poses[lane * width..][..width];
-            let mut each = |number: usize, value: f64| used(number, [value; 2]);
-            reached[lane] = match mode {
-                Some(mode) => match self.inverse(pose, mode, solution).expect("a finite pose") {
-                    Some(solution) if solution.within_limits() => {
-                        let values = solution.imaginary().iter().enumerate();
-                        values.for_each(|(number, &value)| each(number, value));
-                        true
-                    }
-                    _ => false,
-                },
-                None => {
-                    let found = self.inverse_all(pose, all).expect("a finite pose");
-                    found.is_some_and(|all| self.within_limits_in_any(all, each))
-                }
-            };
-        }
-    }
-
-    /// The most poses that [`Manipulator::decide_many`] takes.
-    #[doc(hidden)]
-    pub const DECIDED: usize = LANES;
 }
 
 /// Solves a branch of a leg, and finds out whether its joints are within their limits, with the instructions of the
 /// processor at hand.
-struct Reach<'a> {
+struct ReachLeg<'a> {
     manipulator: &'a Manipulator,
     leg: usize,
     branches: LegBranches,
@@ -145,7 +75,7 @@ struct Reach<'a> {
     block: &'a mut Block,
 }
 
-impl WithSimd for Reach<'_> {
+impl WithSimd for ReachLeg<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -172,14 +102,18 @@ impl WithSimd for Decide<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.block.decide(self.manipulator, self.choices, self.arch);
+        self.block.decide_with(self.manipulator, self.choices, self.arch);
     }
 }
 
 impl Block {
     /// Decides a displaced block.
+    pub fn decide(&mut self, manipulator: &Manipulator, choices: Choices, arch: Arch) {
+        arch.dispatch(Decide { manipulator, choices, arch, block: self });
+    }
+
     #[inline(always)]
-    fn decide(&mut self, manipulator: &Manipulator, choices: Choices, arch: Arch) {
+    fn decide_with(&mut self, manipulator: &Manipulator, choices: Choices, arch: Arch) {
         let Status { beyond, open, within_limits } = &self.status;
         self.decided.open = *open;
         for (lane, missed) in self.decided.missed.iter_mut().enumerate() {
@@ -218,7 +152,7 @@ impl Block {
         branches: LegBranches,
         arch: Arch,
     ) {
-        arch.dispatch(Reach { manipulator, leg, branches, arch, block: self });
+        arch.dispatch(ReachLeg { manipulator, leg, branches, arch, block: self });
     }
 
     /// Notes whether a leg's joints of a section are within their limits.

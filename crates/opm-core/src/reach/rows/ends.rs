@@ -4,10 +4,11 @@ use super::scale::RowScale;
 use super::{SheetRows, vectors};
 use crate::chain::surface::{Surface, Uncertainty};
 use crate::group::{Displacement, Path, PlanarPath, SubspaceKind};
+use crate::manipulator::Manipulator;
 use crate::manipulator::batch::lanes::{Displacements, LANES, Lane, Lanes};
 use crate::manipulator::batch::{Batch, Block};
-use crate::manipulator::{LegBranch, Manipulator, Transitions};
 use crate::mechanism::leg::Section;
+use crate::reach::{LegBranch, Reach, Transitions};
 use pulp::{Simd, WithSimd};
 
 /// For each of some rows, the numbers of poses near which a leg's feasibility may change: from the first one up to, not
@@ -54,14 +55,13 @@ impl RowEnds {
     }
 }
 
-impl Manipulator {
+impl Reach<'_> {
     /// Finds the poses of some rows near which a leg's feasibility may change. Between them,
-    /// [`Manipulator::reaches`] is the same for all poses of a row. With `outer` being false, that is so only among poses
+    /// [`Reach::reaches`] is the same for all poses of a row. With `outer` being false, that is so only among poses
     /// of a convex set of the plane in which the leg closes but for a hole, be it within its limits or not, or of one of
-    /// the intervals that [`RowArcs`] leave of a row on a sphere.
-    #[doc(hidden)]
+    /// the intervals that [`RowArcs`](super::RowArcs) leave of a row on a sphere.
     pub fn row_ends(
-        &self,
+        self,
         branch: &LegBranch,
         transitions: &Transitions,
         rows: &SheetRows<'_>,
@@ -72,7 +72,7 @@ impl Manipulator {
         let Batch { arch, block, .. } = batch;
         ends.clear();
         arch.dispatch(FindEnds {
-            manipulator: self,
+            manipulator: self.manipulator,
             branch,
             transitions,
             rows,
@@ -102,8 +102,8 @@ impl WithSimd for FindEnds<'_> {
         let Self { manipulator, branch, transitions, rows, outer, block, ends } = self;
         let scale = block.start_rows(manipulator, branch, rows);
         let starts = &block.shifted;
-        let kind = manipulator.task.form(Section::Lower).kind;
-        let path = |lane| manipulator.task.row(&load(kind, starts, lane));
+        let kind = manipulator.task().form(Section::Lower).kind;
+        let path = |lane| manipulator.task().row(&load(kind, starts, lane));
         let reach = scale.first.abs().max((scale.first + scale.length).abs()) + rows.step;
         // The size is a convex function of the second coordinate.
         let size = [0, rows.second.len().saturating_sub(1)].map(|row| path(row).size(reach));

@@ -7,12 +7,12 @@
 //! target, so that the upper section allows intervals of that joint's displacement. Their ends are limits of
 //! the imaginary joint, the last joint of the lower chain.
 
-use super::section::CompiledSection;
-use super::{LegBranch, Manipulator};
+use super::{LegBranch, Reach};
 use crate::chain::equation::Span;
 use crate::chain::limits::Limits;
 use crate::chain::surface::{Surface, Uncertainty};
 use crate::group::{Displacement, JointDisplacement, MotionType};
+use crate::manipulator::{CompiledSection, Manipulator};
 use crate::numeric::Quantity;
 use crate::numeric::angle::unit;
 use std::f64::consts::PI;
@@ -82,8 +82,8 @@ impl CompiledSection {
     /// The sum of the section's lengths, limits included, metres.
     fn size(&self, manipulator: &Manipulator) -> f64 {
         let limit = |coordinate: usize| {
-            let (low, high) = manipulator.limits[coordinate].range();
-            let length = manipulator.coordinates[coordinate].quantity == Quantity::Length;
+            let (low, high) = manipulator.limits()[coordinate].range();
+            let length = manipulator.coordinates()[coordinate].quantity == Quantity::Length;
             if length && low.is_finite() { low.abs().max(high.abs()) } else { 0.0 }
         };
         let limits: f64 =
@@ -92,16 +92,16 @@ impl CompiledSection {
     }
 }
 
-impl Manipulator {
+impl Reach<'_> {
     /// The transitions of a leg within a slice. `None` where they have no closed form: with limits on the
     /// rotation vector of a spherical joint, and along an azimuth.
-    #[doc(hidden)]
-    pub fn transitions(&self, branch: &LegBranch) -> Option<Transitions> {
-        if !self.task.rows_are_paths() {
+    pub fn transitions(self, branch: &LegBranch) -> Option<Transitions> {
+        let manipulator = self.manipulator;
+        if !manipulator.task().rows_are_paths() {
             return None;
         }
-        let leg = &self.legs[branch.leg];
-        let size = self.length + leg.lower.size(self);
+        let leg = &manipulator.legs[branch.leg];
+        let size = manipulator.characteristic_length() + leg.lower.size(manipulator);
         let spherical = leg.shell(branch.branches.lower).is_some();
         let (folds, ends) = (leg.lower.folds(), leg.lower.ends()?);
         let is_outer = |fold: usize| spherical || leg.lower.chain.is_convex_fold(fold);
@@ -126,20 +126,20 @@ impl Manipulator {
 
     /// Adds the ends of what the upper section allows, as limits of the imaginary joint.
     fn add_tau_limits(
-        &self,
+        self,
         branch: &LegBranch,
         b: &Displacement,
         transitions: &mut Transitions,
     ) -> Option<()> {
-        let leg = &self.legs[branch.leg];
+        let (leg, task) = (&self.manipulator.legs[branch.leg], self.manipulator.task());
         let last = leg.lower.chain.freedoms() - 1;
-        transitions.size += leg.upper.size(self) + b.size();
-        let rotation = self.task.shared() == Some(MotionType::Rotation);
+        transitions.size += leg.upper.size(self.manipulator) + b.size();
+        let rotation = task.shared() == Some(MotionType::Rotation);
         let largest_tau = if rotation { PI } else { FAR * transitions.size };
         transitions.largest_tau = (!rotation).then_some(largest_tau);
         let span = Span { from: -largest_tau, to: largest_tau, step: 0.0 };
         let b = leg.upper.of_chain(b);
-        let Some(path) = self.task.upper_intersection.path(&b) else { return Some(()) };
+        let Some(path) = task.upper_intersection.path(&b) else { return Some(()) };
         let hold = |at: f64| {
             let displacement = if rotation {
                 JointDisplacement::Direction(unit(at))

@@ -2,7 +2,7 @@
 //! reaches some poses of theirs.
 //!
 //! In a row all coordinates except the first are fixed. Feasibility changes only on the surfaces of
-//! [`transitions`](crate::manipulator::transitions), each of which a row meets in at most two places of a period. Between
+//! [`Transitions`](super::Transitions), each of which a row meets in at most two places of a period. Between
 //! two of them one pose answers for all.
 
 mod arcs;
@@ -12,11 +12,12 @@ mod scale;
 pub use arcs::RowArcs;
 pub use ends::RowEnds;
 
-use super::lanes::{LANES, Lane, Lanes, vectors};
-use super::section::{self, FirstOfRows, OfSheet, Side, Step};
-use super::{Batch, Block, FEW, Status, columns_of};
+use super::{LegBranch, Reach};
 use crate::group::{Displacement, PlanarDisplacement};
-use crate::manipulator::{LegBranch, Manipulator};
+use crate::manipulator::Manipulator;
+use crate::manipulator::batch::lanes::{LANES, Lane, Lanes, vectors};
+use crate::manipulator::batch::section::{self, FirstOfRows, OfSheet, Side, Step};
+use crate::manipulator::batch::{Batch, Block, FEW, Status, columns_of};
 use crate::mechanism::leg::Section;
 use crate::numeric::angle::MOST_REDUCED;
 use pulp::{Simd, WithSimd};
@@ -34,33 +35,33 @@ pub struct SheetRows<'a> {
     /// The largest number that the coordinates are computed from, in steps.
     pub extent: f64,
     /// The second coordinate of each row, radians or metres; not used where the lower section has one coordinate alone. These
-    /// are at most [`Manipulator::DECIDED`].
+    /// are at most [`AT_ONCE`](super::AT_ONCE).
     pub second: &'a [f64],
     /// The other coordinates of the lower section, radians or metres.
     pub others: &'a [f64],
 }
 
-impl Manipulator {
-    /// Whether a leg reaches poses within its limits, on a branch: [`Manipulator::reaches`] for each of at most
-    /// [`Manipulator::DECIDED`] poses. Their first and their second coordinates are given, and those of the lower section that
+impl Reach<'_> {
+    /// Whether a leg reaches poses within its limits, on a branch: [`Reach::reaches`] for each of at most
+    /// [`AT_ONCE`](super::AT_ONCE) poses. Their first and their second coordinates are given, and those of the lower section that
     /// they share, radians or metres.
-    #[doc(hidden)]
     pub fn reaches_many(
-        &self,
+        self,
         branch: &LegBranch,
         [first, second]: [&[f64]; 2],
         others: &[f64],
         batch: &mut Batch,
         reached: &mut [bool],
     ) {
+        let (manipulator, task) = (self.manipulator, self.manipulator.task());
         let mut pose = [0.0; 4];
         pose[2..2 + others.len()].copy_from_slice(others);
         let mut one = |lane: usize| {
             [pose[0], pose[1]] = [first[lane], second[lane]];
-            self.reaches(branch, &self.task.lower(&pose[..self.task.lower_count.max(2)]))
+            self.reaches(branch, &task.lower(&pose[..task.lower_count.max(2)]))
         };
         let large = |value: &f64| value.abs() > 0.5 * MOST_REDUCED;
-        let leg = &self.legs[branch.leg];
+        let leg = &manipulator.legs[branch.leg];
         let raised = [&leg.lower, &leg.upper].iter().any(|section| section.offset.is_some());
         let large = first.iter().chain(second).chain(others).any(large);
         if reached.len() < FEW || branch.with_upper.is_some() && raised || large {
@@ -70,20 +71,15 @@ impl Manipulator {
             return;
         }
         let Batch { arch, block, .. } = batch;
-        block.take_rows(self.task.lower_count, first, second, others);
+        block.take_rows(task.lower_count, first, second, others);
         match &branch.with_upper {
             Some(b) => {
-                block.displace_only(self, Section::Lower, *arch);
+                block.displace_only(manipulator, Section::Lower, *arch);
                 (0..LANES).for_each(|lane| section::store(b, &mut block.b, lane));
-                block.reach(self, branch.leg, branch.branches, *arch);
+                block.reach(manipulator, branch.leg, branch.branches, *arch);
             }
             None => {
-                arch.dispatch(ReachLower {
-                    manipulator: self,
-                    branch,
-                    count: reached.len(),
-                    block,
-                });
+                arch.dispatch(ReachLower { manipulator, branch, count: reached.len(), block });
             }
         }
         let Status { beyond, open, within_limits } = &block.status;
@@ -140,9 +136,9 @@ impl Block {
         branch: &LegBranch,
         rows: &SheetRows<'_>,
     ) -> RowScale {
-        let home = manipulator.task.coordinates[0].home;
+        let home = manipulator.task().coordinates[0].home;
         let firsts = &Lanes::all(home)[..rows.second.len()];
-        self.take_rows(manipulator.task.lower_count, firsts, rows.second, rows.others);
+        self.take_rows(manipulator.task().lower_count, firsts, rows.second, rows.others);
         self.aim(manipulator, branch, Shared::AllButSecond, vectors(rows.second.len()));
         // Along a row the first coordinate is a displacement from home.
         RowScale::new(rows, rows.first - home)
@@ -164,7 +160,7 @@ impl Block {
     /// Computes the targets of a branch's lower chain, into `shifted`, of so many poses of the block.
     #[inline(always)]
     fn aim(&mut self, manipulator: &Manipulator, branch: &LegBranch, shared: Shared, lanes: usize) {
-        let Manipulator { task, .. } = manipulator;
+        let task = manipulator.task();
         let Self { pose, v, shifted, .. } = self;
         let ([first, second, third], home) = columns_of(task, Section::Lower, pose);
         // A height comes after the first two coordinates.

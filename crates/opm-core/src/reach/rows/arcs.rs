@@ -6,9 +6,10 @@ use super::{SheetRows, vectors};
 use crate::chain::shell::{self, ArcHole, Shell};
 use crate::chain::surface::Surface;
 use crate::group::{Path, SubspaceKind};
+use crate::manipulator::Manipulator;
 use crate::manipulator::batch::lanes::{Column, LANES, Lane, Lanes};
 use crate::manipulator::batch::{Batch, Block};
-use crate::manipulator::{LegBranch, Manipulator};
+use crate::reach::{LegBranch, Reach};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
@@ -56,22 +57,23 @@ impl RowArcs {
     }
 }
 
-impl Manipulator {
+impl Reach<'_> {
     /// Finds what a leg whose lower section moves in a sphere does not reach of some rows on a branch, whatever its limits of
     /// the first and the last joint. Returns whether the leg is one of which that is known.
-    #[doc(hidden)]
     pub fn row_arcs(
-        &self,
+        self,
         branch: &LegBranch,
         rows: &SheetRows<'_>,
         batch: &mut Batch,
         arcs: &mut RowArcs,
     ) -> bool {
-        let Some(shell) = self.legs[branch.leg].shell(branch.branches.lower) else { return false };
+        let Some(shell) = self.manipulator.legs[branch.leg].shell(branch.branches.lower) else {
+            return false;
+        };
         let Batch { arch, block, .. } = batch;
         arcs.holes.clear();
         arcs.doubtful = [0; LANES];
-        arch.dispatch(FindArcs { manipulator: self, branch, shell, rows, block, arcs });
+        arch.dispatch(FindArcs { manipulator: self.manipulator, branch, shell, rows, block, arcs });
         true
     }
 }
@@ -94,7 +96,7 @@ impl WithSimd for FindArcs<'_> {
         let Self { manipulator, branch, shell, rows, block, arcs } = self;
         let scale = block.start_rows(manipulator, branch, rows);
         let Path::Spherical { axis, .. } =
-            manipulator.task.row(&SubspaceKind::Spherical.identity())
+            manipulator.task().row(&SubspaceKind::Spherical.identity())
         else {
             return;
         };
