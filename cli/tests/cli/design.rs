@@ -237,7 +237,7 @@ fn what_is_wrong_with_a_problem_is_told_with_its_place() {
             with("5dof", "6dof"),
             &["`mechanism`: plano-spherical-6dof: no such file", "did you mean"],
         ),
-        (with("\"mm\"", "\"mn\""), &[":4:20: `length` is `mn`, did you mean"]),
+        (with("\"mm\"", "\"mn\""), &[":4:20: `length` is \"mn\", did you mean `m`?"]),
         (with("budget = 60", "budget = 1"), &[":5:", "`budget` is less than 2 designs"]),
         (with("budget = 60", "budget = -3"), &[":5:10: -3, expected a whole number of 0 or more"]),
         (with("budget = 60", "budget = 1e9"), &[":5:10: 1000000000.0, expected a whole number"]),
