@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The crates, lowest first, and the top-level modules of each. A module may use itself and those before it; each crate
 /// re-exports the modules of those below under their names.
 const CRATES: [(&str, &[&str]); 3] = [
-    ("opm-geometry", &["text", "numeric", "numbers", "group", "chain"]),
+    ("opm-geometry", &["text", "numeric", "numbers", "group", "chain", "boxes"]),
     ("opm-mechanism", &["mechanism", "table"]),
     (
         "opm-core",

@@ -2,10 +2,10 @@
 //! limits.
 //!
 //! The closed forms that decide on one pose ([`crate::manipulator`]) are evaluated for a whole box at once,
-//! in affine arithmetic (`affine.rs`): every quantity is a linear function of the box's coordinates, with a
+//! in affine arithmetic (`opm_geometry::boxes`): every quantity is a linear function of the box's coordinates, with a
 //! bound of the error, rounding included. So every condition on a pose, that a chain closes or that a joint
 //! is within its limits, is met on one side of a plane up to a known error, and the share of the box on that
-//! side has a closed form (`share.rs`). Shares of several conditions are combined by inequalities that hold
+//! side has a closed form (`boxes/share.rs`). Shares of several conditions are combined by inequalities that hold
 //! however the conditions depend on each other.
 //!
 //! Where legs with too few freedoms tie coordinates together, a box has the independent ones, and the others follow as functions
@@ -21,34 +21,27 @@
 //! sphere. For these the coordinate is the cosine or the sine, so that all points of a box have the same
 //! weight in the invariant measure of rotations (Haar's, `sin xi`) and of directions (`cos nu`).
 
-mod affine;
 mod area;
 mod boundary;
-mod chain;
 mod dependent;
 mod legs;
-mod numbers;
-mod opening;
 mod places;
 mod raised;
-mod share;
 mod slice;
 mod target;
 
+use crate::boxes::{Enclosed, Plane, Share};
 use crate::group::JointDisplacement;
 use crate::manipulator::{Choices, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::task::{CoordinateKind, TaskCoordinate};
-use affine::Plane;
 use legs::{LegConditions, Upper, any, within};
-use share::Share;
 use slice::Bounded;
 use std::f64::consts::PI;
-use target::{Coordinate, Enclosed};
+use target::Coordinate;
 
-pub use affine::Affine;
+pub use crate::boxes::{Affine, MOST};
 pub use places::{BodyPoint, CarriedPoint, MovingBody, Place};
-pub use share::MOST;
 
 /// One coordinate of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]

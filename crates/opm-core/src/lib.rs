@@ -105,6 +105,7 @@ pub use motion::PlatformMotion;
 pub use nalgebra;
 pub use numeric::Quantity;
 #[doc(inline)]
+pub(crate) use opm_geometry::boxes;
 pub use opm_geometry::{chain, group, numbers, numeric, text};
 #[doc(inline)]
 pub use opm_mechanism::table;

@@ -11,7 +11,10 @@
 //! | [`numeric`] | angles, rotations, quantities, small numerical methods |
 //! | [`text`] | names and messages of others: visible, shortened |
 
-// Layers: text, numeric, numbers, group, chain. Each uses only those before it (tests/tests/layers.rs).
+// Layers: text, numeric, numbers, group, chain, boxes. Each uses only those before it (tests/tests/layers.rs).
+// Public for the sibling crates of the workspace only.
+#[doc(hidden)]
+pub mod boxes;
 pub mod chain;
 pub mod group;
 pub mod numbers;

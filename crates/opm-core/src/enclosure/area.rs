@@ -11,8 +11,8 @@ mod known;
 mod sum;
 mod tracer;
 
-use super::affine::{Affine, Plane};
 use super::boundary::{Curve, Truth};
+use crate::boxes::{Affine, Plane};
 use nalgebra::Complex;
 use sum::Sum;
 use tracer::Tracer;

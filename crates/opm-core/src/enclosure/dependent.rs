@@ -2,10 +2,11 @@
 //! pose, with bounds.
 
 use super::LegConditions;
-use super::affine::{Affine, Plane};
-use super::chain::share;
-use super::share::Share;
-use super::target::{self, Coordinate, Enclosed, Target};
+use super::target::{self, Coordinate};
+use crate::boxes::Share;
+use crate::boxes::chain::share;
+use crate::boxes::{Affine, Plane};
+use crate::boxes::{Enclosed, Target};
 use crate::chain::REACH_TOLERANCE;
 use crate::group::SubspaceKind;
 use crate::manipulator::CompiledLeg;

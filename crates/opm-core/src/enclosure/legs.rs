@@ -1,11 +1,13 @@
 //! The conditions that a pose has to meet, leg by leg, over a box.
 
-use super::affine::Affine;
+use super::BoxQuery;
 use super::raised::RaisedChain;
-use super::share::Share;
 use super::slice::{Bounded, Rectangle, Slice};
-use super::target::{self, Coordinate, Enclosed, Target};
-use super::{BoxQuery, chain};
+use super::target::{self, Coordinate};
+use crate::boxes::Affine;
+use crate::boxes::Share;
+use crate::boxes::chain;
+use crate::boxes::{Enclosed, Target};
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
 use crate::chain::{Branch, Chain};

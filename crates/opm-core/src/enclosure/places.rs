@@ -4,9 +4,10 @@
 //! A link of the lower section is moved by the joints before it, or by the displacement of the whole section and the
 //! inverse of those behind it, whichever are fewer; one of the upper section from the platform likewise.
 
-use super::affine::Affine;
-use super::target::{self, Coordinate, Enclosed, Target, dot};
+use super::target::{self, Coordinate};
 use super::{LegConditions, Side, Upper};
+use crate::boxes::Affine;
+use crate::boxes::{Enclosed, Target, dot};
 use crate::enclosure::BoxQuery;
 use crate::group::screw::Screw;
 use crate::group::{CylindricalDisplacement, Subspace};
@@ -398,7 +399,7 @@ fn apply<const N: usize>(subspace: &Subspace, target: &Target<N>, point: &Place<
     let (origin, axes) = (subspace.origin.coords, &subspace.axes);
     let arm: Place<N> = [0, 1, 2].map(|i| point[i] - origin[i]);
     let local: Place<N> = [0, 1, 2].map(|i| dot(&axes.column(i).into_owned(), &arm));
-    let rotated = |e: &super::affine::Plane<N>| {
+    let rotated = |e: &crate::boxes::Plane<N>| {
         [
             Affine::products([[&local[0], &e.re], [&-local[1], &e.im]]),
             Affine::products([[&local[0], &e.im], [&local[1], &e.re]]),

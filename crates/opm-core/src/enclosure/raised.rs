@@ -1,9 +1,9 @@
 //! Chains of legs whose lift leans, over a box of heights: see [`crate::manipulator`]'s lifts.
 
-use super::affine::{Affine, Plane};
-use super::chain::{share, solved};
-use super::share::Share;
-use super::target::{Enclosed, PlanarTarget};
+use crate::boxes::Share;
+use crate::boxes::chain::{share, solved};
+use crate::boxes::{Affine, Plane};
+use crate::boxes::{Enclosed, PlanarTarget};
 use crate::chain::planar::PlanarChain;
 use crate::chain::{Branch, ClosedForm};
 use crate::group::PlanarDisplacement;

@@ -5,12 +5,12 @@
 //! along the intersection motion moves ([`Shape`]). What the legs have in common is integrated over the plane
 //! exactly, and over the other coordinates with the error of its motions (`area.rs`).
 
-use super::affine::{Affine, Plane};
 use super::area::{Area, Motion, Reach, Regions, Set};
 use super::boundary::{Curve, dot};
-use super::share::Share;
-use super::target::{Enclosed, Target};
 use super::{BoxQuery, LegConditions, Side, Upper, within};
+use crate::boxes::Share;
+use crate::boxes::{Affine, Plane};
+use crate::boxes::{Enclosed, Target};
 use crate::chain::planar::{PlanarJoint, Prp};
 use crate::chain::region::{Band, Convex, Region};
 use crate::chain::shape::{Shape, ShapeMotion};

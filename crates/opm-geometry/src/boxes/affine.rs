@@ -111,7 +111,7 @@ impl<const N: usize> Affine<N> {
     }
 
     #[inline(never)]
-    pub(crate) fn square(&self) -> Self {
+    pub fn square(&self) -> Self {
         let spread = self.spread();
         let all: f64 = spread.iter().sum();
         // The square of the deviation from the centre lies between zero and this.
@@ -152,7 +152,7 @@ impl<const N: usize> Affine<N> {
 
     /// The root. The bounds hold for those values that are not negative.
     #[inline(never)]
-    pub(crate) fn sqrt(&self) -> Self {
+    pub fn sqrt(&self) -> Self {
         let high = self.high();
         if high <= 0.0 {
             return Self::constant(0.0);
@@ -161,7 +161,7 @@ impl<const N: usize> Affine<N> {
     }
 
     #[inline(never)]
-    pub(crate) fn recip(&self) -> Self {
+    pub fn recip(&self) -> Self {
         if self.low() > 0.0 {
             self.curved(0.0, 1.0, |x| [1.0 / x, -1.0 / (x * x)])
         } else if self.high() < 0.0 {
@@ -184,7 +184,7 @@ impl<const N: usize> Affine<N> {
     /// `θ / sin θ` for the cosine of an angle from zero to π: `Σ aₙ yⁿ` with `y = (1 - cos θ)/2`
     /// and `aₙ₊₁ = aₙ (2n + 2)/(2n + 3)`, so that it is convex.
     #[inline(never)]
-    pub(crate) fn angle_over_sine(&self) -> Self {
+    pub fn angle_over_sine(&self) -> Self {
         let y = (-*self + 1.0) * 0.5;
         if y.high() > NEAR_HALF_TURN {
             return Self::unknown(0.0, UNBOUNDED, &self.spread());
@@ -211,7 +211,7 @@ impl<const N: usize> Affine<N> {
 
     /// The unit vector at this angle.
     #[inline(never)]
-    pub(crate) fn unit_vector(&self) -> Plane<N> {
+    pub fn unit_vector(&self) -> Plane<N> {
         let radius = self.radius();
         let spread = self.spread();
         if radius > WIDE || radius.is_nan() {
@@ -240,7 +240,7 @@ impl<const N: usize> Affine<N> {
     /// A function with its value and derivative in the middle, whose second derivative lies between two
     /// bounds.
     #[inline(never)]
-    pub(crate) fn bent(&self, [value, slope]: [f64; 2], bends: [f64; 2]) -> Self {
+    pub fn bent(&self, [value, slope]: [f64; 2], bends: [f64; 2]) -> Self {
         let radius = self.radius();
         let [least, most] = [bends[0].min(0.0), bends[1].max(0.0)].map(|b| 0.5 * b * radius);
         let (spread, share) = (self.spread(), 0.5 * (most - least));
