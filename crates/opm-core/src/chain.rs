@@ -63,7 +63,7 @@ pub const REACH_TOLERANCE: f64 = 1e-12;
 
 /// A link length (as a fraction of the chain's size) or an angle between axes (radians) below this counts
 /// as zero.
-pub(crate) const DEGENERATE: f64 = 1e-9;
+pub const DEGENERATE: f64 = 1e-9;
 
 /// One of the two solutions of a two-valued choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
