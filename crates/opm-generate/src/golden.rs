@@ -1,5 +1,6 @@
 //! Poses that opm solved, which the programs beside generated code compare it with.
 
+use opm_core::mechanism::joint::JointCoordinate;
 use opm_core::numeric::Quantity;
 use opm_core::{Manipulator, Mode, Solution};
 use std::f64::consts::PI;
@@ -65,6 +66,21 @@ impl Golden {
         let pose = pose.into_iter().map(|value| value + 0.0).collect();
         Self { mode, status, pose, joints, imaginary }
     }
+}
+
+/// A row of text for each pose: its mode, status, coordinates, joints and imaginary joints go into a language's form.
+pub fn rows(m: &Manipulator, row: impl Fn(u64, usize, [String; 3]) -> String) -> String {
+    let row = |golden: &Golden| {
+        let lists = [&golden.pose, &golden.joints, &golden.imaginary].map(|list| listed(list));
+        row(golden.mode.bits(), golden.status, lists)
+    };
+    poses(m).iter().map(row).collect()
+}
+
+/// Which joints are angles, by the words of a language.
+pub fn angles(m: &Manipulator, [yes, no]: [&str; 2]) -> String {
+    let word = |c: &JointCoordinate| if c.quantity == Quantity::Angle { yes } else { no };
+    m.coordinates().iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
 /// Numbers with all their digits, and commas between them.

@@ -14,13 +14,16 @@
 //! ```
 
 mod c;
+mod code;
 mod golden;
+mod library;
 mod matlab;
 mod names;
 mod python;
 mod rust;
 mod st;
 mod text;
+mod trace;
 mod tree;
 
 pub use c::{CCode, c};

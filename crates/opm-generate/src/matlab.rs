@@ -5,50 +5,22 @@
 
 mod print;
 
-use crate::golden::{listed, poses};
+use crate::golden::{angles, rows};
 use crate::names::package;
 use crate::text::commented;
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Function, Node, Type, visit};
 use crate::{GenerateError, Package, c};
 use opm_core::Manipulator;
-use opm_core::numeric::Quantity;
 use std::fmt::Write;
 
 const TEST: &str = include_str!("matlab/package/test.m");
 const ALL_MODES: &str = include_str!("matlab/package/all_modes.m");
 
 /// Keywords of MATLAB and of Octave.
-const RESERVED: [&str; 28] = [
-    "break",
-    "case",
-    "catch",
-    "classdef",
-    "continue",
-    "do",
-    "else",
-    "elseif",
-    "end",
-    "endfor",
-    "endfunction",
-    "endif",
-    "endswitch",
-    "endwhile",
-    "for",
-    "function",
-    "global",
-    "if",
-    "otherwise",
-    "parfor",
-    "persistent",
-    "return",
-    "spmd",
-    "switch",
-    "try",
-    "until",
-    "unwind_protect",
-    "while",
-];
+const RESERVED: &str = "break case catch classdef continue do else elseif end endfor endfunction endif endswitch \
+     endwhile for function global if otherwise parfor persistent return spmd switch try until \
+     unwind_protect while";
 
 /// Writes the kinematics of a mechanism as a package of MATLAB.
 ///
@@ -66,7 +38,7 @@ pub fn matlab(manipulator: &Manipulator) -> Result<Package, GenerateError> {
     for function in &mut code.functions {
         function.comment = function.comment.replace("nothing is written", "the others are NaN");
     }
-    let name = package(&manipulator.mechanism().name, &RESERVED);
+    let name = package(&manipulator.mechanism().name, RESERVED);
     let title = crate::names::comment(&manipulator.mechanism().name);
     let head = format!(
         "% Of the closed-form kinematics of {title}.\n% Written by opm {}; write it anew rather than change it.\n",
@@ -147,24 +119,13 @@ fn with_needed(code: &Code, function: &Function, head: &str) -> String {
 
 /// A program that compares the code with poses that opm solved.
 fn test(m: &Manipulator, name: &str) -> String {
-    let mut rows = String::new();
-    for golden in poses(m) {
-        let _ = writeln!(
-            rows,
-            "        {}, {}, [{}], [{}], [{}]; ...",
-            golden.mode.bits(),
-            golden.status,
-            listed(&golden.pose),
-            listed(&golden.joints),
-            listed(&golden.imaginary)
-        );
-    }
-    let angles: Vec<&str> = (m.coordinates().iter())
-        .map(|c| if c.quantity == Quantity::Angle { "true" } else { "false" })
-        .collect();
+    let rows = rows(m, |mode, status, [pose, joints, imaginary]| {
+        format!("        {mode}, {status}, [{pose}], [{joints}], [{imaginary}]; ...\n")
+    });
+    let angles = angles(m, ["true", "false"]);
     TEST.replace("TITLE", &crate::names::comment(&m.mechanism().name))
         .replace("VERSION", env!("CARGO_PKG_VERSION"))
         .replace("NAME", name)
-        .replace("ANGLES", &angles.join(", "))
+        .replace("ANGLES", &angles)
         .replace("        ROWS\n", &rows)
 }

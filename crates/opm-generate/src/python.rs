@@ -5,14 +5,13 @@
 mod print;
 mod ways;
 
-use crate::golden::{listed, poses};
+use crate::golden::{angles, listed, rows};
 use crate::names::package;
 use crate::text::{camel, commented};
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Struct, Type, Value};
 use crate::{GenerateError, Package, c};
 use opm_core::Manipulator;
-use opm_core::numeric::Quantity;
 use std::fmt::Write;
 
 const MODULE: &str = include_str!("python/package/module.py");
@@ -21,12 +20,9 @@ const TEST: &str = include_str!("python/package/test.py");
 const PROJECT: &str = include_str!("python/package/pyproject.toml");
 
 /// Keywords, and modules that the code imports.
-const RESERVED: [&str; 37] = [
-    "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue",
-    "def", "del", "elif", "else", "except", "finally", "for", "from", "global", "if", "import",
-    "in", "is", "lambda", "nonlocal", "not", "numpy", "or", "pass", "raise", "return", "try",
-    "typing", "while", "with", "yield",
-];
+const RESERVED: &str = "False None True and as assert async await break class continue def del elif else except \
+     finally for from global if import in is lambda nonlocal not numpy or pass raise return try \
+     typing while with yield";
 
 /// Writes the kinematics of a mechanism as a module of Python.
 ///
@@ -35,7 +31,7 @@ const RESERVED: [&str; 37] = [
 pub fn python(manipulator: &Manipulator) -> Result<Package, GenerateError> {
     let mut code = c::tree(manipulator)?;
     lower(&mut code, Has { choices: true });
-    let name = package(&manipulator.mechanism().name, &RESERVED);
+    let name = package(&manipulator.mechanism().name, RESERVED);
     let files = vec![
         (format!("{name}.py"), module(manipulator, &code)),
         (format!("test_{name}.py"), test(manipulator, &name)),
@@ -134,8 +130,7 @@ fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
             format!("({}{end})", parts.join(if long { "" } else { " " }))
         }
         (Type::Struct(name), Value::List(parts)) => {
-            let known = code.structs.iter().find(|known| known.name == *name);
-            let members = known.map_or(&[][..], |known| &known.members);
+            let members = code.members(name);
             let parts: Vec<String> = members
                 .iter()
                 .zip(parts)
@@ -155,24 +150,13 @@ fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
 
 /// A program that compares the code with poses that opm solved.
 fn test(m: &Manipulator, name: &str) -> String {
-    let mut rows = String::new();
-    for golden in poses(m) {
-        let _ = writeln!(
-            rows,
-            "    ({}, {}, [{}], [{}], [{}]),",
-            golden.mode.bits(),
-            golden.status,
-            listed(&golden.pose),
-            listed(&golden.joints),
-            listed(&golden.imaginary)
-        );
-    }
-    let angles: Vec<&str> = (m.coordinates().iter())
-        .map(|c| if c.quantity == Quantity::Angle { "True" } else { "False" })
-        .collect();
+    let rows = rows(m, |mode, status, [pose, joints, imaginary]| {
+        format!("    ({mode}, {status}, [{pose}], [{joints}], [{imaginary}]),\n")
+    });
+    let angles = angles(m, ["True", "False"]);
     TEST.replace("TITLE", &title(m))
         .replace("VERSION", env!("CARGO_PKG_VERSION"))
         .replace("NAME", name)
-        .replace("ANGLES", &angles.join(", "))
+        .replace("ANGLES", &angles)
         .replace("    ROWS\n", &rows)
 }

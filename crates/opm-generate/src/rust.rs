@@ -5,13 +5,11 @@
 
 mod print;
 
-use crate::golden::{listed, poses};
+use crate::golden::{angles, listed, rows};
 use crate::names::package;
 use crate::tree::Code;
 use crate::{GenerateError, Package, c};
 use opm_core::Manipulator;
-use opm_core::numeric::Quantity;
-use std::fmt::Write;
 
 const LIB: &str = include_str!("rust/package/lib.rs");
 const FORWARD: &str = include_str!("rust/package/forward.rs");
@@ -20,65 +18,10 @@ const TEST: &str = include_str!("rust/package/golden.rs");
 const CARGO: &str = include_str!("rust/package/Cargo.toml.txt");
 
 /// Keywords, and crates that Rust or the package has.
-const RESERVED: [&str; 57] = [
-    "abstract",
-    "alloc",
-    "as",
-    "async",
-    "await",
-    "become",
-    "box",
-    "break",
-    "const",
-    "continue",
-    "core",
-    "crate",
-    "do",
-    "dyn",
-    "else",
-    "enum",
-    "extern",
-    "false",
-    "final",
-    "fn",
-    "for",
-    "gen",
-    "if",
-    "impl",
-    "in",
-    "let",
-    "libm",
-    "loop",
-    "macro",
-    "match",
-    "mod",
-    "move",
-    "mut",
-    "override",
-    "priv",
-    "proc_macro",
-    "pub",
-    "ref",
-    "return",
-    "self",
-    "static",
-    "std",
-    "struct",
-    "super",
-    "test",
-    "trait",
-    "true",
-    "try",
-    "type",
-    "typeof",
-    "unsafe",
-    "unsized",
-    "use",
-    "virtual",
-    "where",
-    "while",
-    "yield",
-];
+const RESERVED: &str = "abstract alloc as async await become box break const continue core crate do dyn else enum \
+     extern false final fn for gen if impl in let libm loop macro match mod move mut override \
+     priv proc_macro pub ref return self static std struct super test trait true try type typeof \
+     unsafe unsized use virtual where while yield";
 
 /// Writes the kinematics of a mechanism as a package of Rust.
 ///
@@ -87,7 +30,7 @@ const RESERVED: [&str; 57] = [
 pub fn rust(manipulator: &Manipulator) -> Result<Package, GenerateError> {
     let code = c::tree(manipulator)?;
     // A package has a lower-case name.
-    let name = package(&manipulator.mechanism().name.to_lowercase(), &RESERVED);
+    let name = package(&manipulator.mechanism().name.to_lowercase(), RESERVED);
     let files = [
         ("Cargo.toml", CARGO.replace("CRATE", &name)),
         ("src/lib.rs", lib(manipulator, &code, &name)),
@@ -145,24 +88,13 @@ fn lib(m: &Manipulator, code: &Code, name: &str) -> String {
 
 /// A test that compares the code with poses that opm solved.
 fn golden(m: &Manipulator, name: &str) -> String {
-    let mut rows = String::new();
-    for golden in poses(m) {
-        let _ = writeln!(
-            rows,
-            "    ({}, {}, [{}], &[{}], &[{}]),",
-            golden.mode.bits(),
-            golden.status,
-            listed(&golden.pose),
-            listed(&golden.joints),
-            listed(&golden.imaginary)
-        );
-    }
-    let angles: Vec<&str> = (m.coordinates().iter())
-        .map(|c| if c.quantity == Quantity::Angle { "true" } else { "false" })
-        .collect();
+    let rows = rows(m, |mode, status, [pose, joints, imaginary]| {
+        format!("    ({mode}, {status}, [{pose}], &[{joints}], &[{imaginary}]),\n")
+    });
+    let angles = angles(m, ["true", "false"]);
     TEST.replace("CRATE", name)
         .replace("TITLE", &crate::names::comment(&m.mechanism().name))
         .replace("VERSION", env!("CARGO_PKG_VERSION"))
-        .replace("ANGLES", &angles.join(", "))
+        .replace("ANGLES", &angles)
         .replace("    ROWS\n", &rows)
 }

@@ -7,14 +7,13 @@ mod instances;
 mod names;
 mod print;
 
-use crate::golden::poses;
+use crate::golden::{angles, poses};
 use crate::names::prefix;
 use crate::text::commented;
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Function, Parameter, Pass, Type};
 use crate::{GenerateError, Package, c};
 use opm_core::Manipulator;
-use opm_core::numeric::Quantity;
 use print::{Printer, comment, kind, real};
 use std::fmt::Write;
 
@@ -81,17 +80,11 @@ fn file(
     Ok(text.trim_end().to_owned() + "\n")
 }
 
-/// How many numbers there are of a kind.
-fn count(code: &Code, of: &str) -> usize {
-    let mut entries = code.enums.iter().flat_map(|names| &names.entries);
-    entries.find(|entry| entry.name == of).map_or(0, |entry| entry.value)
-}
-
 /// The function block of a function of the interface.
 fn block(m: &Manipulator, code: &Code, function: &Function, name: &str) -> String {
     let is_geometry = |p: &Parameter| p.kind == Type::Struct("geometry".into());
     let in_out = |p: &Parameter| is_geometry(p) || (p.pass == Pass::Write && p.name == "pose");
-    let empty = |p: &Parameter| p.name == "imaginary" && count(code, "IMAGINARY") == 0;
+    let empty = |p: &Parameter| p.name == "imaginary" && code.number("IMAGINARY") == Some(0);
     let declared = |p: &Parameter| {
         let own = if is_geometry(p) { "geometry" } else { &p.name };
         let what = described(m, &p.name);
@@ -179,9 +172,7 @@ fn test(m: &Manipulator, name: &str) -> String {
             )
         })
         .collect();
-    let angles: Vec<&str> = (m.coordinates().iter())
-        .map(|c| if c.quantity == Quantity::Angle { "TRUE" } else { "FALSE" })
-        .collect();
+    let angles = angles(m, ["TRUE", "FALSE"]);
     let last = |count: usize| count.saturating_sub(1).to_string();
     TEST.replace("TITLE", &comment(&m.mechanism().name))
         .replace("VERSION", env!("CARGO_PKG_VERSION"))
@@ -189,6 +180,6 @@ fn test(m: &Manipulator, name: &str) -> String {
         .replace("LAST_POSE", &last(rows.len()))
         .replace("LAST_COORDINATE", &last(m.task_coordinates().len()))
         .replace("LAST_JOINT", &last(m.coordinates().len()))
-        .replace("ANGLES", &angles.join(", "))
+        .replace("ANGLES", &angles)
         .replace("        ROWS", &rows.join(",\n"))
 }

@@ -1,18 +1,12 @@
 //! Closed forms as a tree, from which each language is printed.
 //!
-//! The closed forms are described once, in a small part of C: structs of numbers, functions with values, constant and
-//! changed parameters, `if`, counting `for`, `return`. [`parser`] reads what the C generator writes into this tree, with
-//! the type of every expression; a language is a printer of the tree, and a frame of its own around it.
+//! The closed forms are described once: structs of numbers, functions with values, constant and changed parameters, `if`,
+//! counting `for`, `return`, with the type of every expression. They are traced ([`crate::trace`]); a language is a printer of
+//! the tree, and a frame of its own around it.
 
-mod expressions;
 pub mod flow;
-mod functions;
-mod lexer;
 pub mod lower;
-mod parser;
 pub mod visit;
-
-pub use parser::parse;
 
 /// The code of one mechanism.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +18,20 @@ pub struct Code {
     pub functions: Vec<Function>,
     /// The geometry of the mechanism.
     pub default: Value,
+}
+
+impl Code {
+    /// The members of a struct.
+    pub fn members(&self, name: &str) -> &[Member] {
+        let known = self.structs.iter().find(|known| known.name == name);
+        known.map_or(&[], |known| &known.members)
+    }
+
+    /// The number that has a name.
+    pub fn number(&self, name: &str) -> Option<usize> {
+        let mut entries = self.enums.iter().flat_map(|names| &names.entries);
+        entries.find(|entry| entry.name == name).map(|entry| entry.value)
+    }
 }
 
 /// Names of the numbers from 0, or of counts.
@@ -93,6 +101,15 @@ impl Type {
     pub fn is_array(&self) -> bool {
         matches!(self, Self::Array(..))
     }
+
+    /// The name of the struct that it is, or that its elements are.
+    pub fn into_struct(self) -> Option<String> {
+        match self {
+            Self::Struct(name) => Some(name),
+            Self::Array(of, _) => of.into_struct(),
+            _ => None,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -101,9 +118,21 @@ pub struct Function {
     pub comment: String,
     /// Whether it belongs to the interface.
     pub public: bool,
+    pub inline: Inline,
     pub parameters: Vec<Parameter>,
     pub result: Type,
     pub body: Vec<Statement>,
+}
+
+/// What compilers of C are told to do with calls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inline {
+    /// To decide.
+    No,
+    /// To leave them out, if they think so.
+    Short,
+    /// To leave them out, unless the code is to be small: of the shortest functions, and of those whose arguments are large.
+    Always,
 }
 
 #[derive(Clone, Debug)]
@@ -266,10 +295,6 @@ impl Expr {
         Self { node, kind }
     }
 
-    pub fn int(value: impl std::fmt::Display) -> Self {
-        Self::new(Node::Number(value.to_string()), Type::Int)
-    }
-
     pub fn variable(name: &str, kind: Type) -> Self {
         Self::new(Node::Variable(name.to_owned()), kind)
     }
@@ -280,37 +305,6 @@ impl Expr {
             Node::Variable(name) => Some(name),
             Node::Member(of, _) | Node::Index(of, _) => of.root(),
             _ => None,
-        }
-    }
-
-    /// The expression as one that is true or false.
-    pub fn into_test(self) -> Self {
-        if self.kind == Type::Bool {
-            return self;
-        }
-        let zero = Self::new(Node::Number("0".into()), self.kind.clone());
-        Self::new(Node::Binary(Op::Unequal, Box::new(self), Box::new(zero)), Type::Bool)
-    }
-
-    /// The expression in another type of numbers.
-    pub fn converted(self, kind: &Type) -> Self {
-        match (&self.node, &self.kind) {
-            (_, own) if own == kind => self,
-            (_, Type::Array(..) | Type::Struct(_)) => self,
-            (Node::Number(_) | Node::Constant(_), Type::Int | Type::Bits)
-                if *kind != Type::Bool && !matches!(self.node, Node::Constant(_)) =>
-            {
-                Self::new(self.node, kind.clone())
-            }
-            (Node::Negative(of), Type::Int) if matches!(of.node, Node::Number(_)) => {
-                let of = of.clone().converted(kind);
-                Self::new(Node::Negative(Box::new(of)), kind.clone())
-            }
-            (Node::Choice(test, a, b), Type::Int) => {
-                let [a, b] = [a, b].map(|part| Box::new(part.clone().converted(kind)));
-                Self::new(Node::Choice(test.clone(), a, b), kind.clone())
-            }
-            _ => Self::new(Node::Cast(Box::new(self)), kind.clone()),
         }
     }
 }

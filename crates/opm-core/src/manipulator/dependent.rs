@@ -43,7 +43,7 @@ const LEVEL: f64 = 1e-9;
 
 /// A constraint of a further leg counts as obeyed if it is missed by less than this, in radians or shares of
 /// the size.
-const OBEYED: f64 = 1e-9;
+pub const OBEYED: f64 = 1e-9;
 
 /// Why the constraining legs of a mechanism have no closed form.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

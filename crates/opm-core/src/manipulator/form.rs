@@ -1,5 +1,6 @@
 //! The closed forms of a manipulator as plain data, for programs that write them as code.
 
+pub use super::dependent::OBEYED;
 pub use super::dependent::form::{CheckForm, StepForm, StepKind};
 pub use super::dependent::one_joint::SectionMotion;
 use super::leg::{CompiledLeg, Section};

@@ -1,13 +1,18 @@
 //! A test program, and the poses that it compares with what opm solved.
 
-use crate::golden::{Golden, listed, poses};
+use crate::golden::rows;
 use crate::names::comment;
 use opm_core::Manipulator;
-use opm_core::numeric::Quantity;
 
 /// The poses: a header of constants.
 pub fn vectors(manipulator: &Manipulator) -> String {
-    let rows: String = poses(manipulator).iter().map(row).collect();
+    let rows = rows(manipulator, |mode, status, lists| {
+        let [pose, joints, imaginary] =
+            lists.map(|list| if list.is_empty() { "0".to_owned() } else { list });
+        format!(
+            "    {{ {mode}u, {status}, {{ {pose} }},\n      {{ {joints} }},\n      {{ {imaginary} }} }},\n"
+        )
+    });
     let size = |count: usize| count.max(1);
     format!(
         "/* Poses of {}, with the joints that opm {} found: the mode, what NAME_inverse returns, the pose, the joints and the\n   \
@@ -22,22 +27,9 @@ pub fn vectors(manipulator: &Manipulator) -> String {
     )
 }
 
-/// One pose as a row of the constant.
-fn row(golden: &Golden) -> String {
-    let list = |values: &[f64]| if values.is_empty() { "0".to_owned() } else { listed(values) };
-    format!(
-        "    {{ {}u, {}, {{ {} }},\n      {{ {} }},\n      {{ {} }} }},\n",
-        golden.mode.bits(),
-        golden.status,
-        list(&golden.pose),
-        list(&golden.joints),
-        list(&golden.imaginary)
-    )
-}
-
 /// The test program.
-pub fn program() -> &'static str {
-    TEST
+pub fn program(name: &str) -> String {
+    TEST.replace("NAME_.h", &format!("{name}.h")).replace("NAME_:", &format!("{name}:"))
 }
 
 /// What CMake builds.
@@ -105,10 +97,6 @@ int main(void)
 
 /// Which joint coordinates are angles: a constant of the header.
 pub fn angles(manipulator: &Manipulator) -> String {
-    let flag = |quantity: Quantity| if quantity == Quantity::Angle { "1" } else { "0" };
-    let flags: Vec<&str> = manipulator.coordinates().iter().map(|c| flag(c.quantity)).collect();
-    format!(
-        "\n/* Which joints are angles. */\nstatic const int NAME_is_angle[] = {{ {} }};\n",
-        flags.join(", ")
-    )
+    let flags = crate::golden::angles(manipulator, ["1", "0"]);
+    format!("\n/* Which joints are angles. */\nstatic const int NAME_is_angle[] = {{ {flags} }};\n")
 }

@@ -1,4 +1,4 @@
-/* halcompile --install NAME_linuxcnc.c builds it and installs it, with NAME.c and NAME.h beside it. The coordinates of the
+/* halcompile --install NAME_linuxcnc.c builds it and installs it, with FILE_NAME.c and FILE_NAME.h beside it. The coordinates of the
    pose are axes: COORDINATE_NAMES. The joints are, in their order: JOINT_NAMES. Lengths are millimetres and angles degrees.
 
    Home is the pose at home in the working mode. The module keeps to its assembly: to the mode, and to the signs of the
@@ -10,14 +10,13 @@
 #include "rtapi.h"
 #include "rtapi_app.h"
 
-#include "NAME.c"
+#include "FILE_NAME.c"
 
 /* The machine's units in a metre and in a radian. */
 #define NAME_LENGTH 1000.0
 #define NAME_ANGLE 57.29577951308232
 
-/* A determinant below this is one of a singular pose, in radians and sizes of the mechanism. */
-#define NAME_VANISHED ((real)(sizeof(real) == sizeof(float) ? 1e-5 : 1e-9))
+CONSTANTS
 
 /* Joints that are farther away from those of a known pose than this are approached in steps, radians or sizes. */
 #define NAME_STRIDE ((real)0.1)
@@ -49,7 +48,7 @@ static NAME_place home, reached, sent;
 static NAME_real last[NAME_JOINTS];
 
 /* The signs of the determinants at home; 0 where it is singular there, and anywhere else is right. */
-static int signs[PART_COUNT];
+static int signs[SIGN_COUNT];
 
 static int started = 0;
 
@@ -66,24 +65,13 @@ static void remember(const NAME_place *place)
     }
 }
 
-DETERMINANT
-/* The signs of the determinants at a pose. It returns 0 if they are known. */
-static int signs_at(const NAME_real pose[], int found[])
-{
-    const real zero[NAME_ACTUATED] = { 0 };
-    real STATE a[ROWS * WIDTH];
-    int status = NAME_linearise(&NAME_default, pose, (unsigned)mode, zero, QUERIED a);
-    if (status == 0) {
-        PARTS
-    }
-    return status;
-}
+SIGNS
 
 /* Whether a pose is in home's assembly. */
 static int is_home_assembly(const NAME_real pose[])
 {
-    int found[PART_COUNT] = { 0 }, i, right = signs_at(pose, found) == 0;
-    for (i = 0; i < PART_COUNT; ++i) {
+    int found[SIGN_COUNT] = { 0 }, i, right = NAME_signs(&NAME_default, pose, (unsigned)mode, found) == 0;
+    for (i = 0; i < SIGN_COUNT; ++i) {
         right = right && (signs[i] == 0 || found[i] == signs[i]);
     }
     return right;
@@ -113,13 +101,13 @@ static int start(void)
 {
     NAME_real imaginary[NAME_IMAGINARY + 1];
     int i, status;
-    for (i = 0; i < PART_COUNT; ++i) {
+    for (i = 0; i < SIGN_COUNT; ++i) {
         signs[i] = 0;
     }
     HOME_POSE
     status = NAME_inverse(&NAME_default, home.pose, (unsigned)mode, home.joints, imaginary);
     if (status == 0) {
-        (void)signs_at(home.pose, signs);
+        (void)NAME_signs(&NAME_default, home.pose, (unsigned)mode, signs);
         reached = sent = home;
         remember(&home);
         started = 1;

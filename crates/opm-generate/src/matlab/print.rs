@@ -36,8 +36,7 @@ fn is_output(function: &Function, p: &Parameter) -> bool {
 pub fn zero(code: &Code, kind: &Type) -> String {
     match kind {
         Type::Struct(name) => {
-            let known = code.structs.iter().find(|known| known.name == *name);
-            let members = known.map_or(&[][..], |known| &known.members).iter();
+            let members = code.members(name).iter();
             let parts = members.map(|m| format!("'{}', {}", m.name, zero(code, &m.kind)));
             format!("struct({})", parts.collect::<Vec<_>>().join(", "))
         }
@@ -70,8 +69,7 @@ pub fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
             }
         }
         (Type::Struct(name), Value::List(parts)) => {
-            let known = code.structs.iter().find(|known| known.name == *name);
-            let members = known.map_or(&[][..], |known| &known.members);
+            let members = code.members(name);
             let parts = members.iter().zip(parts);
             let parts = parts.map(|(m, part)| (m, value(code, &m.kind, part, depth + 1)));
             if depth == 0 {
@@ -130,10 +128,7 @@ impl Printer<'_> {
 
     /// What a function gives back before it writes it.
     fn start(&self, p: &Parameter) -> String {
-        let count = |name: &str| {
-            let mut entries = self.code.enums.iter().flat_map(|names| &names.entries);
-            entries.find(|entry| entry.name == name).map_or(0, |entry| entry.value)
-        };
+        let count = |name: &str| self.code.number(name).unwrap_or_default();
         match (&p.kind, &*p.name) {
             (Type::Array(_, 0), name) => {
                 let count = match name {
@@ -307,8 +302,7 @@ impl Printer<'_> {
                 let Type::Struct(name) = &expr.kind else {
                     return (format!("[{}]", parts.collect::<Vec<_>>().join(", ")), WHOLE);
                 };
-                let known = self.code.structs.iter().find(|known| known.name == *name);
-                let members = known.map_or(&[][..], |known| &known.members);
+                let members = self.code.members(name);
                 let each =
                     members.iter().zip(parts).map(|(m, part)| format!("'{}', {part}", m.name));
                 (format!("struct({})", each.collect::<Vec<_>>().join(", ")), WHOLE)

@@ -108,8 +108,7 @@ fn value(code: &Code, of: &Type, value_of: &Value, depth: usize) -> String {
             }
         }
         (Type::Struct(name), Value::List(parts)) => {
-            let known = code.structs.iter().find(|known| known.name == *name);
-            let members = known.map_or(&[][..], |known| &known.members);
+            let members = code.members(name);
             let parts: Vec<String> = members
                 .iter()
                 .zip(parts)

@@ -39,9 +39,7 @@ impl Instances<'_> {
             "actuated" => "ACTUATED",
             other => return Err(format!("the array {other} has no length")),
         };
-        let mut entries = self.code.enums.iter().flat_map(|names| &names.entries);
-        let found = entries.find(|entry| entry.name == of);
-        Ok(found.map_or(1, |entry| entry.value.max(1)))
+        Ok(self.code.number(of).unwrap_or_default().max(1))
     }
 
     /// The name of a function for arrays of these lengths.

@@ -111,8 +111,7 @@ fn value(code: &Code, of: &Type, value_of: &Value) -> String {
             }
         }
         (Type::Struct(name), Value::List(parts)) => {
-            let known = code.structs.iter().find(|known| known.name == *name);
-            let members = known.map_or(&[][..], |known| &known.members);
+            let members = code.members(name);
             let parts: Vec<String> = (members.iter().zip(parts))
                 .map(|(m, part)| format!("{} := {}", m.name, value(code, &m.kind, part)))
                 .collect();
@@ -325,10 +324,7 @@ impl<'a> Printer<'a> {
         };
         match &value.kind {
             Type::Struct(name) => {
-                let known = self.code.structs.iter().find(|known| known.name == *name);
-                for (member, part) in
-                    known.map_or(&[][..], |known| &known.members).iter().zip(parts)
-                {
+                for (member, part) in self.code.members(name).iter().zip(parts) {
                     self.assign(&format!("{target}.{}", member.name), part, space, text);
                 }
             }
@@ -417,9 +413,8 @@ impl<'a> Printer<'a> {
         if let Some(constant) = code.constants.iter().find(|constant| constant.name == name) {
             return self.constant(&format!("C_{name}"), &literal(&constant.double));
         }
-        let mut entries = code.enums.iter().flat_map(|names| &names.entries);
-        match entries.find(|entry| entry.name == name) {
-            Some(entry) => self.number(&entry.value.to_string(), kind),
+        match code.number(name) {
+            Some(value) => self.number(&value.to_string(), kind),
             None => {
                 self.wrong = Some(format!("no constant {name}"));
                 String::new()

@@ -1,6 +1,6 @@
 //! Walks through a tree.
 
-use super::{Code, Expr, Function, Node, Pass, Statement};
+use super::{Code, Expr, Function, Node, Pass, Statement, Type};
 
 /// Every statement, from outside to inside.
 pub fn statements(body: &[Statement], see: &mut impl FnMut(&Statement)) {
@@ -199,5 +199,46 @@ fn rename_calls(expr: &mut Expr, new: &impl Fn(&str) -> Option<String>) {
     }
     for part in parts_mut(expr) {
         rename_calls(part, new);
+    }
+}
+
+impl Function {
+    /// What is found in all of its expressions.
+    fn found(&self, of: impl Fn(&Node) -> Option<&String>) -> Vec<String> {
+        let mut found = Vec::new();
+        statements(&self.body, &mut |statement| {
+            for expr in own(statement) {
+                expressions(expr, &mut |part| found.extend(of(&part.node).cloned()));
+            }
+        });
+        found
+    }
+
+    /// The functions that it calls.
+    pub fn calls(&self) -> Vec<String> {
+        self.found(|node| match node {
+            Node::Call(name, _) => Some(name),
+            _ => None,
+        })
+    }
+
+    /// The constants that it needs.
+    pub fn constants(&self) -> Vec<String> {
+        self.found(|node| match node {
+            Node::Constant(name) => Some(name),
+            _ => None,
+        })
+    }
+
+    /// The types of its parameters and variables, and of what it gives.
+    pub fn types(&self) -> Vec<Type> {
+        let mut types: Vec<Type> = self.parameters.iter().map(|p| p.kind.clone()).collect();
+        types.push(self.result.clone());
+        statements(&self.body, &mut |statement| {
+            if let Statement::Declare { kind, .. } = statement {
+                types.push(kind.clone());
+            }
+        });
+        types
     }
 }

@@ -87,8 +87,7 @@ impl Printer<'_> {
         let Type::Struct(name) = of else {
             return format!("[{}]", parts.collect::<Vec<_>>().join(", "));
         };
-        let known = self.code.structs.iter().find(|known| known.name == *name);
-        let members = known.map_or(&[][..], |known| &known.members);
+        let members = self.code.members(name);
         let given: Vec<String> = members
             .iter()
             .zip(parts)
