@@ -4,6 +4,7 @@
 //! becomes an expression of the tree, and [`name!`], [`when`], [`count`] and [`give`] become statements of the function that is
 //! being traced on this thread.
 
+pub mod closed_forms;
 mod functions;
 mod numbers;
 mod structs;
@@ -34,7 +35,7 @@ thread_local! {
 }
 
 /// What a handle stands for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Id {
     /// An expression of the function that is being traced.
     Node(usize),
@@ -113,6 +114,25 @@ macro_rules! name {
 }
 pub(crate) use name;
 
+/// A name that no variable of the function has so far: this one, or with a number.
+pub fn fresh(name: &str) -> String {
+    TRACE.with_borrow(|trace| {
+        let mut taken = Vec::new();
+        for block in &trace.blocks {
+            visit::statements(block, &mut |statement| {
+                if let Statement::Declare { name, .. } = statement {
+                    taken.push(name.clone());
+                }
+            });
+        }
+        let numbered = (2..).map(|number| format!("{name}_{number}"));
+        std::iter::once(name.to_owned())
+            .chain(numbered)
+            .find(|one| !taken.contains(one))
+            .unwrap_or_default()
+    })
+}
+
 /// Declares a variable with its value.
 pub fn named<T: Value>(name: &str, value: T) -> T::Handle {
     let init = Some(value.handle().expr());
@@ -134,7 +154,7 @@ pub fn emit(statement: Statement) {
 }
 
 /// The statements that `body` adds.
-fn statements(body: impl FnOnce()) -> Vec<Statement> {
+pub fn statements(body: impl FnOnce()) -> Vec<Statement> {
     TRACE.with_borrow_mut(|trace| trace.blocks.push(Vec::new()));
     body();
     TRACE.with_borrow_mut(|trace| trace.blocks.pop()).unwrap_or_default()

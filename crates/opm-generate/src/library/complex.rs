@@ -103,3 +103,10 @@ operators! {
     Mul mul Real: scaled;
     Mul mul f64: scaled;
 }
+
+impl std::ops::Neg for Complex {
+    type Output = Self;
+    fn neg(self) -> Self {
+        scaled(self, -1.0)
+    }
+}

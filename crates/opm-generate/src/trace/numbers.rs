@@ -8,7 +8,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Rem, Shl, Shr, Sub};
 macro_rules! handles {
     ($($(#[$doc:meta])* $name:ident $kind:ident $($literal:ident)?;)+) => {$(
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug)]
+        #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $name(pub(super) Id);
 
         impl $name {

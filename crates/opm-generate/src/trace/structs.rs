@@ -12,7 +12,7 @@ macro_rules! structs {
             $(#[doc = $doc])+
             // Printers know members that no function needs.
             #[allow(dead_code)]
-            #[derive(Clone, Copy, Debug)]
+            #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct $name {
                 id: $crate::trace::Id,
                 $(pub $member: $kind,)+

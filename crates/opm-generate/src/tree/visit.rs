@@ -121,6 +121,37 @@ pub fn written(expr: &Expr) -> Vec<&Expr> {
     found
 }
 
+/// Takes out declarations of variables that nothing reads.
+pub fn drop_unread(body: &mut Vec<Statement>) {
+    loop {
+        let mut read = Vec::new();
+        let mut declared = 0;
+        statements(body, &mut |statement| {
+            declared += usize::from(matches!(statement, Statement::Declare { .. }));
+            for expr in own(statement) {
+                expressions(expr, &mut |part| {
+                    if let Node::Variable(name) = &part.node {
+                        read.push(name.clone());
+                    }
+                });
+            }
+        });
+        let before = declared;
+        declared = 0;
+        blocks(body, &mut |block| {
+            block.retain(|one| match one {
+                Statement::Declare { name, .. } => read.contains(name),
+                _ => true,
+            });
+            declared +=
+                block.iter().filter(|one| matches!(one, Statement::Declare { .. })).count();
+        });
+        if declared == before {
+            return;
+        }
+    }
+}
+
 /// Gives the variables of a function other names, where there is one.
 pub fn rename(function: &mut Function, new: &impl Fn(&str) -> Option<String>) {
     let change = |name: &mut String| {
