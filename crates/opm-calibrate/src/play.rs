@@ -123,7 +123,7 @@ fn by_errors(problem: &Problem<'_>, response: &Response, body: &Body) -> Option<
     for (row, column) in problem.columns.iter().enumerate() {
         match (column.kind, column.by_twist(body)) {
             (ColumnKind::Coordinate(number), _) => {
-                by.set_row(row, &response.coordinates.row(number))
+                by.set_row(row, &response.coordinates.row(number));
             }
             (_, Some(by_twist)) => {
                 let by_twist: RowVector6<f64> = by_twist;

@@ -51,7 +51,7 @@ pub fn document<T>(
     }
 }
 
-/// Reads the common head of every file: the format, which must be [`FORMAT`]; the name, which is
+/// Reads the common head of every file: the format, which must be `FORMAT`; the name, which is
 /// empty if it is invalid; and the units, which are set in the reader.
 pub fn head<'a>(root: &Table<'a>, kind: &str) -> Option<&'a str> {
     let format = root.require("format", &format!("format = {FORMAT}"))?;
