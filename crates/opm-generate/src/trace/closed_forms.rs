@@ -327,33 +327,32 @@ pub fn solve<C: ClosedForm<Real>>(
     sign: Real,
     places: [Displaced; 3],
 ) -> Real {
-    let mut closes = None;
+    let mut check = Vec::new();
     let mut body = statements(|| {
         let Attempt { displacements, holds, .. } = chain.attempt(target, sign);
-        if holds != Truth::YES {
-            closes = Some(holds);
-        }
         write(places, displacements);
-    });
-    let conditions = regular.iter().filter_map(|condition| match *condition {
-        Closes::Always => None,
-        Closes::Within(number, [least, _]) => Some(number.gt(least)),
-        Closes::Exceeds(number, of) => Some(numbers::Real::exceeds(number, of)),
-    });
-    let test = closes.into_iter().chain(conditions).reduce(|all, one| all & one);
-    let check = statements(|| {
-        let Some(test) = test else { return };
-        when(!test, || {
-            let Exception { excess, special, .. } = chain.exception(target, sign);
-            match special {
-                Some((holds, joints)) if holds != Truth::YES => {
-                    when(!holds, || give(missed(excess)));
-                    write(places, joints);
-                    give(0.0);
+        let closes = (holds != Truth::YES).then_some(holds);
+        let conditions = regular.iter().filter_map(|condition| match *condition {
+            Closes::Always => None,
+            Closes::Within(number, [least, _]) => Some(number.gt(least)),
+            Closes::Exceeds(number, of) => Some(numbers::Real::exceeds(number, of)),
+        });
+        let Some(test) = closes.into_iter().chain(conditions).reduce(|all, one| all & one) else {
+            return;
+        };
+        check = statements(|| {
+            when(!test, || {
+                let Exception { excess, special, .. } = chain.exception(target, sign);
+                match special {
+                    Some((holds, joints)) if holds != Truth::YES => {
+                        when(!holds, || give(missed(excess)));
+                        write(places, joints);
+                        give(0.0);
+                    }
+                    Some(_) => give(Real::infinity()),
+                    None => give(missed(excess)),
                 }
-                Some(_) => give(Real::infinity()),
-                None => give(missed(excess)),
-            }
+            });
         });
     });
     // Where the closed form says that it needs the chain to close.
