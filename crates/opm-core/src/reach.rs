@@ -57,10 +57,10 @@
 //! // One pose of it, leg by leg.
 //! let v = task.lower(&[0.01, 0.0]); // x y
 //! assert!(branches.iter().all(|branch| reach.reaches(branch, &v)));
-//! // The translations, in metres, that leg 1 reaches, seen from there: it reaches none of y > 10 m.
+//! // The translations, in metres, that can be added for leg 1: at x = 0.01 the range of y has zero in it.
 //! let region = reach.region(&branches[0], &v, 1.0).expect("a displacement in the plane");
-//! let [_, top] = region.whole.rows([-10.0, 10.0]);
-//! assert!(0.0 < top && top < 10.0);
+//! let [from, to] = region.whole.rows([0.0, 0.0]);
+//! assert!(from <= 0.0 && 0.0 <= to);
 //!
 //! // Many poses at once, in any working mode.
 //! let poses = [0.01, 0.0, 0.0, 0.26, 0.0, /* the second one: */ 9.0, 0.0, 0.0, 0.26, 0.0];
