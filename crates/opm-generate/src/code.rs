@@ -218,7 +218,7 @@ fn of_pose(p: &mut Parameters) -> (Any, Array<Real>, Bits) {
 /// A list of real numbers that a function writes.
 fn written(p: &mut Parameters, name: &str, length: usize) -> Array<Real> {
     let kind = Type::Array(Box::new(Type::Real), length);
-    Array::from_expr(p.of_kind(name, kind, Pass::Write).expr())
+    p.of_kind(name, kind, Pass::Write).array()
 }
 
 /// Declares displacements.

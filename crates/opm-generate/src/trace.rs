@@ -15,11 +15,13 @@ pub use structs::{Any, Array, snake};
 pub(crate) use {functions::functions, structs::structs};
 
 use crate::tree::{Expr, Node, Op, Statement, Type, visit};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// What is known of the function that is being traced.
 #[derive(Default)]
 struct Trace {
+    /// Which function of this thread it is, from 1.
+    number: usize,
     nodes: Vec<Stored>,
     /// The statements of nested blocks.
     blocks: Vec<Vec<Statement>>,
@@ -32,13 +34,14 @@ enum Stored {
 
 thread_local! {
     static TRACE: RefCell<Trace> = RefCell::default();
+    static TRACED: Cell<usize> = const { Cell::new(0) };
 }
 
 /// What a handle stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Id {
-    /// An expression of the function that is being traced.
-    Node(usize),
+    /// An expression, by the numbers of the function and of the expression.
+    Node(usize, usize),
     /// A constant of the code.
     Constant(&'static str),
 }
@@ -46,7 +49,7 @@ pub enum Id {
 fn store(stored: Stored) -> Id {
     TRACE.with_borrow_mut(|trace| {
         trace.nodes.push(stored);
-        Id::Node(trace.nodes.len() - 1)
+        Id::Node(trace.number, trace.nodes.len() - 1)
     })
 }
 
@@ -58,13 +61,16 @@ pub fn member(of: Id, name: &'static str, kind: fn() -> Type) -> Id {
 fn resolved(trace: &Trace, id: Id, kind: Type) -> Expr {
     match id {
         Id::Constant(name) => Expr::new(Node::Constant(name.to_owned()), kind),
-        Id::Node(at) => match &trace.nodes[at] {
-            Stored::Whole(expr) => expr.clone(),
-            Stored::Member(of, name, kind) => {
-                let of = resolved(trace, *of, Type::Void);
-                Expr::new(Node::Member(Box::new(of), (*name).to_owned()), kind())
+        Id::Node(function, at) => {
+            assert_eq!(function, trace.number, "a handle is used in another function");
+            match &trace.nodes[at] {
+                Stored::Whole(expr) => expr.clone(),
+                Stored::Member(of, name, kind) => {
+                    let of = resolved(trace, *of, Type::Void);
+                    Expr::new(Node::Member(Box::new(of), (*name).to_owned()), kind())
+                }
             }
-        },
+        }
     }
 }
 
@@ -235,7 +241,9 @@ pub fn give(value: impl Value) {
 
 /// The statements of a function.
 fn traced(body: impl FnOnce()) -> Vec<Statement> {
-    let outer = TRACE.take();
+    TRACED.set(TRACED.get() + 1);
+    let trace = Trace { number: TRACED.get(), ..Trace::default() };
+    let outer = TRACE.replace(trace);
     let mut statements = statements(body);
     TRACE.set(outer);
     visit::flatten(&mut statements);

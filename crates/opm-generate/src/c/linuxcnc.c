@@ -24,6 +24,8 @@ CONSTANTS
 /* The most steps. */
 #define NAME_STRIDES 40
 
+SIGNS
+
 static int comp_id;
 
 /* The working mode: bit i is set where sign i of opm's text is a minus. */
@@ -64,8 +66,6 @@ static void remember(const NAME_place *place)
         last[i] = place->joints[i];
     }
 }
-
-SIGNS
 
 /* Whether a pose is in home's assembly. */
 static int is_home_assembly(const NAME_real pose[])

@@ -14,11 +14,10 @@ pub struct Out<T: ?Sized>(PhantomData<T>);
 
 /// How something is passed.
 pub trait Passed {
-    type Handle: Copy;
+    type Handle: Copy + Into<Any>;
     const PASS: Pass;
     fn passed_type() -> Type;
-    fn parameter(expr: Expr) -> Self::Handle;
-    fn argument(handle: Self::Handle) -> Expr;
+    fn parameter(value: Any) -> Self::Handle;
 }
 
 impl<T: Handle> Passed for T {
@@ -27,11 +26,8 @@ impl<T: Handle> Passed for T {
     fn passed_type() -> Type {
         T::kind()
     }
-    fn parameter(expr: Expr) -> T {
-        T::from_expr(expr)
-    }
-    fn argument(handle: T) -> Expr {
-        handle.expr()
+    fn parameter(value: Any) -> T {
+        value.is()
     }
 }
 
@@ -43,11 +39,8 @@ macro_rules! references {
             fn passed_type() -> Type {
                 T::kind()
             }
-            fn parameter(expr: Expr) -> T {
-                T::from_expr(expr)
-            }
-            fn argument(handle: T) -> Expr {
-                handle.expr()
+            fn parameter(value: Any) -> T {
+                value.is()
             }
         }
 
@@ -57,11 +50,8 @@ macro_rules! references {
             fn passed_type() -> Type {
                 Type::Array(Box::new(T::kind()), 0)
             }
-            fn parameter(expr: Expr) -> Array<T> {
-                Array::from_expr(expr)
-            }
-            fn argument(handle: Array<T>) -> Expr {
-                handle.expr()
+            fn parameter(value: Any) -> Array<T> {
+                value.array()
             }
         }
     )+};
@@ -139,7 +129,7 @@ macro_rules! functions {
                 $($p: impl Into<<$kind as $crate::trace::Passed>::Handle>),*
             ) $(-> $result)? {
                 $crate::trace::call(stringify!($name), vec![$((
-                    <$kind as $crate::trace::Passed>::argument($p.into()),
+                    $crate::trace::Any::from(Into::<<$kind as $crate::trace::Passed>::Handle>::into($p)).expr(),
                     <$kind as $crate::trace::Passed>::PASS,
                 )),*])
             }
@@ -170,7 +160,7 @@ pub struct Parameters(Vec<Parameter>);
 impl Parameters {
     /// The next one.
     pub fn add<P: Passed>(&mut self, name: &str) -> P::Handle {
-        P::parameter(self.of_kind(name, P::passed_type(), P::PASS).expr())
+        P::parameter(self.of_kind(name, P::passed_type(), P::PASS))
     }
 
     /// The next one, of a type that only the mechanism says.

@@ -75,18 +75,13 @@ pub fn snake(name: &str) -> String {
 /// An array.
 #[derive(Clone, Copy, Debug)]
 pub struct Array<T> {
-    pub(super) id: Id,
-    pub(super) of: PhantomData<T>,
+    id: Id,
+    of: PhantomData<T>,
 }
 
 impl<T: Handle> Array<T> {
-    /// The array that an expression is.
-    pub fn from_expr(expr: Expr) -> Self {
-        Self { id: super::store(super::Stored::Whole(expr)), of: PhantomData }
-    }
-
-    pub fn expr(self) -> Expr {
-        super::TRACE.with_borrow(|trace| super::resolved(trace, self.id, Type::Void))
+    fn expr(self) -> Expr {
+        Any(self.id).expr()
     }
 
     /// An element.
@@ -110,7 +105,7 @@ impl<T: Handle> Array<T> {
         let kind = Type::Array(Box::new(T::kind()), length);
         let init = values.map(|values| Expr::new(Node::Made(values), kind.clone()));
         emit(Statement::Declare { name: name.to_owned(), kind: kind.clone(), init });
-        Self::from_expr(Expr::variable(name, kind))
+        Any::from_expr(Expr::variable(name, kind)).array()
     }
 }
 
@@ -132,6 +127,11 @@ impl Any {
         T::of(self.0)
     }
 
+    /// The same as an array.
+    pub fn array<T: Handle>(self) -> Array<T> {
+        Array { id: self.0, of: PhantomData }
+    }
+
     /// A member.
     pub fn member<T: Handle>(self, name: &str) -> T {
         self.part(name, T::kind()).is()
@@ -145,7 +145,7 @@ impl Any {
     /// A member that is an array.
     pub fn list<T: Handle>(self, name: &str, length: usize) -> Array<T> {
         let kind = Type::Array(Box::new(T::kind()), length);
-        Array::from_expr(self.part(name, kind).expr())
+        self.part(name, kind).array()
     }
 
     /// Declares a variable of a type, with a value or without.
