@@ -16,14 +16,13 @@ fn by_chain(chain: &PlanarChain, targets: &[[f64; 4]; LANES], out: &mut [[f64; 6
     let PlanarChain::Rrr(chain) = chain else { return };
     for (target, out) in targets.iter().zip(out) {
         let [a, b, x, y] = *target;
-        let g = PlanarDisplacement {
-            rotation: Complex::new(a, b),
-            translation: Complex::new(x, y),
-        };
-        let found = ClosedForm::<f64>::attempt(chain, &g, 1.0).displacements.map(|joint| match joint {
-            opm_core::group::JointDisplacement::Direction(z) => z,
-            opm_core::group::JointDisplacement::Value(value) => Complex::new(value, 0.0),
-        });
+        let g =
+            PlanarDisplacement { rotation: Complex::new(a, b), translation: Complex::new(x, y) };
+        let found =
+            ClosedForm::<f64>::attempt(chain, &g, 1.0).displacements.map(|joint| match joint {
+                opm_core::group::JointDisplacement::Direction(z) => z,
+                opm_core::group::JointDisplacement::Value(value) => Complex::new(value, 0.0),
+            });
         *out = [found[0].re, found[0].im, found[1].re, found[1].im, found[2].re, found[2].im];
     }
 }
@@ -53,9 +52,11 @@ fn by_kernels(axes: &[Axis<f64>; 3], targets: &[[f64; 4]; LANES], out: &mut [[f6
 
 fn main() {
     let places = [[0.0, 0.0], [0.3, 0.1], [0.5, -0.1]];
-    let joints = places.map(|[x, y]| PlanarJoint::Revolute { at: Complex::new(x, y), reversed: false });
+    let joints =
+        places.map(|[x, y]| PlanarJoint::Revolute { at: Complex::new(x, y), reversed: false });
     let chain = PlanarChain::new(joints).expect("an arm of two links");
-    let axes = places.map(|[x, y]| Axis { point: Vector3::new(x, y, 0.0), direction: Vector3::z() });
+    let axes =
+        places.map(|[x, y]| Axis { point: Vector3::new(x, y, 0.0), direction: Vector3::z() });
     let mut rng = fastrand::Rng::with_seed(1);
     let targets = [(); LANES].map(|()| {
         let angle = 0.6 * (rng.f64() - 0.5);

@@ -1,9 +1,7 @@
 //! Handles as the numbers that the core's closed forms are written over: a closed form that is computed with them is traced.
 
 use crate::library::*;
-use crate::trace::{
-    Handle, Number, Real, Truth, abs, emit, give, max, sqrt, statements, when,
-};
+use crate::trace::{Handle, Number, Real, Truth, abs, emit, give, max, sqrt, statements, when};
 use crate::tree::{Statement, visit};
 use opm_core::chain::{Attempt, ClosedForm, Closes, Exception};
 use opm_core::group::PlanarDisplacement;

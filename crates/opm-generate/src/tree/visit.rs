@@ -143,8 +143,7 @@ pub fn drop_unread(body: &mut Vec<Statement>) {
                 Statement::Declare { name, .. } => read.contains(name),
                 _ => true,
             });
-            declared +=
-                block.iter().filter(|one| matches!(one, Statement::Declare { .. })).count();
+            declared += block.iter().filter(|one| matches!(one, Statement::Declare { .. })).count();
         });
         if declared == before {
             return;

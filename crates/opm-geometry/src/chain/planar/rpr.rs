@@ -78,6 +78,7 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rpr<Z> {
         let closes = square.at_least(least).checked();
         let ahead = (square.root() * sign).named("ahead");
         let telescope = T::Plane::new(ahead, T::from_constant(aside)) * self.slide;
+        let telescope = telescope.named("telescope");
         let size = T::from_constant(self.offset.norm_sqr());
         let r1 = (reach * telescope.conj()).direction(size).named("r1");
         let r3 = target.rotation * r1.conj();
@@ -93,7 +94,7 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rpr<Z> {
     #[cold]
     fn exception(&self, target: &Self::Target, _: T::Sign) -> Exception<T> {
         let aside = T::from_constant(self.offset.im().absolute());
-        Exception::length(aside - self.reach::<T>(target).length())
+        Exception::length(aside - self.reach::<T>(target).named("reach").length())
     }
 
     fn closes(&self, target: &Self::Target) -> Closes<T> {

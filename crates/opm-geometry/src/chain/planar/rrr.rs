@@ -29,13 +29,13 @@ impl<Z: Plane> Rrr<Z> {
     pub(super) fn new(p1: Pivot<Z>, p2: Pivot<Z>, p3: Pivot<Z>) -> Self {
         let first = (p2.at - p1.at).named("first");
         let second = (p3.at - p2.at).named("second");
-        let (a, b) = (first.length(), second.length());
+        let (a, b) = (first.length().named("a"), second.length().named("b"));
         let product = (a * b).named("product");
         Self {
             pivots: [p1, p2, p3],
             first,
             second,
-            straighten: (first * second.conj()).per(product),
+            straighten: (first * second.conj()).per(product).named("straighten"),
             mean_square: ((a.square() + b.square()) * 0.5).named("mean_square"),
             product,
         }
@@ -98,7 +98,8 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rrr<Z> {
         let cosine = self.elbow_cosine::<T>(reach).named("cosine");
         let closes = cosine.within(1.0, REACH).checked();
         let cosine = cosine.at_most_one().named("bend");
-        let elbow = T::Plane::new(cosine, (-cosine.square() + 1.0).root() * sign);
+        let sine = ((-cosine.square() + 1.0).root() * sign).named("sine");
+        let elbow = T::Plane::new(cosine, sine);
         let r2 = (elbow * self.straighten).named("r2");
         let [p1, p2, p3] = self.pivots;
         // As the sum of two angles, or as the rotation from the vector from the first pivot to the wrist with the elbow bent
@@ -118,7 +119,7 @@ impl<Z: Plane, T: Over<Z::Real>> ClosedForm<T> for Rrr<Z> {
 
     #[cold]
     fn exception(&self, target: &Self::Target, _: T::Sign) -> Exception<T> {
-        let distance = self.reach::<T>(target).length().named("distance");
+        let distance = self.reach::<T>(target).named("reach").length().named("distance");
         let [a, b] = [self.first, self.second].map(|link| T::from_constant(link.length()));
         Exception::length((distance - (a + b)).larger((a - b).absolute() - distance))
     }
