@@ -309,8 +309,8 @@ impl Task {
             units = sin_cos_of_each(angles).map(|(sin, cos)| Complex::new(cos, sin));
         }
         let displacement = match section {
-            Section::Lower => lower_displacement(form, values.from_home(), units),
-            Section::Upper => upper_displacement(form, values.from_home(), units),
+            Section::Lower => lower_displacement(form, values.less_home(), units),
+            Section::Upper => upper_displacement(form, values.less_home(), units),
         };
         self.displaced_from_home(section, displacement)
     }

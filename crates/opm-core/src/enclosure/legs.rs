@@ -40,6 +40,7 @@ pub fn any<T, const N: usize>(
 }
 
 /// The chain of a section over a box of targets.
+#[expect(clippy::large_enum_variant, reason = "there is one at a time, on the stack")]
 pub enum SectionChain<'a, const N: usize> {
     /// With the joints at home where they are.
     Fixed(&'a Chain, &'a Target<N>),

@@ -29,7 +29,7 @@ pub(crate) struct SectionValues {
 impl SectionValues {
     /// The coordinates less those at home.
     #[inline(always)]
-    pub fn from_home(&self) -> [f64; 3] {
+    pub fn less_home(&self) -> [f64; 3] {
         let Self { at, home } = self;
         [at[0] - home[0], at[1] - home[1], at[2] - home[2]]
     }

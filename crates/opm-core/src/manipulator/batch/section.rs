@@ -135,7 +135,7 @@ pub fn displace(
                     // Three calls, where a map would not be inlined.
                     units = [unit_reduced(a), unit_reduced(b), unit_reduced(c)];
                 }
-                let values = values.from_home();
+                let values = values.less_home();
                 let displacement = match section {
                     Section::Lower => lower_displacement(form, values, units),
                     Section::Upper => upper_displacement(form, values, units),
