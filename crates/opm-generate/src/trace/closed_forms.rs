@@ -20,6 +20,11 @@ fn declared<T: Handle>(name: &str, value: T) -> T {
     crate::trace::named(&name, value)
 }
 
+/// A vector with a name: not every language has members of what a function gives.
+fn place(vector: Complex) -> Complex {
+    if vector.expr().root().is_some() { vector } else { declared("vector", vector) }
+}
+
 /// A tolerance of generated code.
 fn tolerance(one: Tolerance) -> Real {
     Real::constant(one.name)
@@ -111,11 +116,11 @@ impl numbers::Plane for Complex {
     }
 
     fn re(self) -> Real {
-        self.re
+        place(self).re
     }
 
     fn im(self) -> Real {
-        self.im
+        place(self).im
     }
 
     fn conj(self) -> Self {
