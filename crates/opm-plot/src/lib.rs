@@ -6,7 +6,7 @@
 //! look the same.
 //!
 //! ```
-//! use opm_plot::{Curve, Heading, Measure, Panel, Row, Scale, Steps, TimeFigure, Unit};
+//! use opm_plot::{Curve, Heading, Measure, Panel, PanelRow, Scale, Steps, TimeFigure, Unit};
 //!
 //! let mut curve = Curve::default();
 //! for i in 0..=100 {
@@ -24,7 +24,7 @@
 //!     heading: Heading { title: "A motion".into(), ..Heading::default() },
 //!     over: Measure::time(),
 //!     range: [0.0, 10.0],
-//!     rows: vec![Row { names: vec!["phi1".into()], panels: vec![Some(panel)] }],
+//!     rows: vec![PanelRow { names: vec!["phi1".into()], panels: vec![Some(panel)] }],
 //!     invalid: vec![],
 //!     marks: vec![],
 //! };

@@ -118,12 +118,12 @@ impl<'a> Line<'a> {
     /// If a place is outside of the row.
     ///
     /// ```
-    /// use opm_core::table::{Lines, Place};
+    /// use opm_core::table::{Lines, FieldPlace};
     ///
     /// # fn main() -> std::io::Result<()> {
     /// let mut lines = Lines::new(Box::new("2,home,\n".as_bytes()));
     /// let line = lines.next()?.expect("a row");
-    /// let place = |number, optional| Some(Place { number, optional, usual: [-1.0, 1.0] });
+    /// let place = |number, optional| Some(FieldPlace { number, optional, usual: [-1.0, 1.0] });
     /// let mut row = [0.0; 2];
     /// assert_eq!(line.numbers(&[place(1, false), None, place(0, true)], &mut row), Ok(false));
     /// assert!(row[0].is_nan() && row[1] == 2.0);
