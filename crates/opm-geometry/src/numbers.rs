@@ -5,15 +5,14 @@
 //! | [`Real`] | what comes out |
 //! |---|---|
 //! | `f64` | the joints at one pose; in a loop without branches, at many |
-//! | numbers over a box (`enclosure`) | bounds of the joints at all poses of a box |
-//! | names (`opm-generate`) | source code |
+//! | numbers over a box (`opm_geometry::boxes`) | bounds of the joints at all poses of a box |
+//! | handles of expressions (`opm-generate`) | source code |
 //!
 //! The operations are those of reals, of complex numbers as vectors of the plane, and of vectors of space, not of their
 //! components alone: source code stays readable, and a box knows more of a length than of two squares.
 //!
 //! A mechanism's own numbers may be of a simpler type `C` than those of the target, `T`: over a box of poses they are
-//! mostly constant. [`Over<C>`] is a number `T` that can be combined with them. Dual and complex numbers have all that
-//! [`Real`] asks for, too.
+//! mostly constant. [`Over<C>`] is a number `T` that can be combined with them.
 
 mod joint;
 mod pose;
@@ -24,15 +23,13 @@ pub use joint::nearest;
 
 use nalgebra::Vector3;
 use std::fmt::Debug;
-use std::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
+use std::ops::{Add, Mul, Neg, Not, Sub};
 
 /// A share of a size below which numbers count as rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Its name in source code.
     pub name: &'static str,
-    /// What it is, for a comment there.
-    pub meaning: &'static str,
     /// The share.
     pub share: f64,
     /// The share where numbers have single precision.
@@ -41,20 +38,10 @@ pub struct Tolerance {
 
 /// How far beyond its reach a chain still closes, as a share of its size. A pose on the boundary of reach counts as inside;
 /// the rounding of such a pose is of the order of 1e-15 and must not decide.
-pub const REACH: Tolerance = Tolerance {
-    name: "REACH",
-    meaning: "How far beyond its reach a chain still closes, as a share of its size: rounding must not decide there.",
-    share: 1e-12,
-    single: 2e-6,
-};
+pub const REACH: Tolerance = Tolerance { name: "REACH", share: 1e-12, single: 2e-6 };
 
 /// A link length, as a share of the chain's size, or an angle between axes, radians, below this counts as zero.
-pub const DEGENERATE: Tolerance = Tolerance {
-    name: "DEGENERATE",
-    meaning: "A length or a sine below this share counts as zero.",
-    share: 1e-9,
-    single: 1e-6,
-};
+pub const DEGENERATE: Tolerance = Tolerance { name: "DEGENERATE", share: 1e-9, single: 1e-6 };
 
 /// A real number.
 pub trait Real:
@@ -302,7 +289,7 @@ pub trait Joint: Copy {
 }
 
 /// Whether something holds.
-pub trait Truth: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Truth: Copy + Not<Output = Self> {
     /// What always holds.
     const YES: Self;
     /// What never does.

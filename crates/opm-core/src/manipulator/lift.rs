@@ -84,9 +84,10 @@ impl Lean {
         displacements: &[JointDisplacement; 3],
     ) -> LocalTwist {
         let joints = leg.section(self.section).screws.iter().zip(displacements);
-        let before = joints.take(self.before).fold(Planar::IDENTITY, |g, (screw, step)| {
-            g.after(&PlanarDisplacement::along_screw(screw, *step))
-        });
+        let before =
+            joints.take(self.before).fold(PlanarDisplacement::IDENTITY, |g, (screw, step)| {
+                g.after(&PlanarDisplacement::along_screw(screw, *step))
+            });
         Planar::adjoint(&before, &self.screw)
     }
 }

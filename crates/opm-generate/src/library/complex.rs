@@ -75,13 +75,6 @@ functions! {
     fn turn(rotation: Complex, sense: Real) -> Complex {
         complex_of(rotation.re, rotation.im * sense)
     }
-
-    /// The coordinates of z = m u + n v; m is computed from the rounded n, so that the sum is z.
-    #[inline]
-    fn along(u: Complex, v: Complex, z: Complex, m: Out<Real>, n: Out<Real>) {
-        n.set(across(u, z) / across(u, v));
-        m.set(inner(z - v * n, u));
-    }
 }
 
 /// Operators that call the functions.

@@ -1,39 +1,51 @@
 //! What a leg demands that constrains the platform, and the coordinates that follow from it.
 
 use super::*;
+use crate::trace::closed_forms::displacement;
+use opm_core::chain::condition::Condition;
+use opm_core::group::Displacement;
+
+/// The value of a condition on a displacement of a plane.
+fn in_plane(condition: &Condition<Real>, g: Planar) -> Real {
+    condition.value(&Displacement::Planar(displacement(g)))
+}
 
 functions! {
     /// The difference of the squared distances.
     #[inline]
     fn value_circle(c: In<Circle>, g: Planar) -> Real {
-        name!(off = apply(g, c.point) - c.centre);
-        inner(off, off) - c.radius * c.radius
+        let Circle { point, centre, radius, .. } = c;
+        in_plane(&Condition::Circle { point, centre, radius }, g)
     }
 
     #[inline]
     fn value_line(c: In<Line>, g: Planar) -> Real {
-        inner(c.normal, apply(g, c.point)) - c.offset
+        let Line { point, normal, offset, .. } = c;
+        in_plane(&Condition::Line { point, normal, offset }, g)
     }
 
     #[inline]
     fn value_carried_line(c: In<CarriedLine>, g: Planar) -> Real {
-        inner(c.normal, apply(planar_inverse(g), c.point)) - c.offset
+        let CarriedLine { point, normal, offset, .. } = c;
+        in_plane(&Condition::CarriedLine { point, normal, offset }, g)
     }
 
     /// The sine of the angle between the rotations.
     #[inline]
     fn value_heading(c: In<Heading>, g: Planar) -> Real {
-        across(c.rotation, g.rotation)
+        in_plane(&Condition::Heading { rotation: c.rotation }, g)
     }
 
     #[inline]
     fn value_cone(c: In<Cone>, r: Rotation) -> Real {
-        dot(c.fixed, rotated(r, c.carried)) - c.cosine
+        let Cone { fixed, carried, cosine, .. } = c;
+        Condition::Cone { fixed, carried, cosine }.value::<Real>(&Displacement::Spherical(r))
     }
 
     #[inline]
     fn value_flat(c: In<Flat>, sum: Vector) -> Real {
-        dot(c.normal, sum) - c.value
+        let Flat { normal, value, .. } = c;
+        Condition::Flat { normal, value }.value::<Real>(&Displacement::Spatial(sum))
     }
 
     /// How far a condition is missed that has a value.

@@ -1,13 +1,20 @@
 //! Chains on an axis, and chains of sliders.
 
 use super::*;
+use crate::trace::closed_forms::{Displaced, write};
+use opm_core::chain::cylindrical::{CoaxialJoint, CylindricalChain};
+use opm_core::chain::partial::two_in_space;
+use opm_core::group::CylindricalDisplacement;
+use opm_core::numbers::Plane;
 
 functions! {
     /// Two joints on one axis: two linear equations.
     fn solve_cylindrical_two(c: In<CylindricalTwo>, g: Cylindrical, q1: Out<Real>, q2: Out<Real>) {
-        name!(determinant = c.j1.rotation * c.j2.advance - c.j2.rotation * c.j1.advance);
-        q1.set((g.angle * c.j2.advance - c.j2.rotation * g.advance) / determinant);
-        q2.set((c.j1.rotation * g.advance - g.angle * c.j1.advance) / determinant);
+        let joints = [c.j1, c.j2].map(|Coaxial { rotation, advance, .. }| CoaxialJoint { rotation, advance });
+        let Cylindrical { angle, advance, .. } = g;
+        let target = CylindricalDisplacement { angle, advance };
+        let found = CylindricalChain::of(joints).coordinates(&target);
+        write([q1.into(), q2.into()], found.map(Displaced::Value));
     }
 
     /// A joint on an axis, at a displacement that the constraint of the leg allows.
@@ -17,7 +24,7 @@ functions! {
 
     /// Two sliders in a plane.
     fn solve_translational_pp(c: In<TranslationalPp>, t: Complex, q1: Out<Real>, q2: Out<Real>) {
-        along(c.d1, c.d2, t, q1, q2);
+        write([q1.into(), q2.into()], Plane::along(t, c.d1, c.d2).map(Displaced::Value));
     }
 
     /// A slider in a plane, at a displacement that the constraint of the leg allows.
@@ -43,10 +50,7 @@ functions! {
 
     /// Two sliders in space, at a displacement that the constraint of the leg allows.
     fn solve_spatial_pp(c: In<SpatialPp>, t: Vector, q1: Out<Real>, q2: Out<Real>) {
-        name!(normal = cross(c.d1, c.d2));
-        name!(square = dot(normal, normal));
-        q1.set(dot(cross(t, c.d2), normal) / square);
-        q2.set(dot(cross(c.d1, t), normal) / square);
+        write([q1.into(), q2.into()], two_in_space::<Real, Real>([c.d1, c.d2], t));
     }
 
     /// A slider in space, at a displacement that the constraints of the leg allow.

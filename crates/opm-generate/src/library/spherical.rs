@@ -1,6 +1,8 @@
 //! Chains about a point.
 
 use super::*;
+use crate::trace::closed_forms::write;
+use opm_core::chain::partial::{one_about_point, two_about_point};
 
 functions! {
     /// By how much the third axis, at w, is too near to the first one or too far from it.
@@ -86,25 +88,15 @@ functions! {
         0.0
     }
 
-    /// The direction of the angle about an axis that takes one vector to another.
-    #[inline]
-    fn angle_about(axis: Vector, from: Vector, to: Vector) -> Complex {
-        name!(a = add(from, -dot(axis, from), axis), b = add(to, -dot(axis, to), axis));
-        normal(complex_of(dot(a, b), dot(axis, cross(a, b))))
-    }
-
-    /// Two revolutes about one point, at a rotation that the constraint of the leg allows. The first one moves the second
-    /// one's axis.
+    /// Two revolutes about one point, at a rotation that the constraint of the leg allows.
     fn solve_spherical_rr(c: In<SphericalRr>, r: Rotation, q1: Out<Complex>, q2: Out<Complex>) {
-        q1.set(angle_about(c.a1, c.a2, rotated(r, c.a2)));
-        q2.set(angle_about(c.a2, c.a1, rotated_about(c.a1, conjugate(q1), rotated(r, c.a1))));
+        write([q1.into(), q2.into()], two_about_point::<Real, Real>([c.a1, c.a2], r));
     }
 
     /// A revolute, at a rotation that the constraints of the leg allow: the trace is 1 + 2 cos q, the axial vector a sin
     /// q.
     fn solve_spherical_r(c: In<SphericalR>, r: Rotation, q1: Out<Complex>) {
-        name!(axial = vector_of(r.y.z - r.z.y, r.z.x - r.x.z, r.x.y - r.y.x));
-        q1.set(complex_of(r.x.x + r.y.y + r.z.z - 1.0, dot(c.a1, axial)));
+        write([q1.into()], [one_about_point::<Real, Real>(c.a1, r)]);
     }
 
     /// What a rotation vector is of its axis, which has the sine of half the angle as its length.

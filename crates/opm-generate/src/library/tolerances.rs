@@ -2,7 +2,7 @@
 
 use crate::trace::{Int, Real, digits};
 use crate::tree::Constant;
-use opm_core::{chain, manipulator, velocity};
+use opm_core::{chain, manipulator, numbers, velocity};
 
 /// Defines constants as numbers, and the function `constants` that lists them. What is documented here is in the generated code.
 macro_rules! constants {
@@ -26,10 +26,10 @@ macro_rules! constants {
 
 constants! {
     /// How far beyond its reach a chain still closes, as a share of its size: rounding must not decide there.
-    REACH = chain::REACH_TOLERANCE, 2e-6;
+    REACH = numbers::REACH.share, numbers::REACH.single;
 
     /// A length or a sine below this share counts as zero.
-    DEGENERATE = chain::DEGENERATE, 1e-6;
+    DEGENERATE = numbers::DEGENERATE.share, numbers::DEGENERATE.single;
 
     /// A coefficient below this share counts as zero.
     VERGE = chain::condition::VERGE, 1e-6;

@@ -391,6 +391,7 @@ impl<const N: usize> Mul for Affine<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numbers::Real;
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
@@ -436,6 +437,8 @@ mod tests {
             prop_assert!(holds(&(x * y), at, a * b));
             prop_assert!(holds(&Affine::products([[&x, &y], [&y, &-x], [&x, &x]]), at, a * a));
             prop_assert!(holds(&(x * 3.0 - y + 0.5), at, a * 3.0 - b + 0.5));
+            prop_assert!(holds(&Real::absolute(x), at, a.abs()));
+            prop_assert!(holds(&Real::larger(x, y), at, a.max(b)));
             prop_assert!(a < 0.0 || holds(&x.sqrt(), at, a.sqrt()));
             prop_assert!(holds(&x.recip(), at, 1.0 / a));
             prop_assert!(a < 0.0 || holds(&x.recip_sqrt(), at, 1.0 / a.sqrt()));

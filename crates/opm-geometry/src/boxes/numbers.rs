@@ -6,27 +6,11 @@ use super::target::{Enclosed, Rotation};
 use crate::numbers::{self, Over, PlaneOver, Real, RotationOver, SpaceOver, Tolerance, Truth};
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
-use std::ops::{BitAnd, BitOr, Neg, Not};
+use std::ops::{Neg, Not};
 
 /// Whether something holds: over a box it is not asked.
 #[derive(Clone, Copy, Debug)]
 pub struct Unasked;
-
-impl BitAnd for Unasked {
-    type Output = Self;
-
-    fn bitand(self, _: Self) -> Self {
-        self
-    }
-}
-
-impl BitOr for Unasked {
-    type Output = Self;
-
-    fn bitor(self, _: Self) -> Self {
-        self
-    }
-}
 
 impl Not for Unasked {
     type Output = Self;

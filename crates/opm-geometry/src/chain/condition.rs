@@ -248,7 +248,7 @@ impl<C: Real> Condition<C> {
     pub fn value<T: Over<C>>(&self, g: &Displacement<T>) -> T {
         match *self {
             Self::Circle { point, centre, radius } => {
-                (g.planar().apply(point) - centre).norm_sqr() - radius * radius
+                (g.planar().apply(point) - centre).named("off").norm_sqr() - radius * radius
             }
             Self::Line { point, normal, offset } => g.planar().apply(point).dot(normal) - offset,
             Self::CarriedLine { point, normal, offset } => {

@@ -50,8 +50,9 @@ impl TranslationalChain {
     /// The sliders' displacements that translate the outer link by `target`, metres.
     #[inline(always)]
     pub fn inverse(&self, target: Complex<f64>) -> [JointDisplacement; 2] {
-        let [first, second] = self.slides;
-        target.along(first, second).map(JointDisplacement::Value)
+        let Attempt { displacements: [first, second, _], .. } =
+            ClosedForm::<f64>::attempt(self, &target, 1.0);
+        [first, second]
     }
 
     /// The translation of the outer link.

@@ -54,7 +54,6 @@ impl Subgroup for Cylindrical {
     const KIND: SubspaceKind = SubspaceKind::Cylindrical;
     const DIMENSION: usize = 2;
     const COMMUTES: bool = true;
-    const IDENTITY: CylindricalDisplacement = CylindricalDisplacement { angle: 0.0, advance: 0.0 };
 
     fn product(
         first: &CylindricalDisplacement,

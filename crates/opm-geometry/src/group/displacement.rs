@@ -106,7 +106,7 @@ impl SubspaceKind {
     /// The identity displacement.
     #[inline]
     pub fn identity(self) -> Displacement {
-        of_kind!(self, G => G::IDENTITY.into())
+        Displacement::still(self)
     }
 
     /// The exponential: the displacement after moving with a constant twist for unit time. The table in
@@ -193,20 +193,13 @@ impl Displacement {
         of_displacement!(self, G, g => G::logarithm(g))
     }
 
-    /// The components of the logarithm, which add up in products, in a subspace whose displacements commute;
-    /// zeros beyond its dimension.
+    /// The components of the logarithm, which add up in products: [`Displacement::sums`].
     ///
     /// # Panics
     /// If displacements of this kind do not commute.
     #[inline]
     pub fn sum(&self) -> LocalTwist {
-        match self {
-            Self::Identity(_)
-            | Self::Cylindrical(_)
-            | Self::Translational(_)
-            | Self::Spatial(_) => self.logarithm(),
-            Self::Planar(_) | Self::Spherical(_) => mismatch(Cylindrical::KIND, self.kind()),
-        }
+        self.sums().into()
     }
 
     /// The adjoint action: the twist displaced by this displacement.
@@ -242,6 +235,7 @@ impl Displacement {
 
 impl<T: Real> Displacement<T> {
     /// The displacement that leaves everything where it is.
+    #[inline]
     pub fn still(kind: SubspaceKind) -> Self {
         let [none, one] = [0.0, 1.0].map(T::constant);
         let [zero, unit] = [none, one].map(|re| T::Plane::new(re, none));
@@ -262,10 +256,12 @@ impl<T: Real> Displacement<T> {
         }
     }
 
-    /// The components of the logarithm, where displacements commute: see [`Displacement::sum`].
+    /// The components of the logarithm, which add up in products, in a subspace whose displacements commute; zeros beyond its
+    /// dimension.
     ///
     /// # Panics
     /// If displacements of this kind do not commute.
+    #[inline]
     pub fn sums(&self) -> [T; 3] {
         let none = T::constant(0.0);
         match *self {

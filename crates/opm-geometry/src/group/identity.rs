@@ -22,7 +22,6 @@ impl Subgroup for Identity {
     const KIND: SubspaceKind = SubspaceKind::Identity;
     const DIMENSION: usize = 0;
     const COMMUTES: bool = true;
-    const IDENTITY: IdentityDisplacement = IdentityDisplacement;
 
     fn product(_: &IdentityDisplacement, _: &IdentityDisplacement) -> IdentityDisplacement {
         IdentityDisplacement

@@ -176,7 +176,6 @@ impl Subgroup for Planar {
     const KIND: SubspaceKind = SubspaceKind::Planar;
     const DIMENSION: usize = 3;
     const COMMUTES: bool = false;
-    const IDENTITY: PlanarDisplacement = PlanarDisplacement::IDENTITY;
 
     #[inline]
     fn product(first: &PlanarDisplacement, second: &PlanarDisplacement) -> PlanarDisplacement {

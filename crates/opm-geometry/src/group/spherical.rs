@@ -85,7 +85,6 @@ impl Subgroup for Spherical {
     const KIND: SubspaceKind = SubspaceKind::Spherical;
     const DIMENSION: usize = 3;
     const COMMUTES: bool = false;
-    const IDENTITY: Matrix3<f64> = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
 
     #[inline]
     fn product(first: &Matrix3<f64>, second: &Matrix3<f64>) -> Matrix3<f64> {

@@ -21,8 +21,6 @@ pub trait Subgroup {
     const DIMENSION: usize;
     /// Whether its displacements commute. The logarithm of a product is then the sum of the logarithms.
     const COMMUTES: bool;
-    /// The identity displacement.
-    const IDENTITY: Self::Displacement;
 
     /// The product `first · second`: `second` is applied to points first.
     fn product(first: &Self::Displacement, second: &Self::Displacement) -> Self::Displacement;

@@ -34,7 +34,6 @@ impl Subgroup for TranslationalPlane {
     const KIND: SubspaceKind = SubspaceKind::TranslationalPlane;
     const DIMENSION: usize = 2;
     const COMMUTES: bool = true;
-    const IDENTITY: Complex<f64> = Complex::new(0.0, 0.0);
 
     fn product(first: &Complex<f64>, second: &Complex<f64>) -> Complex<f64> {
         first + second

@@ -35,7 +35,6 @@ impl Subgroup for TranslationalSpace {
     const KIND: SubspaceKind = SubspaceKind::TranslationalSpace;
     const DIMENSION: usize = 3;
     const COMMUTES: bool = true;
-    const IDENTITY: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
 
     fn product(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
         first + second

@@ -22,16 +22,9 @@ use crate::task::{Task, other_triple};
 use nalgebra::{Complex, Matrix3};
 use std::f64::consts::PI;
 
-/// An axis whose angle with the third direction has a sine below this is along that direction.
-pub(crate) const ALONG: f64 = 1e-9;
-
-/// The same for a line and a coordinate that tells the place on it.
-const ALONG_LINE: Tolerance = Tolerance {
-    name: "ALONG",
-    meaning: "A coordinate that changes by less than this along a line does not tell the place on it.",
-    share: ALONG,
-    single: 1e-6,
-};
+/// An axis whose angle with the third direction has a sine below this is along that direction; a coordinate that changes by less
+/// than this along a line does not tell the place on it.
+const ALONG: Tolerance = Tolerance { name: "ALONG", share: 1e-9, single: 1e-6 };
 
 /// Stands for a cosine of zero, whose products with the components of an axis have directions.
 const LEAST: f64 = 1e-150;
@@ -88,13 +81,13 @@ impl OneJoint {
             (SubspaceKind::TranslationalSpace, Some(s)) => {
                 let longest = s.rows(0, all.len()).iamax();
                 // Along the intersection motion, no coordinate of the section changes.
-                if s[longest].abs() < ALONG {
+                if s[longest].abs() < ALONG.share {
                     (SectionMotion::None, None)
                 } else {
                     (SectionMotion::Slide(s, longest), Some(longest))
                 }
             }
-            (SubspaceKind::Spherical, Some(s)) if s.x.hypot(s.y) < ALONG => {
+            (SubspaceKind::Spherical, Some(s)) if s.x.hypot(s.y) < ALONG.share => {
                 (SectionMotion::Third, Some(0))
             }
             (SubspaceKind::Spherical, Some(s)) => (SectionMotion::Axis(s), Some(1)),
@@ -361,7 +354,7 @@ impl<T: Over<f64>> Line<T> {
         let rate = self.rates[self.given];
         let q = (at[self.given] - self.home - self.from_home).over(rate);
         let ([a, b, c], [x, y, z]) = (self.start, self.rates);
-        (Closes::Exceeds(rate, ALONG_LINE), [a + q * x, b + q * y, c + q * z])
+        (Closes::Exceeds(rate, ALONG), [a + q * x, b + q * y, c + q * z])
     }
 }
 
