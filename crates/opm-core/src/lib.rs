@@ -51,6 +51,7 @@
 //! | [`skeleton`] | a mechanism as lines and solids, for drawing |
 //! | [`chain`] | closed forms of serial chains in one subspace |
 //! | [`group`] | subgroups of SE(3), their displacements, screws |
+//! | [`numbers`] | what closed forms are written over: numbers of one pose, of boxes, of source code
 //! | [`numeric`] | angles, rotations, quantities, small numerical methods |
 //!
 //! # Features
