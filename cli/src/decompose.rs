@@ -14,13 +14,14 @@ use nalgebra::{Point3, Vector3};
 use opm_core::Quantity;
 use opm_core::decomposition::mobility::Mobility;
 use opm_core::decomposition::{
-    Applies, Decomposition, Freedom, JointMiss, MAX_DECOMPOSITIONS, check_actuators, slightly_off,
-    survey,
+    Applies, Decomposition, Freedom, JointMiss, LegSplit, MAX_DECOMPOSITIONS, PlatformSet,
+    check_actuators, slightly_off, survey,
 };
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::file::FileUnits;
+use opm_core::mechanism::joint::JointKind;
 use opm_core::mechanism::leg::Leg;
 use opm_core::task::{CoordinateKind, Subspace, Task, TaskCoordinate};
 use serde::Serialize;
@@ -163,6 +164,11 @@ struct Parts<'a> {
     lower: Vec<&'a str>,
     upper: Vec<&'a str>,
     imaginary: Option<String>,
+    /// How the leg is solved: `sections`, or `whole`.
+    solved: &'static str,
+    /// The steps by which a whole leg is solved.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    kernels: Vec<Value>,
 }
 
 struct Report<'a> {
@@ -182,6 +188,8 @@ impl<'a> Way<'a> {
                 lower: joints(leg, &split.lower),
                 upper: joints(leg, &split.upper),
                 imaginary: split.imaginary.then(|| leg.imaginary_name()),
+                solved: if split.whole.is_some() { "whole" } else { "sections" },
+                kernels: kernels(leg, split),
             })
             .collect();
         let compiled = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
@@ -241,6 +249,7 @@ impl<'a> Way<'a> {
             json!({ "lower": frame_json(&task.lower), "upper": upper })
         });
         json!({
+            "platform": self.platform(),
             "imaginary_joints": d.imaginary_joints,
             "first_section_motions": d.first_section_motions,
             "lower": { "subspace": d.lower.name() },
@@ -253,9 +262,45 @@ impl<'a> Way<'a> {
         })
     }
 
+    /// The set in which the platform moves.
+    fn platform(&self) -> Value {
+        let d = self.decomposition;
+        let kind = d.platform();
+        let subspace = match kind {
+            PlatformSet::Pair => None,
+            PlatformSet::Subgroup => Some(d.lower.name()),
+            PlatformSet::Free => Some(SubspaceClass::Full.name()),
+        };
+        json!({ "kind": kind.name(), "subspace": subspace, "motion": self.motion() })
+    }
+
+    /// What the platform does, in words.
+    fn motion(&self) -> String {
+        let d = self.decomposition;
+        match d.platform() {
+            PlatformSet::Pair => format!("{}, then {}", words(&d.lower), words(&d.upper)),
+            PlatformSet::Subgroup => words(&d.lower).to_owned(),
+            PlatformSet::Free => words(&SubspaceClass::Full).to_owned(),
+        }
+    }
+
+    /// How legs are solved that are not split.
+    fn whole(&self) -> String {
+        let mut legs = Table::new(["leg", "joints", "solved in this order"]);
+        for leg in &self.legs {
+            let steps: Vec<&str> =
+                leg.kernels.iter().filter_map(|step| step["joint"].as_str()).collect();
+            legs.row([leg.name, &leg.lower.join(" "), &steps.join(" ")]);
+        }
+        format!("platform        {}\n\n{legs}", self.motion())
+    }
+
     /// The subspaces, and the legs' parts in them.
     fn sections(&self, units: FileUnits) -> String {
         let d = self.decomposition;
+        if d.is_whole() {
+            return self.whole();
+        }
         if self.is_one_subspace() {
             let mut legs = Table::new(["leg", "joints"]);
             for leg in &self.legs {
@@ -314,10 +359,10 @@ impl Report<'_> {
                 let others = self.ways[1..].iter().map(Way::json).collect();
                 json.insert("alternatives".to_owned(), Value::Array(others));
             }
-            let applies = if first.decomposition.upper == SubspaceClass::Identity {
-                "one subspace"
-            } else {
-                "two subspaces"
+            let applies = match first.decomposition.platform() {
+                _ if first.decomposition.is_whole() => "every leg",
+                PlatformSet::Subgroup => "one subspace",
+                PlatformSet::Pair | PlatformSet::Free => "two subspaces",
             };
             json.insert("applies".to_owned(), applies.into());
             joints::insert(json, &self.loaded.file.mechanism);
@@ -346,7 +391,17 @@ impl Report<'_> {
             d.lambda,
         ));
         line(&way.sections(units));
-        if way.is_one_subspace() {
+        if d.is_whole() {
+            let could = match d.platform() {
+                PlatformSet::Free => "each leg lets the platform do everything",
+                PlatformSet::Pair | PlatformSet::Subgroup => {
+                    "each leg lets the platform do that, or more"
+                }
+            };
+            line(&format_args!(
+                "Every leg is solved by itself, one joint after the other: {could}. There is no imaginary joint."
+            ));
+        } else if way.is_one_subspace() {
             line(
                 &"All legs move in one subspace: there is nothing to split, and no imaginary joint.",
             );
@@ -501,6 +556,52 @@ fn joints<'a>(leg: &'a Leg, part: &[Freedom]) -> Vec<&'a str> {
         }
     }
     names
+}
+
+/// The steps by which a whole leg is solved.
+fn kernels(leg: &Leg, split: &LegSplit) -> Vec<Value> {
+    let Some(whole) = &split.whole else { return Vec::new() };
+    // Universal and cylindrical joints are two of the joints of a whole leg.
+    let names: Vec<&str> = (leg.joints.iter())
+        .flat_map(|joint| match joint.kind {
+            JointKind::Spherical => vec![&*joint.name],
+            JointKind::Revolute
+            | JointKind::Prismatic
+            | JointKind::Helical { .. }
+            | JointKind::Cylindrical
+            | JointKind::Universal { .. } => {
+                joint.coordinates.iter().map(|c| &*c.name).collect::<Vec<_>>()
+            }
+        })
+        .collect();
+    whole
+        .steps()
+        .map(|step| {
+            json!({ "joint": names.get(step.joint), "root": step.root, "invariant": step.invariant })
+        })
+        .collect()
+}
+
+/// The motions of a subgroup in words.
+fn words(class: &SubspaceClass) -> &'static str {
+    match class {
+        SubspaceClass::Identity => "nothing",
+        SubspaceClass::Rotation { .. } => "rotations about an axis",
+        SubspaceClass::Translation { .. } => "translations along a line",
+        SubspaceClass::Helical { .. } => "turns of a screw",
+        SubspaceClass::TranslationalPlane { .. } => "translations in a plane",
+        SubspaceClass::Cylindrical { .. } => "rotations about an axis and translations along it",
+        SubspaceClass::TranslationalSpace => "translations of space",
+        SubspaceClass::Planar { .. } => "motions in a plane",
+        SubspaceClass::Spherical { .. } => "rotations about a centre",
+        SubspaceClass::PlanarHelical { .. } => {
+            "translations in a plane and turns of screws across it"
+        }
+        SubspaceClass::Schoenflies { .. } => {
+            "translations of space and rotations about one direction"
+        }
+        SubspaceClass::Full => "translations and rotations of space",
+    }
 }
 
 /// The components of a vector. Adding zero turns -0 into 0.

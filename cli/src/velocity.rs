@@ -13,7 +13,7 @@ use crate::unitless;
 use nalgebra::{DVector, Matrix6xX};
 use opm_core::Quantity;
 use opm_core::group::SubspaceKind;
-use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
+use opm_core::manipulator::{Manipulator, Mode, Section, Solution, part_of};
 use opm_core::mechanism::file::FileUnits;
 use opm_core::velocity::{
     Cause, Conditioning, Jacobians, JointMotion, Measures, Singularities, VelocityError,
@@ -332,7 +332,7 @@ impl<'a> Answer<'a> {
         let _ = writeln!(text, "{table}\ncondition number {condition} (lengths over {length})");
         for singular in &self.motion.singular {
             let leg = &self.query.manipulator.mechanism().legs[singular.leg].name;
-            let _ = writeln!(text, "{leg}: {} section without rates", singular.section);
+            let _ = writeln!(text, "{leg}: {} without rates", part_of(singular.section));
         }
         if self.measured.coordinates.abs() < opm_core::velocity::SINGULAR {
             let regular =

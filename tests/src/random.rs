@@ -234,7 +234,7 @@ pub fn mechanism(
         }
         joints[0].actuated = true;
         let [lower, upper] = split;
-        splits.push(LegSplit { lower, upper, imaginary: cut_above && shared == 1 });
+        splits.push(LegSplit { lower, upper, imaginary: cut_above && shared == 1, whole: None });
         legs.push(Leg::new(format!("leg{number}"), joints));
     }
     let axis = displacement * Vector3::z_axis();

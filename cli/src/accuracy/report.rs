@@ -115,7 +115,7 @@ impl Report<'_> {
             let _ = writeln!(text, "\n\n{table}\nout of reach in this mode");
             for out in self.at.unreachable() {
                 let leg = &manipulator.mechanism().legs[out.leg].name;
-                let _ = writeln!(text, "  {leg}: {} section out of reach", out.section);
+                let _ = writeln!(text, "  {leg}: {} out of reach", out.part());
             }
             return text;
         };

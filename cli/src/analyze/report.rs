@@ -7,7 +7,7 @@ use crate::transform;
 use nalgebra::Vector3;
 use opm_analysis::{Balance, Capacity, Efforts, Reactions, Stiffness, Transmission, Wrench};
 use opm_core::Quantity;
-use opm_core::manipulator::{Mode, Solution};
+use opm_core::manipulator::{Mode, Solution, part_of};
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::leg::Section;
 use serde_json::{Map, Value, json};
@@ -266,7 +266,7 @@ impl Report<'_> {
             let _ = writeln!(text, "out of reach in this mode");
             for out in self.at.unreachable() {
                 let leg = &manipulator.mechanism().legs[out.leg].name;
-                let _ = writeln!(text, "  {leg}: {} section out of reach", out.section);
+                let _ = writeln!(text, "  {leg}: {} out of reach", out.part());
             }
             return text;
         }
@@ -299,7 +299,7 @@ impl Report<'_> {
             let _ = writeln!(text, "serial singularity: efforts are not known here");
             for singular in statics.singular() {
                 let leg = &manipulator.mechanism().legs[singular.leg].name;
-                let _ = writeln!(text, "  {leg}: {} section without rates", singular.section);
+                let _ = writeln!(text, "  {leg}: {} without rates", part_of(singular.section));
             }
             text.push('\n');
             return;

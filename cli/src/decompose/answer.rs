@@ -107,7 +107,12 @@ impl Answer<'_> {
         match (&self.survey.applies, &self.survey.near) {
             (Applies::Outside(reason), _) => match &self.survey.order {
                 Some(order) => format!("{reason}; {order}"),
-                None => reason.to_string(),
+                None => match &self.survey.whole {
+                    Some(whole) => {
+                        format!("{reason}; nor can its legs be solved by themselves: {whole}")
+                    }
+                    None => reason.to_string(),
+                },
             },
             (Applies::Nearly, Some(near)) => near.to_string(),
             (Applies::Nearly, None) | (Applies::Decomposed(_), _) => String::new(),

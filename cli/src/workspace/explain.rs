@@ -1,6 +1,7 @@
 //! What rejects the poses of a workspace, for printing.
 
 use crate::text::{self, Table, count, short};
+use opm_core::manipulator::part_of;
 use opm_core::mechanism::file::FileUnits;
 use opm_study::Workspace;
 use opm_workspace::{Cause, Rejection, Rejections};
@@ -31,7 +32,7 @@ impl Report<'_> {
         let causes: Vec<Value> = (self.found.rejections.iter())
             .map(|rejection| {
                 let (section, joint, limit) = match rejection.cause {
-                    Cause::Reach(section) => (Some(section.to_string()), None, None),
+                    Cause::Reach(section) => (section.map(|section| section.to_string()), None, None),
                     Cause::Lowest(joint) => (None, Some(&*coordinates[joint].name), Some("lowest")),
                     Cause::Highest(joint) => {
                         (None, Some(&*coordinates[joint].name), Some("highest"))
@@ -63,7 +64,7 @@ impl Report<'_> {
         let mut table = Table::new(["leg", "rejects", ">alone", ">", ">with others", ">"]);
         for rejection in rejections {
             let what = match rejection.cause {
-                Cause::Reach(section) => format!("{section} section out of reach"),
+                Cause::Reach(section) => format!("{} out of reach", part_of(section)),
                 Cause::Lowest(joint) | Cause::Highest(joint) => {
                     let coordinate = &coordinates[joint];
                     let past = match rejection.cause {

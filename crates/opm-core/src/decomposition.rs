@@ -26,6 +26,7 @@ mod order;
 mod reorder;
 mod search;
 mod survey;
+mod whole;
 
 #[cfg(test)]
 pub(crate) mod samples;
@@ -34,7 +35,9 @@ pub use height::{HeightMiss, HeightReason};
 pub use near::{JointMiss, NearMiss, Snapped, nearly, slightly_off, snap};
 pub use reorder::{OrderChange, Reordered};
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
+pub use whole::{PlatformSet, WholeMiss};
 
+use crate::chain::whole::WholeLeg;
 use crate::decomposition::mobility::{HomeSingularity, Mobility, MobilityError, frame, mobility};
 use crate::group::SubspaceKind;
 use crate::group::subspace::{Fit, Frame, MotionSubspace, SubspaceClass, fit};
@@ -70,7 +73,7 @@ impl Freedom {
 }
 
 /// How a leg is split into a lower and an upper part.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LegSplit {
     /// The freedoms that move in the lower subspace, from base to platform.
     pub lower: Vec<Freedom>,
@@ -78,6 +81,8 @@ pub struct LegSplit {
     pub upper: Vec<Freedom>,
     /// Whether an imaginary joint bridges the split.
     pub imaginary: bool,
+    /// How the leg is solved whole; `None` where it is solved by its sections. A whole leg has all freedoms in `lower`.
+    pub whole: Option<WholeLeg>,
 }
 
 /// A split of a mechanism into a lower and an upper section.
@@ -129,6 +134,22 @@ pub struct Decomposition {
     /// The largest distance of a joint screw from the group that it was assigned to: the sine of an
     /// angle, with lengths divided by the mechanism's size. For exact input it is only rounding.
     pub deviation: f64,
+}
+
+impl Decomposition {
+    /// The set in which the platform moves.
+    pub fn platform(&self) -> PlatformSet {
+        match (self.is_whole(), self.upper) {
+            (_, SubspaceClass::Identity) => PlatformSet::Subgroup,
+            (true, _) => PlatformSet::Free,
+            (false, _) => PlatformSet::Pair,
+        }
+    }
+
+    /// Whether every leg is solved by itself, whole, and not by sections that all legs share.
+    pub fn is_whole(&self) -> bool {
+        self.legs.iter().any(|leg| leg.whole.is_some())
+    }
 }
 
 /// Why a mechanism cannot be decomposed.
@@ -212,7 +233,9 @@ pub enum DecomposeError {
                 odd.leg,
                 odd.reason()
             ),
-            (None, ..) => String::new(),
+            (None, ..) => whole.as_deref().map_or_else(String::new, |whole| {
+                format!("; nor can its legs be solved by themselves: {whole}")
+            }),
         }
     )]
     NoPartialSubspaces {
@@ -228,6 +251,8 @@ pub enum DecomposeError {
         odd: Option<Box<JointMiss>>,
         /// What closed forms of the group miss, if it is a Schoenflies group.
         height: Option<Box<HeightMiss>>,
+        /// Why the legs are not solved whole either, if that was tried.
+        whole: Option<Box<WholeMiss>>,
         /// The group in which all legs move together; `None` if the span of all joint screws is not
         /// a subgroup.
         subspace: Option<Box<SubspaceClass>>,
@@ -285,7 +310,7 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
     let report = mobility(mechanism)?;
     found_or_near(mechanism, &report, regular_home(&report))?;
     check_actuators(&report)?;
-    found_or_near(mechanism, &report, ranked(mechanism, &report))
+    found_or_near(mechanism, &report, split_or_whole(mechanism, &report))
 }
 
 /// All valid decompositions of a mechanism, as [`decompose`], whatever its actuators: none yet, or too few.
@@ -295,13 +320,40 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
 /// has no partial subspaces.
 pub fn search_all(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeError> {
     let report = mobility(mechanism)?;
-    found_or_near(mechanism, &report, passive(mechanism, &report))
+    found_or_near(mechanism, &report, any(mechanism, &report))
 }
 
 /// As [`search_all`]. Errors do not say yet whether the mechanism nearly decomposes.
+fn any(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
+    regular_home(report)?;
+    split_or_whole(mechanism, report)
+}
+
+/// The same for splits of the legs alone.
 fn passive(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     regular_home(report)?;
     ranked(mechanism, report)
+}
+
+/// The decompositions of a mechanism that moves: splits of its legs, the preferred one first, or else the one in which
+/// every leg is solved whole.
+fn split_or_whole(
+    mechanism: &Mechanism,
+    report: &Mobility,
+) -> Result<Vec<Decomposition>, DecomposeError> {
+    let mut error = match ranked(mechanism, report) {
+        Ok(found) => return Ok(found),
+        Err(error) => error,
+    };
+    match whole::whole(mechanism, report) {
+        Ok(found) => Ok(vec![found]),
+        Err(miss) => {
+            if let DecomposeError::NoPartialSubspaces { whole, .. } = &mut error {
+                *whole = Some(Box::new(miss));
+            }
+            Err(error)
+        }
+    }
 }
 
 /// Checks that the mechanism moves and that the screws at home are those of other poses, too. A parallel singularity
@@ -350,6 +402,7 @@ fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>
             near: None,
             odd: None,
             height: height.map(Box::new),
+            whole: None,
             subspace,
             units: mechanism.units,
         });
@@ -429,8 +482,12 @@ fn one_subspace(mechanism: &Mechanism, report: &Mobility) -> Option<Decompositio
     if height_miss(mechanism, &class).is_some() {
         return None;
     }
-    let whole =
-        |leg: &Leg| LegSplit { lower: Freedom::of_leg(leg), upper: vec![], imaginary: false };
+    let whole = |leg: &Leg| LegSplit {
+        lower: Freedom::of_leg(leg),
+        upper: vec![],
+        imaginary: false,
+        whole: None,
+    };
     Some(Decomposition {
         lambda: report.lambda,
         mobility: report.mobility,
@@ -546,6 +603,7 @@ impl<'a> Sections<'a> {
             lower: candidate.lower.clone(),
             upper: candidate.upper.clone(),
             imaginary: choice.legs.contains(&i),
+            whole: None,
         };
         // The upper section's own motions are not those of imaginary joints, where there can be none.
         let upper_motions = choice.mobility.min(mobility);

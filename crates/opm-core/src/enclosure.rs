@@ -275,7 +275,8 @@ impl Manipulator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn has_enclosures(&self) -> bool {
-        self.dependent.as_ref().is_none_or(|dependent| dependent.checked().next().is_none())
+        let constraints = self.dependent.as_ref();
+        !self.is_whole() && constraints.is_none_or(|dependent| dependent.checked().next().is_none())
     }
 
     /// The task coordinate that a side of a box is; `None` for the displacement of an imaginary joint.

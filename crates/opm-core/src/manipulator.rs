@@ -34,6 +34,7 @@ mod read;
 mod refused;
 mod section;
 mod solution;
+mod whole;
 
 pub use all_modes::AllModes;
 pub use batch::{Batch, BatchError, BatchOutput};
@@ -49,7 +50,7 @@ pub use pose::{FollowingCoordinate, LARGEST, PoseError};
 pub use read::ReadError;
 pub use refused::RefusedLeg;
 pub(crate) use section::{ChainCoordinate, CompiledSection, chain_joints, coordinate_number};
-pub use solution::{ActuatedJoints, Solution, Unreachable};
+pub use solution::{ActuatedJoints, Solution, Unreachable, part_of};
 
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
@@ -288,6 +289,11 @@ impl Manipulator {
         self.legs.iter().any(|leg| leg.section(section).chain.counts_turns())
     }
 
+    /// Whether every leg is solved by itself, whole, and not by sections that all legs share.
+    pub fn is_whole(&self) -> bool {
+        self.decomposition.is_whole()
+    }
+
     /// The number of legs.
     pub fn legs(&self) -> usize {
         self.legs.len()
@@ -392,7 +398,10 @@ impl Manipulator {
         let moved = |number: usize, mode: Mode| -> f64 {
             let branches = self.modes.branches(mode, number);
             match self.legs[number].solve_seldom(&self.task, [&v, &b], 0.0, branches, 0.0) {
-                Ok(s) => s.lower.iter().chain(&s.upper).map(|a| a.value().abs()).sum(),
+                Ok(s) => {
+                    let joints = s.lower.iter().chain(&s.upper).chain([&s.tau]);
+                    joints.map(|a| a.value().abs()).sum()
+                }
                 Err(_) => f64::INFINITY,
             }
         };

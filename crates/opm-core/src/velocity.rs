@@ -62,6 +62,7 @@ mod section;
 mod serial;
 mod singularity;
 mod weighted;
+mod whole;
 
 pub use condition::Conditioning;
 pub use jacobian::Jacobians;
@@ -118,8 +119,8 @@ pub enum VelocityError {
 pub struct SingularLeg {
     /// The number of the leg, counted from zero.
     pub leg: usize,
-    /// The section of the leg that is singular.
-    pub section: Section,
+    /// The section of the leg that is singular; `None` for a leg that is solved whole.
+    pub section: Option<Section>,
     /// Why its joints have no rates.
     pub cause: SingularCause,
 }
@@ -284,6 +285,9 @@ impl Manipulator {
             }
         };
         let twists = self.section_twists(&at.solved.pose, rates, accelerations);
+        if self.is_whole() {
+            return self.whole_velocity(at, &twists, out);
+        }
         let raised = self.task().height.is_some();
         out.singular.clear();
         for number in 0..self.legs.len() {
@@ -354,7 +358,7 @@ impl Manipulator {
     ) -> bool {
         for (position, section) in self.legs[leg].order().into_iter().enumerate() {
             let Some(cause) = differential.section(section).singular() else { continue };
-            singular.push(SingularLeg { leg, section, cause });
+            singular.push(SingularLeg { leg, section: Some(section), cause });
             if position == 0 && cause == SingularCause::Serial {
                 return false;
             }
@@ -367,23 +371,28 @@ impl Manipulator {
     /// depends on the imaginary joint. For a spherical joint after a full revolution these are its own coordinates.
     pub fn rateless(&self, singular: &SingularLeg) -> impl Iterator<Item = usize> + '_ {
         let leg = &self.legs[singular.leg];
-        let whole_leg =
-            singular.cause == SingularCause::Serial && leg.split_section == singular.section;
+        // All joints of a leg that is solved whole move together.
+        let between = leg.whole.as_ref().and_then(|whole| whole.between);
+        let whole_leg = leg.whole.is_some()
+            || singular.cause == SingularCause::Serial
+                && singular.section == Some(leg.split_section);
         let sections = [(&leg.lower, Section::Lower), (&leg.upper, Section::Upper)];
         let section = singular.section;
-        let chains = sections.into_iter().filter(move |(_, other)| whole_leg || *other == section);
+        let chains = sections.into_iter().filter(move |(_, other)| whole_leg || Some(*other) == section);
         // A lift that follows the imaginary joint has no rate where that has none.
         let lift = leg.lift.filter(|lift| whole_leg && lift.slope != 0.0);
         chains
             .flat_map(|(section, _)| section.coordinates.iter().flatten())
             .map(|coordinate| coordinate.number)
             .chain(lift.map(|lift| lift.coordinate.number))
+            .chain(between.map(|joint| joint.number))
     }
 
     /// The number of the imaginary joint of a singular leg, if that has no rate either.
     pub fn rateless_imaginary(&self, singular: &SingularLeg) -> Option<usize> {
         let leg = &self.legs[singular.leg];
-        let lost = singular.cause == SingularCause::Serial && leg.split_section == singular.section;
+        let lost = singular.cause == SingularCause::Serial
+            && singular.section == Some(leg.split_section);
         leg.imaginary.filter(|_| lost)
     }
 

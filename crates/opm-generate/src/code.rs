@@ -61,6 +61,9 @@ pub struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     pub fn new(manipulator: &'a Manipulator) -> Result<Self, GenerateError> {
+        if manipulator.is_whole() {
+            return Err(GenerateError::Whole);
+        }
         let choices = manipulator.choices();
         if choices > MOST_CHOICES {
             return Err(GenerateError::Choices { choices, most: MOST_CHOICES });

@@ -70,6 +70,12 @@ pub enum GenerateError {
         /// The most that there may be.
         most: u32,
     },
+    /// Legs are solved whole, and not by sections.
+    #[error(
+        "code is written for legs that are split into two sections; this mechanism's legs are each solved by itself: \
+         compute joints with opm itself (`opm ik`, the crate or the Python module)"
+    )]
+    Whole,
     /// The closed forms have what the other languages do not know: this is a defect of opm.
     #[error("the closed forms cannot be written in this language, which is a defect of opm: {0}")]
     Unread(String),

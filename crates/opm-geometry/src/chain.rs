@@ -51,6 +51,7 @@ pub mod surface;
 #[doc(hidden)]
 pub mod track;
 pub mod translational;
+pub mod whole;
 
 pub use closed_form::{Attempt, ClosedForm, Closes, Exception};
 pub use joint::ChainJoint;
@@ -165,6 +166,19 @@ pub enum Chain {
     Translational(TranslationalChain),
     /// Three sliders in space.
     Spatial(SpatialChain),
+    /// Some joints of a leg that is solved [whole](whole::WholeLeg). They are no chain by themselves.
+    Part(Part),
+}
+
+/// Up to three freedoms of a leg that is solved [whole](whole::WholeLeg).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// How many they are.
+    pub freedoms: usize,
+    /// Whether they are those of a spherical joint.
+    pub ball: bool,
+    /// Whether one of the leg's two-valued choices is counted as theirs.
+    pub choice: bool,
 }
 
 impl Chain {
@@ -220,6 +234,7 @@ impl Chain {
             Self::Planar(chain) => chain.shape(branch, limits),
             Self::Translational(chain) => Some(chain.shape(limits)),
             Self::Rigid
+            | Self::Part(_)
             | Self::Spherical(_)
             | Self::Ball(_)
             | Self::Cylindrical(_)
@@ -232,6 +247,7 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.has_choice(),
             Self::Spherical(_) => true,
+            Self::Part(part) => part.choice,
             Self::Rigid
             | Self::Ball(_)
             | Self::Cylindrical(_)
@@ -245,6 +261,7 @@ impl Chain {
         match self {
             Self::Cylindrical(chain) => chain.counts_turns(),
             Self::Rigid
+            | Self::Part(_)
             | Self::Planar(_)
             | Self::Spherical(_)
             | Self::Ball(_)
@@ -257,6 +274,7 @@ impl Chain {
     pub fn freedoms(&self) -> usize {
         match self {
             Self::Rigid => 0,
+            Self::Part(part) => part.freedoms,
             Self::Planar(_) | Self::Spherical(_) | Self::Ball(_) | Self::Spatial(_) => 3,
             Self::Cylindrical(_) | Self::Translational(_) => 2,
         }
@@ -293,6 +311,8 @@ impl Chain {
         let pad = |[a, b]: [JointDisplacement; 2]| [a, b, JointDisplacement::Value(0.0)];
         match self {
             Self::Rigid => *out = [JointDisplacement::Value(0.0); 3],
+            // Its leg is what is solved.
+            Self::Part(_) => return Err(ReachDeficit::length(f64::INFINITY)),
             Self::Planar(chain) => return chain.solve(target.planar(), branch, out),
             Self::Spherical(chain) => {
                 return closed_form::solve(chain, target.spherical(), branch, out);
@@ -318,6 +338,7 @@ impl Chain {
         match self {
             Self::Spherical(chain) => chain.branch_with(target.spherical(), first, within),
             Self::Rigid
+            | Self::Part(_)
             | Self::Planar(_)
             | Self::Ball(_)
             | Self::Cylindrical(_)
@@ -341,6 +362,7 @@ impl Chain {
                 .first(&chain.third_axis(target.spherical()), branch)
                 .map(JointDisplacement::Direction),
             Self::Rigid
+            | Self::Part(_)
             | Self::Planar(_)
             | Self::Ball(_)
             | Self::Cylindrical(_)
@@ -360,7 +382,7 @@ impl Chain {
         match self {
             Self::Planar(chain) => Some(chain.held(joint, displacement)),
             Self::Spherical(chain) => Some(chain.held(joint, displacement)),
-            Self::Rigid | Self::Ball(_) => None,
+            Self::Rigid | Self::Part(_) | Self::Ball(_) => None,
             Self::Cylindrical(chain) => Some(chain.held(joint, displacement)),
             Self::Translational(chain) => Some(chain.held(joint, displacement)),
             Self::Spatial(chain) => Some(chain.held(joint, displacement)),
@@ -374,6 +396,7 @@ impl Chain {
             Self::Planar(chain) => chain.folds(),
             Self::Spherical(chain) => chain.folds().to_vec(),
             Self::Rigid
+            | Self::Part(_)
             | Self::Ball(_)
             | Self::Cylindrical(_)
             | Self::Translational(_)
@@ -393,6 +416,7 @@ impl Chain {
             Self::Planar(_)
             | Self::Spherical(_)
             | Self::Rigid
+            | Self::Part(_)
             | Self::Ball(_)
             | Self::Cylindrical(_)
             | Self::Translational(_)
@@ -410,7 +434,11 @@ impl Chain {
         match self {
             Self::Planar(chain) => chain.is_rotation(joint),
             Self::Spherical(_) => true,
-            Self::Rigid | Self::Ball(_) | Self::Translational(_) | Self::Spatial(_) => false,
+            Self::Rigid
+            | Self::Part(_)
+            | Self::Ball(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => false,
             Self::Cylindrical(chain) => chain.is_rotation(joint),
         }
     }
@@ -421,6 +449,7 @@ impl Chain {
             Self::Planar(chain) => chain.size(),
             Self::Cylindrical(chain) => chain.joints().iter().map(|j| j.advance.abs()).sum(),
             Self::Rigid
+            | Self::Part(_)
             | Self::Spherical(_)
             | Self::Ball(_)
             | Self::Translational(_)

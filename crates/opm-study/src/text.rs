@@ -22,11 +22,11 @@ pub fn count(number: u64) -> String {
 
 /// The section of the leg that does not close, and by how much.
 pub fn reason(unreachable: &Unreachable, units: FileUnits) -> String {
-    let (section, gap) = (unreachable.section, unreachable.deficit);
+    let (part, gap) = (unreachable.part(), unreachable.deficit);
     if gap.excess.is_finite() {
-        format!("{section} section out of reach by {}", units.show(gap.excess, gap.quantity))
+        format!("{part} out of reach by {}", units.show(gap.excess, gap.quantity))
     } else {
-        format!("{section} section out of reach")
+        format!("{part} out of reach")
     }
 }
 

@@ -40,7 +40,7 @@ struct Posture<'a> {
 #[derive(Serialize)]
 struct OutOfReach<'a> {
     leg: &'a str,
-    section: String,
+    section: Option<String>,
     /// The distance or angle that is missing, in the file's unit; none if it is not known.
     deficit: Option<f64>,
     unit: &'static str,
@@ -114,7 +114,7 @@ fn out_of_reach<'a>(explorer: &'a Explorer, missed: &Unreachable) -> OutOfReach<
     let known = deficit.excess.is_finite();
     OutOfReach {
         leg: &explorer.manipulator().mechanism().legs[missed.leg].name,
-        section: missed.section.to_string(),
+        section: missed.section.map(|section| section.to_string()),
         deficit: known.then(|| shown(deficit.excess, deficit.quantity, units)),
         unit: units.symbol(deficit.quantity),
         text: reason(missed, units),

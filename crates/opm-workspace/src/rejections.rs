@@ -17,8 +17,8 @@ const CHUNK: u64 = 1024;
 /// What rejects a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// A section of the leg does not close.
-    Reach(Section),
+    /// A section of the leg does not close; `None` for a leg that is solved whole.
+    Reach(Option<Section>),
     /// A joint coordinate, by its number in [`Manipulator::coordinates`], is below its lowest value.
     Lowest(usize),
     /// A joint coordinate is above its highest value.

@@ -128,7 +128,7 @@ impl Sweep {
         let name = |joint: usize| Some(manipulator.coordinates()[joint].name.clone());
         let rejections = found.rejections.iter().map(|rejection| {
             let (section, joint, limit) = match rejection.cause {
-                Cause::Reach(section) => (Some(section.to_string()), None, None),
+                Cause::Reach(section) => (section.map(|section| section.to_string()), None, None),
                 Cause::Lowest(joint) => (None, name(joint), Some("lowest".to_owned())),
                 Cause::Highest(joint) => (None, name(joint), Some("highest".to_owned())),
             };

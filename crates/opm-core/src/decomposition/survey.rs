@@ -7,8 +7,8 @@ use super::mobility::{Mobility, MobilityError, frame, mobility};
 use super::near::{elements, near_smaller};
 use super::search::candidates;
 use super::{
-    DecomposeError, Decomposition, Freedom, HeightMiss, JointMiss, NearMiss, Reordered,
-    found_or_near, height_miss, list, passive,
+    DecomposeError, Decomposition, Freedom, HeightMiss, JointMiss, NearMiss, PlatformSet,
+    Reordered, WholeMiss, any, found_or_near, height_miss, list,
 };
 use crate::group::subspace::{MotionSubspace, SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
@@ -46,6 +46,8 @@ pub struct Survey {
     pub near: Option<NearMiss>,
     /// An order of the joints in which the mechanism decomposes, if it does not as it is.
     pub order: Option<Reordered>,
+    /// Why its legs are not solved whole, if they are not split either.
+    pub whole: Option<WholeMiss>,
 }
 
 /// One leg by itself.
@@ -94,12 +96,13 @@ pub enum Applies {
 }
 
 impl Applies {
-    /// A short name: `two subspaces`, `one subspace`, `nearly` or `outside`.
+    /// A short name: `two subspaces`, `one subspace`, `every leg`, `nearly` or `outside`.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Decomposed(found) => match found.first().map(|d| d.upper) {
-                Some(SubspaceClass::Identity) => "one subspace",
-                _ => "two subspaces",
+            Self::Decomposed(found) => match found.first() {
+                Some(found) if found.is_whole() => "every leg",
+                Some(found) if found.platform() == PlatformSet::Subgroup => "one subspace",
+                Some(_) | None => "two subspaces",
             },
             Self::Nearly => "nearly",
             Self::Outside(_) => "outside",
@@ -231,10 +234,11 @@ pub fn survey(mechanism: &Mechanism) -> Result<Survey, MobilityError> {
     let chains: Vec<String> = legs.iter().map(|leg| leg.chain.clone()).collect();
     let notation = notation(&chains);
     let common_name = common_name(&notation, platform.subspace.as_ref());
-    let mut order = None;
-    let (applies, near) = match found_or_near(mechanism, &report, passive(mechanism, &report)) {
+    let (mut order, mut whole) = (None, None);
+    let (applies, near) = match found_or_near(mechanism, &report, any(mechanism, &report)) {
         Ok(found) => {
-            let near = near_smaller(mechanism, &found);
+            let by_itself = found.first().is_some_and(Decomposition::is_whole);
+            let near = if by_itself { None } else { near_smaller(mechanism, &found) };
             (Applies::Decomposed(found), near)
         }
         Err(mut error) => {
@@ -243,10 +247,23 @@ pub fn survey(mechanism: &Mechanism) -> Result<Survey, MobilityError> {
             {
                 order = better.take().map(|better| *better);
             }
+            if let DecomposeError::NoPartialSubspaces { whole: Some(miss), .. } = &error {
+                whole = Some((**miss).clone());
+            }
             outside(mechanism, error)
         }
     };
-    Ok(Survey { notation, common_name, mobility: report, legs, platform, applies, near, order })
+    Ok(Survey {
+        notation,
+        common_name,
+        mobility: report,
+        legs,
+        platform,
+        applies,
+        near,
+        order,
+        whole,
+    })
 }
 
 fn leg_survey(leg: &Leg, mechanism: &Mechanism) -> LegSurvey {

@@ -188,7 +188,7 @@ impl Search<'_> {
         }
         for (leg, deficit) in deficits.iter().enumerate() {
             if let Some(deficit) = *deficit {
-                unmet.push(Unmet::Leg(Unreachable { leg, section: Section::Lower, deficit }));
+                unmet.push(Unmet::Leg(Unreachable { leg, section: Some(Section::Lower), deficit }));
             }
         }
         if self.upper_failed {

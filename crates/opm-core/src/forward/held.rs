@@ -117,7 +117,8 @@ impl<'a> Held<'a> {
         let q = [0, 1, 2].map(|joint| self.displacement(leg, Section::Lower, joint));
         let lower = &self.legs[leg].lower;
         let reached = match &lower.chain {
-            Chain::Rigid => SubspaceKind::Identity.identity(),
+            // A plan is of legs that are split.
+            Chain::Rigid | Chain::Part(_) => SubspaceKind::Identity.identity(),
             Chain::Planar(chain) => Displacement::Planar(planar::forward(&chain.joints(), &q)),
             Chain::Spherical(chain) => Displacement::Spherical(chain.forward(&q)),
             Chain::Ball(ball) => Displacement::Spherical(ball.forward(&q)),
@@ -286,6 +287,7 @@ fn only_slides(chain: &Chain) -> bool {
             chain.joints()[0].rotation != 0.0 && chain.joints()[1].rotation == 0.0
         }
         Chain::Rigid
+        | Chain::Part(_)
         | Chain::Planar(_)
         | Chain::Spherical(_)
         | Chain::Ball(_)

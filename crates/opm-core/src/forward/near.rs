@@ -60,10 +60,11 @@ impl fmt::Display for NearStop {
             Self::OutOfReach(unreachable) => {
                 let Unreachable { leg, section, deficit } = unreachable;
                 let (leg, excess, unit) = (leg + 1, deficit.excess, deficit.quantity.unit());
-                write!(
-                    f,
-                    "leg number {leg} is out of reach in its {section} section by {excess:.3e} {unit}"
-                )
+                write!(f, "leg number {leg} is out of reach")?;
+                if let Some(section) = section {
+                    write!(f, " in its {section} section")?;
+                }
+                write!(f, " by {excess:.3e} {unit}")
             }
             Self::Singular => f.write_str("the pose is singular"),
             Self::Stalled => f.write_str("no step reduces the error"),

@@ -85,9 +85,8 @@ impl NearBuffer {
 #[derive(Clone, Debug)]
 struct DrivenJoint {
     leg: usize,
-    section: Section,
-    /// Its number among the joints of the chain.
-    place: usize,
+    /// Its section, and its number among the joints of the chain; `None` for what is between the sections.
+    place: Option<(Section, usize)>,
     /// Its number among the actuated joints.
     number: usize,
     /// Its value at home, radians or metres.
@@ -103,7 +102,11 @@ impl DrivenJoint {
     /// The wanted value minus that of a solution, in radians or shares of the size.
     #[inline]
     fn error(&self, wanted: &[f64], solution: &Solution) -> f64 {
-        let displacement = &solution.legs[self.leg].section(self.section)[self.place];
+        let leg = &solution.legs[self.leg];
+        let displacement = match self.place {
+            Some((section, place)) => &leg.section(section)[place],
+            None => &leg.tau,
+        };
         let moved = match displacement {
             JointDisplacement::Direction(_) => self.limits.report_angle(displacement.value()),
             JointDisplacement::Value(value) => *value,
@@ -163,26 +166,21 @@ impl Manipulator {
         let modulo = self.modulo_revolutions();
         let mut found = Vec::new();
         for (leg, compiled) in self.legs.iter().enumerate() {
+            let mut push = |joint: &ChainCoordinate, place: Option<(Section, usize)>| {
+                let ChainCoordinate { home, limits, actuated: Some(number), .. } = *joint else {
+                    return;
+                };
+                let (modulo, weight) = (modulo[number], self.weight(joint.number));
+                found.push(DrivenJoint { leg, place, number, home, limits, modulo, weight });
+            };
             for section in [Section::Lower, Section::Upper] {
-                for (place, joint) in compiled.section(section).coordinates.iter().enumerate() {
-                    let Some(joint @ ChainCoordinate { actuated: Some(number), .. }) = joint else {
-                        continue;
-                    };
-                    let ChainCoordinate { home, limits, .. } = *joint;
-                    let (number, modulo) = (*number, modulo[*number]);
-                    let weight = self.weight(joint.number);
-                    found.push(DrivenJoint {
-                        leg,
-                        section,
-                        place,
-                        number,
-                        home,
-                        limits,
-                        modulo,
-                        weight,
-                    });
+                let joints = compiled.section(section).coordinates.iter().enumerate();
+                for (place, joint) in joints {
+                    joint.iter().for_each(|joint| push(joint, Some((section, place))));
                 }
             }
+            let between = compiled.whole.as_ref().and_then(|whole| whole.between);
+            between.iter().for_each(|joint| push(joint, None));
         }
         found
     }

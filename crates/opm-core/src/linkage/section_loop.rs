@@ -176,6 +176,7 @@ impl DrivenLoop {
         match &self.chain {
             Chain::Cylindrical(chain) => Some(chain.coordinates(target.cylindrical())[index]),
             Chain::Rigid
+            | Chain::Part(_)
             | Chain::Planar(_)
             | Chain::Spherical(_)
             | Chain::Ball(_)
@@ -236,9 +237,11 @@ impl DrivenLoop {
                 let revolution = JointDisplacement::Value(TAU);
                 self.counted(revolution, Branch::Plus, index).map(f64::abs)
             }
-            Chain::Rigid | Chain::Cylindrical(_) | Chain::Translational(_) | Chain::Spatial(_) => {
-                None
-            }
+            Chain::Rigid
+            | Chain::Part(_)
+            | Chain::Cylindrical(_)
+            | Chain::Translational(_)
+            | Chain::Spatial(_) => None,
         }
     }
 }

@@ -204,7 +204,10 @@ impl WithSimd for SolveChoices<'_> {
         let rise = task.rise(&solved.pose);
         for (number, (leg, found)) in manipulator.legs.iter().zip(legs).enumerate() {
             let pose = [&solved.v, &solved.b];
-            let missed = |(section, deficit)| Unreachable { leg: number, section, deficit };
+            let missed = |(section, deficit)| {
+                let section = leg.named(section);
+                Unreachable { leg: number, section, deficit }
+            };
             // On both branches of the section that is solved second, the other one is the same.
             let mut of_first = [None; 2];
             for (part, mode) in modes.chosen_leg_modes(wanted, number) {

@@ -126,6 +126,7 @@ impl Manipulator {
             let near = revolutions.near(taus[number], 0.0);
             let pose = [&solved.v, &solved.b];
             if let Err((section, deficit)) = leg.solve_in(task, pose, rise, branches, near, found) {
+                let section = leg.named(section);
                 unreachable.push(Unreachable { leg: number, section, deficit });
             }
         }

@@ -3,6 +3,7 @@
 use super::lift::{self, Lean, Lift, Separated};
 use super::refused::RefusedLeg;
 use super::section::{ChainCoordinate, CompiledSection, Slider, chain_joints, coordinate_number};
+use super::whole::Whole;
 use crate::chain::partial::{PartialChain, completion};
 use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
@@ -24,7 +25,7 @@ pub(crate) struct CompiledLeg {
     /// identity alone, there is no imaginary joint, and the upper section is solved first.
     pub split_section: Section,
     /// Whether the subspaces share a motion, along which the leg has an imaginary joint.
-    bridged: bool,
+    pub(super) bridged: bool,
     /// The number of its imaginary joint among those that are reported; `None` where it is not reported.
     pub imaginary: Option<usize>,
     /// The region in which the lower section closes, on each branch; `None` where it is not a region of the
@@ -43,6 +44,8 @@ pub(crate) struct CompiledLeg {
     pub lift: Option<Lift>,
     /// What that joint does in the plane, where it leans.
     pub lean: Option<Lean>,
+    /// How it is solved whole; `None` where it is solved by its sections.
+    pub whole: Option<Box<Whole>>,
 }
 
 /// What compiling a leg needs to know of the manipulator.
@@ -88,6 +91,9 @@ impl CompiledLeg {
         first: usize,
         context: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
+        if let Some(whole) = &split.whole {
+            return Ok(Self::whole(leg, whole, first, context));
+        }
         let task = context.task;
         let separated = lift::separate(leg, split, first, context)?;
         let split = separated.as_ref().map_or(split, |separated| &separated.rest);
@@ -249,6 +255,7 @@ impl CompiledLeg {
             imaginary: None,
             lift: None,
             lean: None,
+            whole: None,
             unwinds: task.shared() == Some(MotionType::Rotation)
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })
@@ -263,6 +270,11 @@ impl CompiledLeg {
     /// in the upper section, or an actuated lift, where the imaginary joint has a part in the height.
     pub fn passes_on(&self) -> bool {
         self.upper.driven || self.drives_height() && self.lift.is_some_and(|lift| lift.slope != 0.0)
+    }
+
+    /// A section that does not close, as it is reported; `None` where the leg is solved whole.
+    pub fn named(&self, section: Section) -> Option<Section> {
+        self.whole.is_none().then_some(section)
     }
 
     /// The sections in the order in which they are solved.
@@ -324,11 +336,9 @@ impl CompiledLeg {
         branches: LegBranches,
         out: &mut LegSolution,
     ) -> Result<(), ReachDeficit> {
-        if self.lean.is_some() {
-            *out = self
-                .solve_raised(task, [v, b], rise, branches, 0.0)
-                .map_err(|(_, deficit)| deficit)?;
-            return Ok(());
+        if self.is_apart() {
+            let solved = self.solve_apart(task, [v, b], rise, branches, 0.0, out);
+            return solved.map_err(|(_, deficit)| deficit);
         }
         match self.split_section {
             Section::Upper => {
@@ -384,8 +394,8 @@ impl CompiledLeg {
         near: f64,
         out: &mut LegSolution,
     ) -> Result<(), (Section, ReachDeficit)> {
-        if self.lean.is_some() {
-            // Neither section is solved apart.
+        if self.is_apart() {
+            // Neither section is solved by itself.
             return Ok(());
         }
         match self.split_section {
@@ -415,9 +425,8 @@ impl CompiledLeg {
         near: f64,
         out: &mut LegSolution,
     ) -> Result<(), (Section, ReachDeficit)> {
-        if self.lean.is_some() {
-            *out = self.solve_raised(task, [v, b], rise, branches, near)?;
-            return Ok(());
+        if self.is_apart() {
+            return self.solve_apart(task, [v, b], rise, branches, near, out);
         }
         match self.split_section {
             Section::Upper => {
@@ -446,9 +455,34 @@ impl CompiledLeg {
         self.solve(task, pose, rise, branches, near)
     }
 
+    /// Whether it is not solved one section after the other.
+    #[inline(always)]
+    fn is_apart(&self) -> bool {
+        self.lean.is_some() || self.whole.is_some()
+    }
+
+    /// The same for a leg that is not solved one section after the other.
+    #[inline(never)]
+    fn solve_apart(
+        &self,
+        task: &Task,
+        [v, b]: [&Displacement; 2],
+        rise: f64,
+        branches: LegBranches,
+        near: f64,
+        out: &mut LegSolution,
+    ) -> Result<(), (Section, ReachDeficit)> {
+        match &self.whole {
+            Some(whole) => whole.solve(&task.raised(rise, task.isometry(v, b)), branches, out),
+            None => {
+                *out = self.solve_raised(task, [v, b], rise, branches, near)?;
+                Ok(())
+            }
+        }
+    }
+
     /// The same for a leg whose lift leans.
     #[cold]
-    #[inline(never)]
     fn solve_raised(
         &self,
         task: &Task,

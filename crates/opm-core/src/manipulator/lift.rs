@@ -262,6 +262,7 @@ impl Manipulator {
         leg.lower.admits(&solution.lower)
             && leg.upper.admits(&solution.upper)
             && leg.lift.as_ref().is_none_or(lifted)
+            && leg.whole.as_ref().is_none_or(|whole| whole.admits(solution))
     }
 
     /// The value and whether it is within its limits of a lift at a height above home, metres.

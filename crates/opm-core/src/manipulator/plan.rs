@@ -43,6 +43,9 @@ pub enum NoClosedForm {
     /// A spherical joint is actuated.
     #[error("a spherical joint is actuated")]
     Ball,
+    /// Every leg is solved by itself, and what all actuated joints allow together is not known in closed form.
+    #[error("each leg is solved by itself: their actuated joints are equations that have no order")]
+    Whole,
 }
 
 /// The order in which forward kinematics solve the sections.
@@ -92,6 +95,9 @@ pub struct Tracked {
 
 impl Plan {
     pub fn new(task: &Task, legs: &[CompiledLeg], size: f64) -> Result<Self, NoClosedForm> {
+        if legs.iter().any(|leg| leg.whole.is_some()) {
+            return Err(NoClosedForm::Whole);
+        }
         let held: Vec<HeldLeg> = legs
             .iter()
             .map(|leg| HeldLeg { lower: held(&leg.lower), upper: held(&leg.upper) })
@@ -164,6 +170,7 @@ fn loses_turns(section: Section, legs: &[CompiledLeg], held: &[HeldLeg]) -> bool
             Chain::Cylindrical(chain) => chain.joints(),
             // Chains in other subspaces have no helical joints.
             Chain::Rigid
+            | Chain::Part(_)
             | Chain::Planar(_)
             | Chain::Spherical(_)
             | Chain::Ball(_)

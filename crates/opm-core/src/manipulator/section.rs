@@ -197,6 +197,20 @@ impl CompiledSection {
         Branch::BOTH.map(|branch| chain.shell(branch, middle))
     }
 
+    /// Whether its joints are those of a spherical joint.
+    pub fn is_ball(&self) -> bool {
+        match &self.chain {
+            Chain::Ball(_) => true,
+            Chain::Part(part) => part.ball,
+            Chain::Rigid
+            | Chain::Planar(_)
+            | Chain::Spherical(_)
+            | Chain::Cylindrical(_)
+            | Chain::Translational(_)
+            | Chain::Spatial(_) => false,
+        }
+    }
+
     /// Whether a target has two solutions.
     pub fn has_choice(&self) -> bool {
         self.partial.is_none() && self.chain.has_choice()

@@ -12,10 +12,26 @@ use nalgebra::Isometry3;
 pub struct Unreachable {
     /// The number of the leg.
     pub leg: usize,
-    /// The section of the leg that does not close.
-    pub section: Section,
+    /// The section of the leg that does not close; `None` for a leg that is solved whole.
+    pub section: Option<Section>,
     /// The distance or angle by which the section does not reach.
     pub deficit: ReachDeficit,
+}
+
+impl Unreachable {
+    /// What does not close, in words: `lower section`, `upper section` or `leg`.
+    pub fn part(&self) -> &'static str {
+        part_of(self.section)
+    }
+}
+
+/// A section of a leg, or the whole leg, in words.
+pub fn part_of(section: Option<Section>) -> &'static str {
+    match section {
+        Some(Section::Lower) => "lower section",
+        Some(Section::Upper) => "upper section",
+        None => "leg",
+    }
 }
 
 /// Every joint in one working mode at one pose. [`Manipulator::solution`] makes a buffer of this type.

@@ -110,7 +110,7 @@ impl Trajectory<'_> {
         let (amount, quantity, section) = match gauge {
             Gauge::Reach { leg } => {
                 match sample.solution.unreachable.iter().find(|u| u.leg == leg) {
-                    Some(u) => (u.deficit.excess, Some(u.deficit.quantity), Some(u.section)),
+                    Some(u) => (u.deficit.excess, Some(u.deficit.quantity), u.section),
                     None => {
                         let section = self.solver.manipulator.serial(&sample.solution, leg).1;
                         (level, None, Some(section))

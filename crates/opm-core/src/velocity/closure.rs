@@ -145,6 +145,7 @@ pub(super) fn along_unit(leg: &CompiledLeg, motion: IntersectionMotion, length: 
         (Chain::Planar(_), Section::Lower)
         | (
             Chain::Rigid
+            | Chain::Part(_)
             | Chain::Spherical(_)
             | Chain::Ball(_)
             | Chain::Cylindrical(_)

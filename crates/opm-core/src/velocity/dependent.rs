@@ -91,7 +91,7 @@ impl Manipulator {
         singular.clear();
         singular.extend(self.legs.iter().enumerate().map(|(leg, compiled)| SingularLeg {
             leg,
-            section: compiled.split_section,
+            section: Some(compiled.split_section),
             cause: SingularCause::Serial,
         }));
     }

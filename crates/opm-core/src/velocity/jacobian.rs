@@ -2,6 +2,7 @@
 //! coordinates.
 
 use super::dependent::System;
+use super::whole::WholeDifferential;
 use super::{LegDifferential, SingularLeg, VelocityError};
 use crate::group::{Displacement, JointDisplacement, LocalTwist, MotionType, Subspace};
 use crate::manipulator::{Lean, Manipulator, Section, Solution};
@@ -92,6 +93,8 @@ pub struct Jacobians {
     basis: Basis,
     /// The differentials of every leg.
     pub(super) legs: Vec<LegDifferential>,
+    /// The differentials of legs that are solved whole; empty where legs are split.
+    pub(super) whole: Vec<WholeDifferential>,
     /// For each leg, the displaced screw of what its lift does in the plane for a unit of height; zeros where it does
     /// nothing there.
     pub(super) leans: Vec<LocalTwist>,
@@ -211,7 +214,9 @@ impl Manipulator {
                 bridges[number] = Some(bridged.len());
                 bridged.push(number);
             }
-            let coordinates = leg.lower.coordinates.iter().flatten();
+            // A leg that is solved whole has no lower section.
+            let coordinates =
+                leg.lower.coordinates.iter().filter(|_| leg.whole.is_none()).flatten();
             lower_rows.extend(coordinates.filter(|c| c.actuated.is_some()).map(|c| c.number));
         }
         lower_rows.sort_unstable();
@@ -242,6 +247,10 @@ impl Manipulator {
             basis,
             legs: (0..self.legs.len()).map(|number| self.leg_differential(&home, number)).collect(),
             leans: vec![LocalTwist::zeros(); self.legs.len()],
+            whole: match self.is_whole() {
+                true => vec![WholeDifferential::unknown(); self.legs.len()],
+                false => Vec::new(),
+            },
             v: home.solved.v,
             taus: home.legs.iter().map(|leg| leg.tau).collect(),
         }
@@ -292,6 +301,10 @@ impl Manipulator {
     ) -> bool {
         out.singular.clear();
         out.v = at.solved.v;
+        if self.is_whole() {
+            self.platform_columns(at, out);
+            return self.whole_rows(at, rows, out);
+        }
         let task = self.task();
         let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());
         let lower = out.basis.lower.map(|twist| at.solved.v.adjoint(&twist));

@@ -126,12 +126,17 @@ struct Layout {
     rows: Vec<Cause>,
     /// The number of rows of the lower section, which come first.
     lower_rows: usize,
+    /// Where legs are solved whole, the number of all columns: one for each component of the section twist.
+    whole: Option<usize>,
 }
 
 impl Layout {
     fn new(manipulator: &Manipulator) -> Self {
         let task = manipulator.task();
         let legs = &manipulator.legs;
+        if manipulator.is_whole() {
+            return Self::of_whole(manipulator);
+        }
         let mut along_count = 0;
         let along: Vec<_> = legs
             .iter()
@@ -169,11 +174,35 @@ impl Layout {
         let lower_rows = rows_of(Section::Lower).count();
         let rows = rows_of(Section::Lower).chain(rows_of(Section::Upper)).collect();
         let upper_basis = task.upper.kind.basis();
-        Self { along, along_count, lower_basis, upper_basis, height, rows, lower_rows }
+        let whole = None;
+        Self { along, along_count, lower_basis, upper_basis, height, rows, lower_rows, whole }
+    }
+
+    /// The layout for legs that are solved whole: what sections have counts as the lower one's.
+    fn of_whole(manipulator: &Manipulator) -> Self {
+        let mut rows = Vec::new();
+        for leg in 0..manipulator.legs.len() {
+            let own = manipulator.coordinates_of(leg);
+            let driven = manipulator.actuated().iter().filter(|number| own.contains(number));
+            rows.extend(driven.map(|_| Cause { leg, section: Section::Lower }));
+        }
+        Self {
+            along: vec![None; manipulator.legs.len()],
+            along_count: 0,
+            lower_basis: Vec::new(),
+            upper_basis: Vec::new(),
+            height: None,
+            lower_rows: rows.len(),
+            rows,
+            whole: Some(manipulator.task().coordinates.len()),
+        }
     }
 
     /// The number of columns of the lower section: those of the intersection motion, and the section's own twist.
     fn lower_columns(&self) -> usize {
+        if let Some(columns) = self.whole {
+            return columns;
+        }
         self.along_count + self.lower_basis.len() + usize::from(self.height == Some(Section::Lower))
     }
 
@@ -214,8 +243,11 @@ impl Manipulator {
     /// Computes the measures of singularity at the pose of `jacobians`. Nothing is allocated.
     pub fn measure_singularities(&self, jacobians: &Jacobians, out: &mut Singularities) {
         let (mut lower, mut upper) = (1.0, 1.0);
-        for (measures, leg) in out.legs.iter_mut().zip(&jacobians.legs) {
-            *measures = [leg.lower.measure, leg.upper.measure];
+        for (number, (measures, leg)) in out.legs.iter_mut().zip(&jacobians.legs).enumerate() {
+            *measures = match jacobians.whole.get(number) {
+                Some(whole) => [whole.measure, 1.0],
+                None => [leg.lower.measure, leg.upper.measure],
+            };
             lower *= measures[0];
             upper *= measures[1];
         }
@@ -289,13 +321,13 @@ impl Manipulator {
     }
 
     /// Computes the closure.
-    fn fill_closure(
-        &self,
-        Jacobians { legs, v, taus, leans, .. }: &Jacobians,
-        out: &mut Singularities,
-    ) {
+    fn fill_closure(&self, jacobians: &Jacobians, out: &mut Singularities) {
+        let Jacobians { legs, v, taus, leans, .. } = jacobians;
         let Singularities { closure, layout, .. } = out;
         closure.fill(0.0);
+        if layout.whole.is_some() {
+            return self.fill_whole_closure(jacobians, closure);
+        }
         let task = self.task();
         let length = self.characteristic_length();
         let split = layout.lower_columns();

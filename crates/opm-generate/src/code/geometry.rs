@@ -233,7 +233,7 @@ pub fn chain(form: &SectionForm) -> Option<(String, Value)> {
     }
     let repeated = |letter: &str| letter.repeat(free.len());
     let (kind, joints): (String, Vec<Value>) = match &form.chain {
-        Chain::Rigid => return None,
+        Chain::Rigid | Chain::Part(_) => return None,
         Chain::Planar(chain) => {
             let joints = chain.joints();
             let letter = |i: &usize| match joints[*i] {

@@ -49,6 +49,7 @@ pub fn given(section: &SectionForm, joint: usize) -> Given {
         Chain::Cylindrical(chain) if revolute(chain, joint) => Given::Turns,
         Chain::Cylindrical(_)
         | Chain::Rigid
+        | Chain::Part(_)
         | Chain::Ball(_)
         | Chain::Translational(_)
         | Chain::Spatial(_) => Given::Value,
@@ -72,6 +73,7 @@ fn has_sign(section: &SectionForm) -> bool {
             Chain::Planar(PlanarChain::Rpp(_) | PlanarChain::Ppr(_) | PlanarChain::Prp(_)) => false,
             Chain::Planar(_) | Chain::Spherical(_) => true,
             Chain::Rigid
+            | Chain::Part(_)
             | Chain::Ball(_)
             | Chain::Cylindrical(_)
             | Chain::Translational(_)

@@ -36,6 +36,8 @@ pub fn closes<const N: usize>(chain: &Chain, target: &Target<N>) -> Share<N> {
         | Chain::Cylindrical(_)
         | Chain::Translational(_)
         | Chain::Spatial(_) => Share::ALL,
+        // Nothing is known of a part by itself.
+        Chain::Part(_) => Share::ANY,
     }
 }
 
@@ -48,6 +50,7 @@ pub fn displacements<const N: usize>(
     let none = Enclosed::Value(Affine::constant(0.0));
     match chain {
         Chain::Rigid => [none; 3],
+        Chain::Part(_) => [Enclosed::Value(Affine::constant(f64::NAN)); 3],
         Chain::Planar(chain) => solved(chain, target.planar(), branch),
         Chain::Spherical(chain) => spherical(chain, target.spherical(), branch),
         Chain::Ball(ball) => self::ball(ball, target.spherical()),

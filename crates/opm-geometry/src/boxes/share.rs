@@ -41,6 +41,9 @@ impl<const N: usize> Share<N> {
     /// No part of the box.
     pub const NONE: Self = Self::between(0.0, 0.0);
 
+    /// Some part of the box: nothing is known.
+    pub const ANY: Self = Self::between(0.0, 1.0);
+
     const fn between(lower: f64, upper: f64) -> Self {
         Self { lower, upper, errors: [0.0; N], slopes: [0.0; N], undecided: 0 }
     }

@@ -89,7 +89,9 @@ pub fn flat_joints(chain: &Chain) -> Option<[LocalTwist; 3]> {
             Some([p, q, LocalTwist::z()])
         }
         Chain::Spatial(chain) => Some(*chain.slides()),
-        Chain::Rigid | Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => None,
+        Chain::Rigid | Chain::Part(_) | Chain::Planar(_) | Chain::Spherical(_) | Chain::Ball(_) => {
+            None
+        }
     }
 }
 
@@ -100,7 +102,7 @@ impl Condition {
         match chain {
             Chain::Planar(chain) => Some(planar(&chain.joints(), held, displacement)),
             Chain::Spherical(chain) => Some(spherical(chain.axes(), held, displacement)),
-            Chain::Rigid | Chain::Ball(_) => None,
+            Chain::Rigid | Chain::Part(_) | Chain::Ball(_) => None,
             Chain::Cylindrical(_) | Chain::Translational(_) | Chain::Spatial(_) => {
                 let joints = flat_joints(chain)?;
                 let others: [usize; 2] = match held {

@@ -44,7 +44,7 @@ impl Track {
         foot: Complex<f64>,
     ) -> Option<Self> {
         match chain {
-            Chain::Rigid => None,
+            Chain::Rigid | Chain::Part(_) => None,
             Chain::Planar(chain) => {
                 let joints = chain.joints();
                 let held = |range: std::ops::Range<usize>| {

@@ -4,7 +4,7 @@ use super::points::tip;
 use crate::columns::{Column, NamedColumn, PointColumns};
 use crate::error::StudyError;
 use crate::workspace::Workspace;
-use opm_core::manipulator::Manipulator;
+use opm_core::manipulator::{Manipulator, part_of};
 use opm_mcap::rejected::{CAUSE, MAX_CAUSES, SLICE};
 use opm_mcap::workspace::MAX_OVERVIEW_POINTS;
 use opm_mcap::{CloudLayout, RecordError, RejectedCause, RejectedPoints, WorkspaceRecorder};
@@ -40,7 +40,7 @@ pub fn class_color(number: usize) -> [u8; 3] {
 fn words(manipulator: &Manipulator, Rejection { leg, cause, .. }: &Rejection) -> String {
     let name = |joint: usize| &manipulator.coordinates()[joint].name;
     let what = match *cause {
-        Cause::Reach(section) => format!("{section} section out of reach"),
+        Cause::Reach(section) => format!("{} out of reach", part_of(section)),
         Cause::Lowest(joint) => format!("{} below its limit", name(joint)),
         Cause::Highest(joint) => format!("{} above its limit", name(joint)),
     };

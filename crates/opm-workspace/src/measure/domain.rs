@@ -115,6 +115,11 @@ pub enum DomainError {
          matter of a tolerance; a grid of its workspace can be counted"
     )]
     Repeated,
+    /// Legs are solved whole, and not by sections.
+    #[error(
+        "there are no bounds for a mechanism whose legs are each solved by itself; a grid of its workspace can be counted"
+    )]
+    Whole,
     /// The heights of legs depend on the imaginary joints.
     #[error(
         "there are no bounds for a mechanism whose sections share a translation that is inclined to the direction of \
@@ -187,6 +192,9 @@ impl Domain {
         if sections != Sections::Whole && !dependent.is_empty() {
             let dependent = dependent.iter().map(|c| c.name).collect();
             return Err(DomainError::Dependent { dependent });
+        }
+        if manipulator.is_whole() {
+            return Err(DomainError::Whole);
         }
         if !manipulator.has_enclosures() {
             return Err(DomainError::Repeated);

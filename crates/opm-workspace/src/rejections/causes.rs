@@ -93,9 +93,11 @@ impl<'a> Causes<'a> {
             .collect();
         let mut all = Vec::new();
         for leg in 0..manipulator.mechanism().legs.len() {
-            all.extend(
-                [Section::Lower, Section::Upper].map(|section| (leg, Cause::Reach(section))),
-            );
+            let sections: &[Option<Section>] = match manipulator.is_whole() {
+                true => &[None],
+                false => &[Some(Section::Lower), Some(Section::Upper)],
+            };
+            all.extend(sections.iter().map(|&section| (leg, Cause::Reach(section))));
             for joint in (0..legs.len()).filter(|&joint| legs[joint] == leg) {
                 all.extend([(leg, Cause::Lowest(joint)), (leg, Cause::Highest(joint))]);
             }

@@ -46,12 +46,13 @@ impl<'a> Sweep<'a> {
         Some(Box::new(ClearPoses::new(self.manipulator, limit, mode)))
     }
 
-    /// Whether poses are decided together, whatever their slices. They are where some task coordinates follow from those of
-    /// the grid, or heights of legs from imaginary joints.
+    /// Whether poses are decided together, whatever their slices. They are where legs are solved whole, where some task
+    /// coordinates follow from those of the grid, or heights of legs from imaginary joints.
     pub(super) fn takes_poses_together(&self) -> bool {
         let manipulator = self.manipulator;
-        let tied =
-            !manipulator.dependent_coordinates().is_empty() || manipulator.task().shares_height();
+        let tied = manipulator.is_whole()
+            || !manipulator.dependent_coordinates().is_empty()
+            || manipulator.task().shares_height();
         let few = self.side * self.sheets <= FEW / self.grid.row().max(1);
         self.grid.sections() == Sections::Whole
             && (tied || few && manipulator.reach().decides_many())

@@ -35,9 +35,9 @@ impl Decided {
 }
 
 impl Manipulator {
-    /// Whether many poses are solved together: chains are the same at all poses.
+    /// Whether many poses are solved together: legs are split, and their chains are the same at all poses.
     pub(crate) fn decides_many(&self) -> bool {
-        self.lifts_straight() && !self.task.shares_height()
+        self.lifts_straight() && !self.task.shares_height() && !self.is_whole()
     }
 
     /// The branches of a leg in the modes with some choices, all-plus first.

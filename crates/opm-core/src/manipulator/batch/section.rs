@@ -215,7 +215,10 @@ pub fn solve_chain(
     lanes: usize,
 ) {
     match chain {
-        Chain::Rigid => (found.holds, found.beyond) = (Lanes::all(1), Lanes::all(0)),
+        // Blocks are of legs that are split.
+        Chain::Rigid | Chain::Part(_) => {
+            (found.holds, found.beyond) = (Lanes::all(1), Lanes::all(0));
+        }
         Chain::Planar(PlanarChain::Rrr(chain)) => attempt(chain, branches, targets, found, lanes),
         Chain::Planar(PlanarChain::Prr(chain)) => attempt(chain, branches, targets, found, lanes),
         Chain::Planar(PlanarChain::Rrp(chain)) => attempt(chain, branches, targets, found, lanes),
@@ -279,7 +282,7 @@ fn solve_partial(
         Chain::Spherical(_) | Chain::Ball(_) => each!(Spherical, Matrix3<f64>),
         Chain::Cylindrical(_) => each!(Cylindrical, CylindricalDisplacement),
         Chain::Translational(_) => each!(Translational, Complex<f64>),
-        Chain::Rigid | Chain::Spatial(_) => each!(Spatial, Vector3<f64>),
+        Chain::Rigid | Chain::Part(_) | Chain::Spatial(_) => each!(Spatial, Vector3<f64>),
     }
 }
 

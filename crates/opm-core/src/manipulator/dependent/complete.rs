@@ -45,7 +45,7 @@ impl Dependent {
         for step in &self.steps {
             let sign = step.sign(mode);
             let (leg, section) = (step.solution.leg(), step.solution.section());
-            let missed = |deficit| Unreachable { leg, section, deficit };
+            let missed = |deficit| Unreachable { leg, section: Some(section), deficit };
             match &step.solution {
                 Closed::Constant { coordinates, .. } => {
                     for &coordinate in coordinates {
@@ -81,7 +81,7 @@ impl Dependent {
             let deficit = condition.deficit(value);
             let unit = if deficit.quantity == Quantity::Length { self.size } else { 1.0 };
             if deficit.excess > OBEYED * unit {
-                return Err(Unreachable { leg, section, deficit });
+                return Err(Unreachable { leg, section: Some(section), deficit });
             }
         }
         Ok(())
@@ -250,7 +250,7 @@ impl Manipulator {
             return Ok(JointDisplacement::Value(0.0));
         }
         let bridge = leg.split_section;
-        let missed = |deficit: ReachDeficit| Unreachable { leg: number, section: bridge, deficit };
+        let missed = |deficit: ReachDeficit| Unreachable { leg: number, section: Some(bridge), deficit };
         let (task, branches) = (self.task(), self.branches(mode, number));
         let leg = leg.at(task.rise(pose)).map_err(|(_, deficit)| missed(deficit))?;
         match bridge {

@@ -135,6 +135,18 @@ impl WithSimd for SolveActuated<'_> {
                 return false;
             }
             Manipulator::write_actuated(&leg.lower, &found.lower, out, &mut angles);
+            if let Some(between) = leg.whole.as_ref().and_then(|whole| whole.between.as_ref()) {
+                out.within_limits &= between.limits.admits(found.tau);
+                match (between.actuated, found.tau) {
+                    (None, _) => {}
+                    (Some(actuated), JointDisplacement::Value(value)) => {
+                        out.actuated[actuated] = between.home + value;
+                    }
+                    (Some(_), JointDisplacement::Direction(e)) => {
+                        angles.ask(AngleOf::Joint(between), e);
+                    }
+                }
+            }
             if let Some(imaginary) = leg.imaginary {
                 match found.tau {
                     JointDisplacement::Direction(e) => angles.ask(AngleOf::Leg(number), e),

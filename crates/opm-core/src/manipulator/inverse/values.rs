@@ -1,7 +1,6 @@
 //! The values of all joints, from the displacements that the legs' closed forms give.
 
 use super::revolutions::{Revolutions, write_ball_near};
-use crate::chain::Chain;
 use crate::group::{JointDisplacement, nearest};
 use crate::manipulator::Manipulator;
 use crate::manipulator::angles::Angles;
@@ -64,6 +63,12 @@ impl Manipulator {
         for section in [Section::Lower, Section::Upper] {
             Self::write_section(leg.section(section), (number, section), out, revolutions, angles);
         }
+        if let Some(whole) = &leg.whole {
+            if let Some(between) = &whole.between {
+                Self::write_joint(between, out.legs[number].tau, out, revolutions, angles);
+            }
+            return;
+        }
         match out.legs[number].tau {
             JointDisplacement::Direction(e) => angles.ask(AngleOf::Leg(number), e),
             JointDisplacement::Value(value) => self.take_tau(number, value, out),
@@ -81,7 +86,7 @@ impl Manipulator {
         let Solution { joints, legs, within_limits, .. } = out;
         let displacements = legs[leg].section(of_leg);
         // Otherwise the rotation vector, at most π long, is the one nearest to zero already.
-        if matches!(section.chain, Chain::Ball(_)) && revolutions == Revolutions::NearHeld {
+        if revolutions == Revolutions::NearHeld && section.is_ball() {
             *within_limits &= write_ball_near(section, displacements, joints);
             return;
         }
@@ -96,6 +101,30 @@ impl Manipulator {
             if known || revolutions == Revolutions::NearHome {
                 *within_limits &= joint.limits.admits(displacement);
             }
+        }
+    }
+
+    /// Writes the joint between the sections of a whole leg.
+    fn write_joint<'a>(
+        joint: &'a ChainCoordinate,
+        displacement: JointDisplacement,
+        out: &mut Solution,
+        revolutions: Revolutions,
+        angles: &mut Angles<AngleOf<'a>>,
+    ) {
+        let known = match displacement {
+            JointDisplacement::Value(value) => {
+                out.joints[joint.number] = joint.home + value;
+                true
+            }
+            JointDisplacement::Direction(e) => {
+                angles.ask(AngleOf::Joint(joint), e);
+                false
+            }
+        };
+        // The angle nearest to what the buffer holds is tested when it is known.
+        if known || revolutions == Revolutions::NearHome {
+            out.within_limits &= joint.limits.admits(displacement);
         }
     }
 

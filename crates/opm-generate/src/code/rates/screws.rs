@@ -307,7 +307,7 @@ impl Writer<'_> {
                 vector_of(slider.re, slider.im, 0.0)
             }
             Chain::Spatial(_) => chain.member(&format!("d{place}")),
-            Chain::Rigid | Chain::Ball(_) | Chain::Planar(_) => zero(),
+            Chain::Rigid | Chain::Part(_) | Chain::Ball(_) | Chain::Planar(_) => zero(),
         };
         (1..=free.len()).map(screw).collect()
     }

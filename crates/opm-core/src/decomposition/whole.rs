@@ -1,0 +1,153 @@
+//! Legs that are solved whole: the platform moves in a subgroup of what each leg can do, or in all of SE(3).
+//!
+//! Nothing has to be shared by the legs but the motion of the platform. It is found from the twists that all legs allow
+//! at home, and certified by finite displacements: every leg is solved at each of them (see [`crate::chain::whole`]).
+
+use super::architecture::chain;
+use super::mobility::{Mobility, frame};
+use super::{Decomposition, Freedom, LegSplit};
+use crate::chain::whole::{LegJoint, NoOrder, WholeLeg};
+use crate::group::SubspaceKind;
+use crate::group::subspace::{MotionSubspace, SubspaceClass};
+use crate::mechanism::Mechanism;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::mechanism::leg::Leg;
+use nalgebra::{Isometry3, Unit, Vector3};
+
+/// The set in which the platform moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlatformSet {
+    /// A product of two subgroups, between which each leg is split.
+    Pair,
+    /// One subgroup.
+    Subgroup,
+    /// All displacements.
+    Free,
+}
+
+impl PlatformSet {
+    /// A short name: `pair`, `subgroup` or `free`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pair => "pair",
+            Self::Subgroup => "subgroup",
+            Self::Free => "free",
+        }
+    }
+}
+
+/// Why legs are not solved whole.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WholeMiss {
+    /// What all legs allow is not a group: several legs constrain the platform together, or it moves as one leg does.
+    #[error(
+        "the platform has {dimension} freedoms that are not those of a subgroup of SE(3), so that its legs cannot be \
+         solved by themselves"
+    )]
+    NoGroup {
+        /// The number of independent twists of the platform.
+        dimension: usize,
+    },
+    /// The platform moves in a subgroup that has no coordinates here.
+    #[error("the platform moves in a subgroup ({}) for which opm has no coordinates", .subspace.name())]
+    NoCoordinates {
+        /// The subgroup.
+        subspace: SubspaceClass,
+    },
+    /// A leg has no closed form.
+    #[error("leg {leg} ({chain}) cannot be solved one joint after the other: {reason}")]
+    Leg {
+        /// The leg's name.
+        leg: String,
+        /// Its joints: `RRRS`.
+        chain: String,
+        /// Why not.
+        reason: NoOrder,
+    },
+}
+
+/// The decomposition of a mechanism whose legs are solved whole.
+pub(super) fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {
+    let frame = frame(mechanism);
+    let spans = mechanism.legs.iter().map(|leg| MotionSubspace::span(frame, &leg.screws()));
+    let common = spans.reduce(|a, b| a.intersection(&b));
+    let dimension = report.mobility.saturating_sub(report.idle);
+    let class = common.filter(|common| common.dimension() == dimension).and_then(|c| c.class());
+    let Some(class) = class else { return Err(WholeMiss::NoGroup { dimension }) };
+    let (lower, upper) = match class {
+        SubspaceClass::Full => (
+            SubspaceClass::TranslationalSpace,
+            SubspaceClass::Spherical { centre: mechanism.platform },
+        ),
+        class if SubspaceKind::of(&class).is_some() && dimension > 0 => {
+            (class, SubspaceClass::Identity)
+        }
+        subspace => return Err(WholeMiss::NoCoordinates { subspace }),
+    };
+    let motions = motions(&class, frame.length);
+    let legs: Result<Vec<LegSplit>, WholeMiss> = (mechanism.legs.iter())
+        .map(|leg| {
+            let (joints, actuated): (Vec<LegJoint>, Vec<bool>) = joints(leg).unzip();
+            let whole =
+                WholeLeg::new(&joints, &actuated, &motions, frame.length).map_err(|reason| {
+                    WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
+                })?;
+            let lower = Freedom::of_leg(leg);
+            Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
+        })
+        .collect();
+    Ok(Decomposition {
+        lambda: report.lambda,
+        mobility: report.mobility,
+        lower,
+        upper,
+        intersection: SubspaceClass::Identity,
+        legs: legs?,
+        imaginary_joints: 0,
+        first_section_motions: report.mobility,
+        upper_mobility: 0,
+        redundancy: 0,
+        deviation: 0.0,
+    })
+}
+
+/// The joints of a leg, each with one freedom or a ball's three, and whether they are actuated.
+fn joints(leg: &Leg) -> impl Iterator<Item = (LegJoint, bool)> {
+    leg.joints.iter().flat_map(|joint| {
+        let actuated = joint.actuated;
+        elementary(joint).into_iter().flatten().map(move |joint| (joint, actuated))
+    })
+}
+
+/// A joint as one or two that have one freedom each, or as a ball.
+fn elementary(joint: &Joint) -> [Option<LegJoint>; 2] {
+    let (axis, point) = (joint.axis, joint.point);
+    let turn = |axis: Unit<Vector3<f64>>, pitch: f64| Some(LegJoint::Screw { axis, point, pitch });
+    match joint.kind {
+        JointKind::Revolute => [turn(axis, 0.0), None],
+        JointKind::Prismatic => [Some(LegJoint::Slide { axis }), None],
+        JointKind::Helical { pitch } => [turn(axis, pitch), None],
+        JointKind::Cylindrical => [turn(axis, 0.0), Some(LegJoint::Slide { axis })],
+        JointKind::Universal { second } => [turn(axis, 0.0), turn(second, 0.0)],
+        JointKind::Spherical => [Some(LegJoint::Ball { point }), None],
+    }
+}
+
+/// Displacements of a subgroup near home, without a pattern: coefficients of its screws are multiples of the golden ratio
+/// modulo one. Lengths are shares of `length`.
+fn motions(class: &SubspaceClass, length: f64) -> Vec<Isometry3<f64>> {
+    /// How many there are, and how large they are: radians, and shares of the size.
+    const SIZES: [f64; 12] = [0.3, 0.3, 0.3, 0.2, 0.2, 0.2, 0.1, 0.1, 0.1, 0.05, 0.05, 0.05];
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let screws = class.screws();
+    let count = screws.len();
+    let of_sample = |(sample, size): (usize, f64)| {
+        screws.iter().enumerate().fold(Isometry3::identity(), |g, (i, screw)| {
+            let share = ((1 + i + sample * count) as f64 * golden).fract() - 0.5;
+            let unit = if screw.angular.norm() > 0.0 { 1.0 } else { length };
+            g * screw.exp(2.0 * share * size * unit)
+        })
+    };
+    SIZES.into_iter().enumerate().map(of_sample).collect()
+}
