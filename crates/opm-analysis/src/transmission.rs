@@ -118,6 +118,14 @@ pub enum NoTransmission {
         /// The number of its freedoms.
         freedoms: usize,
     },
+    /// A mechanism whose legs are solved whole has another number of inputs than freedoms.
+    #[error("indices need an input for each freedom; freedoms: {freedoms}, inputs: {inputs}")]
+    WholeInputs {
+        /// The number of inputs.
+        inputs: usize,
+        /// The number of freedoms of the platform.
+        freedoms: usize,
+    },
     /// No leg constrains the platform within its section.
     #[error(
         "no leg constrains the platform within the motions of its section, so that no constraint can be released"
@@ -204,7 +212,17 @@ impl<'a> Transmissions<'a> {
         }
         let mut sections = Vec::new();
         let mut whole = None;
-        for section in [Section::Lower, Section::Upper] {
+        if manipulator.is_whole() {
+            let (inputs, freedoms) =
+                (manipulator.actuated().len(), manipulator.task_coordinates().len());
+            let refused = NoTransmission::WholeInputs { inputs, freedoms };
+            whole = Some(Whole::new(manipulator).ok_or(refused)?);
+        }
+        let sections_of: &[Section] = match whole {
+            None => &[Section::Lower, Section::Upper],
+            Some(_) => &[],
+        };
+        for &section in sections_of {
             match Mechanism::new(manipulator, section) {
                 Ok(found) => sections.extend(found),
                 Err(why) => whole = Some(Whole::new(manipulator).ok_or(why)?),
@@ -229,6 +247,9 @@ impl<'a> Transmissions<'a> {
     /// # Errors
     /// No leg constrains the platform within its section, or one does so in several ways.
     pub fn has_constraints(&self) -> Result<(), NoTransmission> {
+        if self.manipulator.is_whole() {
+            return Err(NoTransmission::NoConstraint);
+        }
         if self.whole.is_some() {
             return Err(NoTransmission::Together);
         }

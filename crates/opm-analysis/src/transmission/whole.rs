@@ -28,10 +28,11 @@ struct Wrench {
 }
 
 impl Whole {
-    /// For a mechanism with dependent coordinates and as many inputs as freedoms; `None` for others.
+    /// For a mechanism with dependent coordinates, or with legs that are solved whole, and as many inputs as freedoms; `None`
+    /// for others.
     pub fn new(manipulator: &Manipulator) -> Option<Self> {
         let freedoms = manipulator.task_coordinates().len();
-        let tied = !manipulator.dependent_coordinates().is_empty();
+        let tied = manipulator.is_whole() || !manipulator.dependent_coordinates().is_empty();
         if !tied || manipulator.actuated().len() != freedoms {
             return None;
         }

@@ -16,7 +16,7 @@ use super::{
 use crate::chain::whole::MOST_FREEDOMS as MOST;
 use crate::group::screw::Screw;
 use crate::group::{LocalTwist, Subspace};
-use crate::manipulator::{Manipulator, Section, Solution};
+use crate::manipulator::{Manipulator, Solution};
 use crate::mechanism::joint::JointKind;
 use crate::task::Task;
 use nalgebra::{
