@@ -37,3 +37,4 @@ mod time_optimal;
 mod topology;
 mod trajectory;
 mod velocity;
+mod whole_legs;

@@ -1,90 +1,343 @@
-//! Stub.
-use super::{Branch, ReachDeficit};
-use crate::group::JointDisplacement;
-use nalgebra::{Isometry3, Point3, Unit, Vector3};
+//! Closed forms of legs as a whole: joint by joint, by invariants.
+//!
+//! A leg closes a loop: the displacements of its joints, from base to platform, make that of the platform. Of the joints that
+//! are not found yet, one splits the others into two arcs. Where each arc leaves an object alone (a point, a direction, a
+//! plane), the two objects have an invariant that is the same at all poses or known: a distance, a height, an angle. That is
+//! an equation in the one joint alone ([`kernel`](super::kernel)). It is found, and the rest of the loop is shorter by it.
+//!
+//! [`WholeLeg::new`] looks for an order in which this goes on to the end. The order is tested at sampled motions of the
+//! platform; it holds for all motions of the set that they are from. [`WholeLeg::solve`] then only computes: what is rare is
+//! found afterwards.
+//!
+//! * A spherical joint that is left alone is read off. Where two are left, the first one swings by the smallest angle and does
+//!   not spin.
+//! * The sign of a choice is that of the slope of its equation: `F(q) = C`, with `F` as the kernel has it. It is constant
+//!   along a path, until the branches meet.
+//! * An angle that is free is that of home.
 
-/// A joint of a leg, in base coordinates at home. Universal and cylindrical joints are given as two.
+mod element;
+mod equation;
+mod nodes;
+mod objects;
+mod order;
+mod program;
+mod samples;
+mod solve;
+mod step;
+
+use super::{Branch, ReachDeficit};
+use crate::numbers::{JointDisplacement, Real, Truth};
+use element::{Element, Kind};
+use nalgebra::{Isometry3, Point3, Unit, Vector3};
+use nodes::Nodes;
+use objects::Leg;
+use order::Search;
+use program::Program;
+use samples::Sample;
+use solve::{General, Solved};
+use step::Candidate;
+
+/// The most freedoms that a leg can have.
+pub const MOST_FREEDOMS: usize = 7;
+
+/// A loop that is open by no more than this is closed: radians, and lengths as a share of the size. A closed form leaves about
+/// 1e-14, and within 1e-7 of a pose at which two branches meet up to 1e-10. A mechanism's file gives directions to some ten
+/// digits.
+pub const CLOSURE: f64 = 1e-9;
+
+/// Not more motions than this are sampled.
+const MOST_SAMPLES: usize = 12;
+/// An order is given up where it finds fewer of the samples than this share.
+const MOST_LOST: f64 = 0.1;
+/// A sampled joint is found where the order gives it to within this, radians or sizes.
+const SAME: f64 = 1e-5;
+
+/// A joint of a leg at home, in base coordinates. A universal joint and a cylindrical one are two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LegJoint {
-    /// A revolute joint or a screw.
+    /// A revolute or helical joint.
     Screw {
-        /// The axis.
+        /// The direction of its axis.
         axis: Unit<Vector3<f64>>,
-        /// A point of it.
+        /// A point of its axis, metres.
         point: Point3<f64>,
-        /// Metres per radian.
+        /// Its advance, metres per radian; zero for a revolute joint.
         pitch: f64,
     },
-    /// A slider.
+    /// A prismatic joint.
     Slide {
         /// The direction.
         axis: Unit<Vector3<f64>>,
     },
     /// A spherical joint.
     Ball {
-        /// The centre.
+        /// The centre, metres.
         point: Point3<f64>,
     },
 }
 
-/// The most freedoms.
-pub const MOST_FREEDOMS: usize = 7;
-
-/// A whole leg.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WholeLeg {}
-
-/// Why there is no order.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("no order")]
-pub struct NoOrder {}
-
-/// A step for people.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A step of an order: for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StepName {
-    /// joint
+    /// The number of the joint.
     pub joint: usize,
-    /// root
+    /// How it is found: `linear`, `quadratic`, `direct`, `pair`, `double`, `twofold`, `ball` or `swing`.
     pub root: &'static str,
-    /// invariant
+    /// By which invariant: `distance`, `height`, `angle`, `point` or `direction`; `None` for a spherical joint.
     pub invariant: Option<&'static str>,
 }
 
-impl WholeLeg {
-    /// Finds.
-    ///
-    /// # Errors
-    /// None.
-    pub fn new(_: &[LegJoint], _: &[bool], _: &[Isometry3<f64>], _: f64) -> Result<Self, NoOrder> {
-        Err(NoOrder {})
-    }
-    /// Choices.
-    pub fn choices(&self) -> usize {
-        0
-    }
-    /// Joints.
-    pub fn choosing_joints(&self) -> &[usize] {
-        &[]
-    }
-    /// Steps.
-    pub fn steps(&self) -> impl Iterator<Item = StepName> {
-        std::iter::empty()
-    }
-    /// The number of the first freedom of a spherical joint that could spin about a line with everything else held, and
-    /// the direction of this line at home: its rotation vector has no component along it. `None` if nothing is idle.
-    pub fn idle(&self) -> Option<(usize, Vector3<f64>)> {
-        None
-    }
-    /// Solves.
-    ///
-    /// # Errors
-    /// Out of reach.
-    pub fn solve(
-        &self,
-        _: &Isometry3<f64>,
-        _: [Branch; 2],
-        _: &mut [JointDisplacement; 7],
-    ) -> Result<(), ReachDeficit> {
-        Err(ReachDeficit::length(f64::INFINITY))
+/// Why a leg has no closed form here. Joints are named by their numbers from the base, from zero.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoOrder {
+    /// The joints cannot be found one by one.
+    #[error(
+        "joints {} can only be found together: no two of the arcs between them leave objects alone whose invariant has one \
+         of them alone. Axes of neighbours among them that meet in a point or are parallel would separate them",
+        List(.joints)
+    )]
+    Coupled {
+        /// The joints that are left.
+        joints: Vec<usize>,
+    },
+    /// Each order has more than two choices.
+    #[error("an order would have more than two choices with two solutions each, at joints {}", List(.joints))]
+    Choices {
+        /// The joints that are left after two choices.
+        joints: Vec<usize>,
+    },
+    /// More freedoms than the leg can fix.
+    #[error("{found} freedoms, expected at most {MOST_FREEDOMS} with at most two spherical joints")]
+    Freedoms {
+        /// The number of freedoms.
+        found: usize,
+    },
+    /// No sampled motion but home is in reach.
+    #[error("the leg reaches none of the {given} sampled motions of the platform")]
+    Unreached {
+        /// The number of motions.
+        given: usize,
+    },
+    /// An order was found, but it does not lead back to the samples.
+    #[error("the joints can be found one by one, but that misses configurations of the leg")]
+    Untrue,
+}
+
+/// Numbers with commas between them.
+struct List<'a>(&'a [usize]);
+
+impl std::fmt::Display for List<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (i, number) in self.0.iter().enumerate() {
+            let before = match i {
+                0 => "",
+                _ if i + 1 == self.0.len() => " and ",
+                _ => ", ",
+            };
+            write!(f, "{before}{number}")?;
+        }
+        Ok(())
     }
 }
+
+/// The closed form of a leg.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WholeLeg {
+    elements: Vec<Element>,
+    program: Program,
+    names: Vec<StepName>,
+    choosing: Vec<usize>,
+    freedoms: usize,
+    centre: Vector3<f64>,
+    size: f64,
+}
+
+/// The result of a closed form's general case.
+#[derive(Clone, Copy, Debug)]
+pub struct WholeAttempt<T: Real = f64> {
+    /// The displacement of each freedom, base first; zero for those of spherical joints, which are not found here, and for
+    /// those that the leg does not have. They are valid only where `holds` is true.
+    pub displacements: [T::Joint; MOST_FREEDOMS],
+    /// Whether the loop is closed.
+    pub holds: T::Truth,
+    /// Whether the target is certainly out of reach. It never is: poses on the rim and special ones are found afterwards.
+    pub beyond: T::Truth,
+}
+
+impl WholeLeg {
+    /// The closed form of a leg. `actuated` says which joints have motors: these are found first where that is possible.
+    /// `motions` are displacements of the platform from home, at random, from the set that it moves in: the closed form is
+    /// valid for targets of that set. `size` is a length of the leg, metres, with which others are compared.
+    ///
+    /// # Errors
+    /// Where there is no order.
+    pub fn new(
+        joints: &[LegJoint],
+        actuated: &[bool],
+        motions: &[Isometry3<f64>],
+        size: f64,
+    ) -> Result<Self, NoOrder> {
+        let (elements, freedoms) = Element::of(joints);
+        let balls = elements.iter().filter(|one| one.kind == Kind::Ball).count();
+        if freedoms > MOST_FREEDOMS || balls > 2 {
+            return Err(NoOrder::Freedoms { found: freedoms });
+        }
+        let placed: Vec<Vector3<f64>> =
+            elements.iter().filter(|one| one.kind != Kind::Slide).map(|one| one.point).collect();
+        let count = placed.len().max(1);
+        let centre = placed.iter().sum::<Vector3<f64>>() * (1.0 / count as f64);
+        let reached = motions
+            .iter()
+            .filter_map(|motion| Sample::at(&elements, freedoms, motion, &centre, size));
+        let mut samples = vec![Sample::home(&elements, freedoms)];
+        samples.extend(reached.take(MOST_SAMPLES));
+        if samples.len() == 1 && freedoms > 0 {
+            return Err(NoOrder::Unreached { given: motions.len() });
+        }
+        let leg = Leg { elements: &elements, samples: &samples, centre, size };
+        let mut nodes = Nodes::new(&elements, &samples, size);
+        let mut search = Search::new(leg, &mut nodes, actuated);
+        let mut test = |nodes: &mut Nodes<'_>, steps: &[Candidate]| {
+            let program = program::write(leg, nodes, steps)?;
+            let whole = Self::of(&elements, freedoms, steps, program, centre, size);
+            whole.finds(&samples).then_some(whole)
+        };
+        if let Some(found) = search.run(&mut test) {
+            return Ok(found);
+        }
+        if search.untrue() {
+            return Err(NoOrder::Untrue);
+        }
+        let stuck = search.stuck;
+        let left = (0..elements.len()).filter(|&joint| stuck & (1 << joint) != 0).collect();
+        Err(if search.full {
+            NoOrder::Choices { joints: left }
+        } else {
+            NoOrder::Coupled { joints: left }
+        })
+    }
+
+    fn of(
+        elements: &[Element],
+        freedoms: usize,
+        steps: &[Candidate],
+        program: Program,
+        centre: Vector3<f64>,
+        size: f64,
+    ) -> Self {
+        let name = |step: &Candidate| {
+            let (root, invariant) = step.kernel.name();
+            StepName { joint: step.joint, root, invariant: Some(invariant) }
+        };
+        let mut names: Vec<StepName> = steps.iter().map(name).collect();
+        let balls: Vec<usize> =
+            (0..elements.len()).filter(|&i| elements[i].kind == Kind::Ball).collect();
+        for (i, &joint) in balls.iter().enumerate() {
+            let root = if balls.len() == 2 && i == 0 { "swing" } else { "ball" };
+            names.push(StepName { joint, root, invariant: None });
+        }
+        let mut choosing: Vec<usize> =
+            steps.iter().filter(|step| step.kernel.chooses()).map(|step| step.joint).collect();
+        choosing.sort_unstable();
+        Self { elements: elements.to_vec(), program, names, choosing, freedoms, centre, size }
+    }
+
+    /// Whether home is found on some branch, and the samples are.
+    fn finds(&self, samples: &[Sample]) -> bool {
+        let found = |sample: &Sample| {
+            let mut out = [JointDisplacement::Value(0.0); MOST_FREEDOMS];
+            self.branches().any(|branches| {
+                self.solve(&sample.target, branches, &mut out).is_ok()
+                    && self.elements.iter().all(|element| {
+                        let (value, found) = (sample.values[element.slot], out[element.slot]);
+                        match element.kind {
+                            Kind::Slide => (found.value() - value).abs() <= SAME * self.size,
+                            Kind::Turn | Kind::Helix(_) => {
+                                (found.nearest(value) - value).abs() <= SAME
+                            }
+                            Kind::Ball => true,
+                        }
+                    })
+            })
+        };
+        let lost = samples.iter().skip(1).filter(|sample| !found(sample)).count();
+        samples.first().is_some_and(found) && lost as f64 <= MOST_LOST * (samples.len() - 1) as f64
+    }
+
+    /// All branches: one for each pair of signs of its choices.
+    fn branches(&self) -> impl Iterator<Item = [Branch; 2]> + use<> {
+        let choices = self.choices();
+        let each = move |choice: usize| {
+            if choice < choices { &Branch::BOTH[..] } else { &Branch::BOTH[..1] }
+        };
+        each(0).iter().flat_map(move |&one| each(1).iter().map(move |&two| [one, two]))
+    }
+
+    /// The number of choices with two solutions, at most two.
+    pub fn choices(&self) -> usize {
+        self.choosing.len()
+    }
+
+    /// The joint of each choice, in the order from the base.
+    pub fn choosing_joints(&self) -> &[usize] {
+        &self.choosing
+    }
+
+    /// The number of freedoms.
+    pub fn freedoms(&self) -> usize {
+        self.freedoms
+    }
+
+    /// Where a strut could spin between two spherical joints: the number of the first one's first freedom, and the direction of the
+    /// strut at home, along which its rotation vector has no component. `None` where nothing is idle.
+    pub fn idle(&self) -> Option<(usize, Vector3<f64>)> {
+        let mut balls = self.elements.iter().filter(|element| element.kind == Kind::Ball);
+        let (first, second) = (balls.next()?, balls.next()?);
+        Some((first.slot, (second.point - first.point).normalize()))
+    }
+
+    /// How the joints are found, in the order in which they are.
+    pub fn steps(&self) -> impl Iterator<Item = StepName> {
+        self.names.iter().copied()
+    }
+
+    /// The general case, over any numbers: it has no branch. `rotation` and `translation` are the target's, `signs` those of
+    /// the choices.
+    #[inline(always)]
+    pub fn attempt<T: Real>(
+        &self,
+        rotation: T::Rotation,
+        translation: T::Space,
+        signs: [T::Sign; 2],
+    ) -> WholeAttempt<T> {
+        let (elements, size) = (&self.elements, self.size);
+        let mut roots = General { doubt: T::constant(0.0), size };
+        let g = (rotation, translation);
+        let run = self.program.run::<T>(elements, size, g, signs, &mut roots);
+        let open = roots.doubt + self.program.open::<T>(&run, size);
+        let holds = T::constant(CLOSURE * CLOSURE).at_least(open);
+        WholeAttempt { displacements: run.joints, holds, beyond: T::Truth::NO }
+    }
+
+    /// Writes the freedoms' displacements from base to platform that move the platform by `target`; nothing where it is out of
+    /// reach. A spherical joint has three, which are its rotation vector in base coordinates, at most π long. Those that the
+    /// leg does not have are zero. The branches are those of the choices; more are of no meaning.
+    ///
+    /// # Errors
+    /// By how much the target is out of reach, or out of the set that the leg moves in.
+    #[inline]
+    pub fn solve(
+        &self,
+        target: &Isometry3<f64>,
+        branches: [Branch; 2],
+        out: &mut [JointDisplacement; MOST_FREEDOMS],
+    ) -> Result<(), ReachDeficit> {
+        let Self { elements, program, centre, size, .. } = self;
+        Solved { elements, program, centre, size: *size }.joints(target, branches, out)
+    }
+}
+
+#[cfg(test)]
+mod tests;

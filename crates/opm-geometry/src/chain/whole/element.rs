@@ -1,0 +1,135 @@
+//! The joints of a leg, as elements that move vectors over any numbers.
+
+use super::LegJoint;
+use crate::chain::kernel::Axis;
+use crate::numbers::{Plane, Real, Space};
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
+
+/// What a joint does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// A rotation.
+    Turn,
+    /// A rotation that advances by so many metres per radian.
+    Helix(f64),
+    /// A translation.
+    Slide,
+    /// Any rotation about a point.
+    Ball,
+}
+
+/// A joint at home.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Element {
+    pub kind: Kind,
+    /// A point of the axis, or the centre; of no meaning for a slider.
+    pub point: Vector3<f64>,
+    /// The unit direction; of no meaning for a ball.
+    pub direction: Vector3<f64>,
+    /// The first of its freedoms among those of the leg.
+    pub slot: usize,
+}
+
+/// What a joint other than a ball is displaced by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moved<T: Real> {
+    /// Its rotation, as a unit vector.
+    pub unit: T::Plane,
+    /// Its translation along its direction.
+    pub shift: T,
+}
+
+impl<T: Real> Moved<T> {
+    /// No displacement.
+    #[inline(always)]
+    pub fn home() -> Self {
+        let zero = T::constant(0.0);
+        Self { unit: T::Plane::new(T::constant(1.0), zero), shift: zero }
+    }
+}
+
+/// Whether a vector is a point, or a direction, which translations leave alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Vector {
+    Point,
+    Direction,
+}
+
+/// A vector of the mechanism as one of the numbers.
+#[inline(always)]
+pub(super) fn constant<T: Real>(v: &Vector3<f64>) -> T::Space {
+    T::Space::new(T::constant(v.x), T::constant(v.y), T::constant(v.z))
+}
+
+impl Element {
+    /// The elements of joints, and the number of their freedoms.
+    pub fn of(joints: &[LegJoint]) -> (Vec<Self>, usize) {
+        let mut slot = 0;
+        let elements = joints.iter().map(|joint| {
+            let zero = Vector3::zeros();
+            let (kind, point, direction, freedoms) = match *joint {
+                LegJoint::Screw { axis, point, pitch } => {
+                    let kind = if pitch == 0.0 { Kind::Turn } else { Kind::Helix(pitch) };
+                    (kind, point.coords, axis.into_inner(), 1)
+                }
+                LegJoint::Slide { axis } => (Kind::Slide, zero, axis.into_inner(), 1),
+                LegJoint::Ball { point } => (Kind::Ball, point.coords, zero, 3),
+            };
+            let element = Self { kind, point, direction, slot };
+            slot += freedoms;
+            element
+        });
+        let elements = elements.collect();
+        (elements, slot)
+    }
+
+    /// The axis.
+    #[inline(always)]
+    pub fn axis<T: Real>(&self) -> Axis<T> {
+        Axis { point: constant::<T>(&self.point), direction: constant::<T>(&self.direction) }
+    }
+
+    /// The number of freedoms.
+    pub fn freedoms(&self) -> usize {
+        match self.kind {
+            Kind::Turn | Kind::Helix(_) | Kind::Slide => 1,
+            Kind::Ball => 3,
+        }
+    }
+
+    /// A vector moved by the joint, or moved back. A ball, of which nothing is known before the end, moves nothing.
+    #[inline(always)]
+    pub fn carry<T: Real>(&self, by: Moved<T>, back: bool, of: Vector, v: T::Space) -> T::Space {
+        let unit = if back { by.unit.conj() } else { by.unit };
+        let along = |v: T::Space| {
+            let shift = if back { -by.shift } else { by.shift };
+            v.plus(shift, constant::<T>(&self.direction))
+        };
+        match (self.kind, of) {
+            (Kind::Turn, Vector::Point) => self.axis::<T>().moved(v, unit),
+            (Kind::Turn | Kind::Helix(_), Vector::Direction) => self.axis::<T>().turned(v, unit),
+            (Kind::Helix(_), Vector::Point) => along(self.axis::<T>().moved(v, unit)),
+            (Kind::Slide, Vector::Point) => along(v),
+            (Kind::Slide, Vector::Direction) | (Kind::Ball, _) => v,
+        }
+    }
+
+    /// The displacement by the values of its freedoms.
+    pub fn exp(&self, values: &[f64]) -> Isometry3<f64> {
+        let about = |rotation: UnitQuaternion<f64>, shift: Vector3<f64>| {
+            let translation = self.point - rotation * self.point + shift;
+            Isometry3::from_parts(Translation3::from(translation), rotation)
+        };
+        let turn =
+            |q: f64| UnitQuaternion::from_axis_angle(&Unit::new_unchecked(self.direction), q);
+        match (self.kind, values) {
+            (Kind::Turn, &[q, ..]) => about(turn(q), Vector3::zeros()),
+            (Kind::Helix(pitch), &[q, ..]) => about(turn(q), self.direction * (pitch * q)),
+            (Kind::Slide, &[q, ..]) => Translation3::from(self.direction * q).into(),
+            (Kind::Ball, &[x, y, z, ..]) => {
+                about(UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z)), Vector3::zeros())
+            }
+            (Kind::Turn | Kind::Helix(_) | Kind::Slide | Kind::Ball, _) => Isometry3::identity(),
+        }
+    }
+}

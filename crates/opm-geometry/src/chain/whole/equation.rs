@@ -1,0 +1,323 @@
+//! Equations in one joint alone, and what finds the joint by one or two of them.
+
+use super::element::{Element, Kind, Moved};
+use crate::chain::kernel::Row;
+use crate::numbers::{Joint, Plane, Real, Space};
+
+/// A number that neither the joint nor those that are not solved yet change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scalar<P> {
+    /// It is the same at all poses.
+    Known(f64),
+    /// The square of the distance of two points.
+    Square([P; 2]),
+    /// The height of a point over a plane.
+    Height { point: P, normal: P, base: P },
+    /// The scalar product of two directions.
+    Cosine([P; 2]),
+}
+
+/// An invariant of two objects, one of which the joint moves. The objects are those on its two sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Equation<P> {
+    /// A point that the joint moves is at a distance from a fixed one.
+    Distance { moved: P, fixed: P, square: Scalar<P> },
+    /// A point that the joint moves has a height over a fixed plane; or, where the joint moves the plane, a fixed point has
+    /// it: then the point moves back.
+    Height { moved: P, normal: P, base: P, height: Scalar<P>, back: bool },
+    /// A direction that the joint moves has a cosine with a fixed one.
+    Angle { moved: P, fixed: P, cosine: Scalar<P> },
+}
+
+/// What is needed to say by how much an equation has no root.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Invariant<T> {
+    /// The square of the distance.
+    Distance(T),
+    Height,
+    /// The cosine.
+    Angle(T),
+}
+
+/// What finds a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kernel<P> {
+    /// A slider, by an equation that is linear.
+    Linear(Equation<P>),
+    /// A slider, by the difference of two distances.
+    Difference([Equation<P>; 2]),
+    /// A slider, by a distance: two roots.
+    Quadratic(Equation<P>),
+    /// A point that the joint moves to a known place.
+    Point { moved: P, fixed: P },
+    /// A direction that the joint turns to a known one.
+    Direction { moved: P, fixed: P },
+    /// An angle, by two equations that are linear in its cosine and sine.
+    Pair([Equation<P>; 2]),
+    /// An angle, by an equation whose two roots are always one.
+    Double(Equation<P>),
+    /// An angle, by an equation with two roots.
+    Twofold(Equation<P>),
+}
+
+/// Finds roots. The general case has no branch; what is rare is found by another one.
+pub(super) trait Roots<T: Real> {
+    /// The root of a row where it rises or falls.
+    fn twofold(&mut self, row: Row<T>, of: Invariant<T>, sign: T::Sign) -> T::Plane;
+    /// The root of a row that is a double one.
+    fn double(&mut self, row: Row<T>, of: Invariant<T>) -> T::Plane;
+    /// The root of two rows.
+    fn pair(&mut self, rows: [Row<T>; 2]) -> T::Plane;
+    /// The unit vector in the direction of a vector whose length should be `square`, and how long that is for a size.
+    fn turned(&mut self, vector: T::Plane, square: T, scale: f64) -> T::Plane;
+    /// The root of `rate · s = constant`.
+    fn linear(&mut self, rate: T, constant: T) -> T;
+    /// The root of `s² + 2 half s + constant` where it rises or falls; the square of the distance that it is about.
+    fn quadratic(&mut self, half: T, constant: T, square: T, sign: T::Sign) -> T;
+}
+
+impl<P: Copy> Scalar<P> {
+    /// The number.
+    #[inline(always)]
+    pub fn of<T: Real>(&self, read: impl Fn(P) -> T::Space) -> T {
+        let between = |a: P, b: P| read(a).plus(T::constant(-1.0), read(b));
+        match *self {
+            Self::Known(value) => T::constant(value),
+            Self::Square([a, b]) => {
+                let across = between(a, b);
+                across.inner(across)
+            }
+            Self::Height { point, normal, base } => between(point, base).inner(read(normal)),
+            Self::Cosine([a, b]) => read(a).inner(read(b)),
+        }
+    }
+
+    fn map<Q>(self, f: &mut impl FnMut(P) -> Q) -> Scalar<Q> {
+        match self {
+            Self::Known(value) => Scalar::Known(value),
+            Self::Square(two) => Scalar::Square(two.map(f)),
+            Self::Height { point, normal, base } => {
+                Scalar::Height { point: f(point), normal: f(normal), base: f(base) }
+            }
+            Self::Cosine(two) => Scalar::Cosine(two.map(f)),
+        }
+    }
+}
+
+impl<P: Copy> Equation<P> {
+    /// The same, with other sources.
+    pub fn map<Q>(self, f: &mut impl FnMut(P) -> Q) -> Equation<Q> {
+        match self {
+            Self::Distance { moved, fixed, square } => {
+                Equation::Distance { moved: f(moved), fixed: f(fixed), square: square.map(f) }
+            }
+            Self::Height { moved, normal, base, height, back } => Equation::Height {
+                moved: f(moved),
+                normal: f(normal),
+                base: f(base),
+                height: height.map(f),
+                back,
+            },
+            Self::Angle { moved, fixed, cosine } => {
+                Equation::Angle { moved: f(moved), fixed: f(fixed), cosine: cosine.map(f) }
+            }
+        }
+    }
+
+    /// The name of the invariant.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Distance { .. } => "distance",
+            Self::Height { .. } => "height",
+            Self::Angle { .. } => "angle",
+        }
+    }
+
+    /// The equation in the cosine and the sine of a revolute joint.
+    #[inline(always)]
+    pub fn row<T: Real>(
+        &self,
+        element: &Element,
+        read: impl Fn(P) -> T::Space + Copy,
+    ) -> (Row<T>, Invariant<T>) {
+        let axis = element.axis::<T>();
+        match *self {
+            Self::Distance { moved, fixed, square } => {
+                let square = square.of::<T>(read);
+                (axis.distance(read(moved), read(fixed), square), Invariant::Distance(square))
+            }
+            Self::Height { moved, normal, base, height, back } => {
+                let normal = read(normal);
+                let height = height.of::<T>(read) + normal.inner(read(base));
+                let Row { cosine, sine, constant } = axis.height(read(moved), normal, height);
+                let sine = if back { -sine } else { sine };
+                (Row { cosine, sine, constant }, Invariant::Height)
+            }
+            Self::Angle { moved, fixed, cosine } => {
+                let cosine = cosine.of::<T>(read);
+                (axis.angle(read(moved), read(fixed), cosine), Invariant::Angle(cosine))
+            }
+        }
+    }
+
+    /// The rate and the constant of a height in the advance along the direction.
+    #[inline(always)]
+    pub fn linear<T: Real>(
+        &self,
+        element: &Element,
+        read: impl Fn(P) -> T::Space + Copy,
+    ) -> (T, T) {
+        match *self {
+            Self::Height { moved, normal, base, height, back } => {
+                let normal = read(normal);
+                let rate = normal.inner(super::element::constant::<T>(&element.direction));
+                let level = read(moved).plus(T::constant(-1.0), read(base)).inner(normal);
+                (if back { -rate } else { rate }, height.of::<T>(read) - level)
+            }
+            Self::Distance { .. } | Self::Angle { .. } => (T::constant(1.0), T::constant(0.0)),
+        }
+    }
+
+    /// Half the rate, the constant and the square of the distance in the advance along the direction.
+    #[inline(always)]
+    pub fn quadratic<T: Real>(
+        &self,
+        element: &Element,
+        read: impl Fn(P) -> T::Space + Copy,
+    ) -> (T, T, T) {
+        match *self {
+            Self::Distance { moved, fixed, square } => {
+                let across = read(moved).plus(T::constant(-1.0), read(fixed));
+                let half = across.inner(super::element::constant::<T>(&element.direction));
+                let square = square.of::<T>(read);
+                (half, across.inner(across) - square, square)
+            }
+            Self::Height { .. } | Self::Angle { .. } => {
+                (T::constant(0.0), T::constant(0.0), T::constant(0.0))
+            }
+        }
+    }
+}
+
+impl<P: Copy> Kernel<P> {
+    /// The same, with other sources.
+    pub fn map<Q>(self, f: &mut impl FnMut(P) -> Q) -> Kernel<Q> {
+        match self {
+            Self::Linear(one) => Kernel::Linear(one.map(f)),
+            Self::Difference(two) => Kernel::Difference(two.map(|one| one.map(f))),
+            Self::Quadratic(one) => Kernel::Quadratic(one.map(f)),
+            Self::Point { moved, fixed } => Kernel::Point { moved: f(moved), fixed: f(fixed) },
+            Self::Direction { moved, fixed } => {
+                Kernel::Direction { moved: f(moved), fixed: f(fixed) }
+            }
+            Self::Pair(two) => Kernel::Pair(two.map(|one| one.map(f))),
+            Self::Double(one) => Kernel::Double(one.map(f)),
+            Self::Twofold(one) => Kernel::Twofold(one.map(f)),
+        }
+    }
+
+    /// Whether it has two roots.
+    pub fn chooses(&self) -> bool {
+        match self {
+            Self::Quadratic(_) | Self::Twofold(_) => true,
+            Self::Linear(_)
+            | Self::Difference(_)
+            | Self::Point { .. }
+            | Self::Direction { .. }
+            | Self::Pair(_)
+            | Self::Double(_) => false,
+        }
+    }
+
+    /// The names of the root and of its invariant.
+    pub fn name(&self) -> (&'static str, &'static str) {
+        match self {
+            Self::Linear(one) => ("linear", one.name()),
+            Self::Difference([one, _]) => ("linear", one.name()),
+            Self::Quadratic(one) => ("quadratic", one.name()),
+            Self::Point { .. } => ("direct", "point"),
+            Self::Direction { .. } => ("direct", "direction"),
+            Self::Pair([one, _]) => ("pair", one.name()),
+            Self::Double(one) => ("double", one.name()),
+            Self::Twofold(one) => ("twofold", one.name()),
+        }
+    }
+
+    /// The joint.
+    #[inline(always)]
+    pub fn solve<T: Real>(
+        &self,
+        element: &Element,
+        size: f64,
+        sign: T::Sign,
+        read: impl Fn(P) -> T::Space + Copy,
+        roots: &mut impl Roots<T>,
+    ) -> (Moved<T>, T::Joint) {
+        let slid = |shift: T| match element.kind {
+            Kind::Helix(pitch) => {
+                let angle = shift * (1.0 / pitch);
+                (Moved { unit: angle.unit(), shift }, T::Joint::value(angle))
+            }
+            Kind::Turn | Kind::Slide | Kind::Ball => {
+                (Moved { shift, ..Moved::home() }, T::Joint::value(shift))
+            }
+        };
+        let turned = |unit: T::Plane| match element.kind {
+            Kind::Helix(pitch) => {
+                let angle = unit.argument();
+                (Moved { unit, shift: angle * pitch }, T::Joint::value(angle))
+            }
+            Kind::Turn | Kind::Slide | Kind::Ball => {
+                (Moved { unit, ..Moved::home() }, T::Joint::direction(unit))
+            }
+        };
+        let minus = T::constant(-1.0);
+        match self {
+            Self::Linear(one) => {
+                let (rate, constant) = one.linear::<T>(element, read);
+                slid(roots.linear(rate, constant))
+            }
+            Self::Difference([one, two]) => {
+                let (a, b) = (one.quadratic::<T>(element, read), two.quadratic::<T>(element, read));
+                let per = 1.0 / size;
+                slid(roots.linear((a.0 - b.0) * (2.0 * per), (b.1 - a.1) * per))
+            }
+            Self::Quadratic(one) => {
+                let (half, constant, square) = one.quadratic::<T>(element, read);
+                slid(roots.quadratic(half, constant, square, sign))
+            }
+            &Self::Point { moved, fixed } => {
+                let direction = super::element::constant::<T>(&element.direction);
+                match element.kind {
+                    Kind::Turn => {
+                        let point = super::element::constant::<T>(&element.point);
+                        let y = read(moved).plus(minus, point);
+                        let w = read(fixed).plus(minus, point);
+                        let across = y.plus(-direction.inner(y), direction);
+                        let vector = T::Plane::new(across.inner(w), direction.crossed(y).inner(w));
+                        turned(roots.turned(vector, across.inner(across), size))
+                    }
+                    Kind::Helix(_) | Kind::Slide | Kind::Ball => {
+                        slid(read(fixed).plus(minus, read(moved)).inner(direction))
+                    }
+                }
+            }
+            &Self::Direction { moved, fixed } => {
+                let direction = super::element::constant::<T>(&element.direction);
+                let (y, w) = (read(moved), read(fixed));
+                let across = y.plus(-direction.inner(y), direction);
+                let vector = T::Plane::new(across.inner(w), direction.crossed(y).inner(w));
+                turned(roots.turned(vector, across.inner(across), 1.0))
+            }
+            Self::Pair(two) => turned(roots.pair(two.map(|one| one.row::<T>(element, read).0))),
+            Self::Double(one) => {
+                let (row, of) = one.row::<T>(element, read);
+                turned(roots.double(row, of))
+            }
+            Self::Twofold(one) => {
+                let (row, of) = one.row::<T>(element, read);
+                turned(roots.twofold(row, of, sign))
+            }
+        }
+    }
+}

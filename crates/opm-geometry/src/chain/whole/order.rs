@@ -1,0 +1,126 @@
+//! The search for an order in which the joints can be found one after the other.
+
+use super::element::Kind;
+use super::nodes::Nodes;
+use super::objects::{Leg, Loop};
+use super::step::Candidate;
+use std::collections::{HashMap, HashSet};
+
+/// So many orders are tested, at most.
+const MOST_TESTED: usize = 40;
+/// So many choices has an order, at most.
+const MOST_CHOICES: usize = 2;
+
+/// The search.
+pub(super) struct Search<'l, 'n, 'a> {
+    pub leg: Leg<'l>,
+    pub nodes: &'n mut Nodes<'a>,
+    pub actuated: &'l [bool],
+    found: HashMap<u32, Vec<Candidate>>,
+    dead: HashSet<(u32, usize)>,
+    tested: usize,
+    /// The fewest joints that were left over, as bits.
+    pub stuck: u32,
+    /// Whether an order was cut off by the number of its choices.
+    pub full: bool,
+}
+
+impl<'l, 'n, 'a> Search<'l, 'n, 'a> {
+    pub fn new(leg: Leg<'l>, nodes: &'n mut Nodes<'a>, actuated: &'l [bool]) -> Self {
+        Self {
+            leg,
+            nodes,
+            actuated,
+            found: HashMap::new(),
+            dead: HashSet::new(),
+            tested: 0,
+            stuck: u32::MAX,
+            full: false,
+        }
+    }
+
+    /// The first order that passes the test.
+    pub fn run<P>(
+        &mut self,
+        test: &mut impl FnMut(&mut Nodes<'a>, &[Candidate]) -> Option<P>,
+    ) -> Option<P> {
+        let all = (1 << self.leg.elements.len()) - 1;
+        self.deeper(all, &mut Vec::new(), test)
+    }
+
+    /// Whether an order was found that did not pass.
+    pub fn untrue(&self) -> bool {
+        self.tested > 0
+    }
+
+    /// The joints of a set that are no balls.
+    fn single(&self, unknown: u32) -> impl Iterator<Item = usize> + use<'l, 'n, 'a> {
+        let elements = self.leg.elements;
+        (0..elements.len())
+            .filter(move |&i| unknown & (1 << i) != 0 && elements[i].kind != Kind::Ball)
+    }
+
+    fn candidates(&mut self, unknown: u32) -> Vec<Candidate> {
+        if let Some(found) = self.found.get(&unknown) {
+            return found.clone();
+        }
+        let joints = self.leg.elements.len();
+        let mut found = Vec::new();
+        for joint in self.single(unknown) {
+            let seen = Loop { joint, joints, unknown: unknown & !(1 << joint) };
+            found.extend(self.leg.candidates(self.nodes, &seen));
+        }
+        self.found.insert(unknown, found.clone());
+        found
+    }
+
+    fn deeper<P>(
+        &mut self,
+        unknown: u32,
+        steps: &mut Vec<Candidate>,
+        test: &mut impl FnMut(&mut Nodes<'a>, &[Candidate]) -> Option<P>,
+    ) -> Option<P> {
+        let left = self.single(unknown).count();
+        if left == 0 {
+            self.tested += 1;
+            return test(self.nodes, steps);
+        }
+        let choices = steps.iter().filter(|step| step.kernel.chooses()).count();
+        if self.tested >= MOST_TESTED || self.dead.contains(&(unknown, choices)) {
+            return None;
+        }
+        if left < self.single(self.stuck).count() {
+            self.stuck = unknown;
+        }
+        let candidates = self.candidates(unknown);
+        let motor = |one: &Candidate| self.actuated.get(one.joint).copied().unwrap_or(false);
+        let waits = self.single(unknown).any(|joint| self.actuated.get(joint) == Some(&true))
+            && !candidates.iter().any(motor);
+        let mut ranked = Vec::new();
+        for one in candidates {
+            let motor = self.actuated.get(one.joint) == Some(&true);
+            // Where no motor can be found yet, a joint after which one can.
+            let leads = waits && {
+                let next = self.candidates(unknown & !(1 << one.joint));
+                next.iter().any(|then| self.actuated.get(then.joint) == Some(&true))
+            };
+            let (weak, chooses, kind, cost) = one.rank;
+            ranked.push(((!motor, !leads, weak, chooses, kind, cost, one.joint), one));
+        }
+        ranked.sort_by_key(|(rank, _)| *rank);
+        for (_, one) in ranked {
+            if one.kernel.chooses() && choices == MOST_CHOICES {
+                self.full = true;
+                continue;
+            }
+            steps.push(one);
+            let found = self.deeper(unknown & !(1 << one.joint), steps, test);
+            if found.is_some() {
+                return found;
+            }
+            steps.pop();
+        }
+        self.dead.insert((unknown, choices));
+        None
+    }
+}

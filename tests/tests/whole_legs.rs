@@ -1,0 +1,308 @@
+//! Mechanisms whose legs are solved whole, against plain geometry, products of exponentials and differences.
+
+use fastrand::Rng;
+use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use opm_core::Manipulator;
+use opm_core::decomposition::PlatformSet;
+use opm_core::mechanism::joint::JointKind;
+use opm_tests::displacement;
+use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
+
+const SHIPPED: [&str; 8] = [
+    "delta",
+    "linear-delta",
+    "orthoglide",
+    "tripteron",
+    "3-upu",
+    "quadrupteron",
+    "stewart",
+    "hexa",
+];
+
+fn example(name: &str) -> Manipulator {
+    Manipulator::example(name).unwrap()
+}
+
+/// A pose near home: lengths within a share of the size, angles within that many radians.
+fn near(manipulator: &Manipulator, share: f64, rng: &mut Rng) -> Vec<f64> {
+    let size = manipulator.characteristic_length();
+    let coordinates = manipulator.task_coordinates().iter();
+    coordinates
+        .map(|c| {
+            let unit = if c.quantity == opm_core::Quantity::Length { size } else { 1.0 };
+            c.home + share * unit * (2.0 * rng.f64() - 1.0)
+        })
+        .collect()
+}
+
+/// The platform's displacement by each leg's joints, one after the other, as nalgebra has them.
+fn by_exponentials(manipulator: &Manipulator, joints: &[f64]) -> Vec<Isometry3<f64>> {
+    let mut values = joints.iter();
+    let legs = manipulator.mechanism().legs.iter();
+    legs.map(|leg| {
+        leg.joints.iter().fold(Isometry3::identity(), |g, joint| {
+            let mut next = |i: usize| values.next().unwrap() - joint.coordinates[i].home;
+            let about = |turn: UnitQuaternion<f64>, point: Point3<f64>| {
+                let place = point.coords;
+                Isometry3::from_parts(Translation3::from(place - turned(&turn, place)), turn)
+            };
+            let turn = |axis: nalgebra::Unit<Vector3<f64>>, q: f64| {
+                about(UnitQuaternion::from_axis_angle(&axis, q), joint.point)
+            };
+            let slide = |q: f64| {
+                let along = joint.axis.into_inner() * q;
+                Isometry3::from_parts(Translation3::from(along), UnitQuaternion::identity())
+            };
+            let own = match joint.kind {
+                JointKind::Revolute => turn(joint.axis, next(0)),
+                JointKind::Prismatic => slide(next(0)),
+                JointKind::Helical { pitch } => {
+                    let q = next(0);
+                    turn(joint.axis, q) * slide(pitch * q)
+                }
+                JointKind::Cylindrical => turn(joint.axis, next(0)) * slide(next(1)),
+                JointKind::Universal { second } => {
+                    turn(joint.axis, next(0)) * turn(second, next(1))
+                }
+                JointKind::Spherical => {
+                    let vector = Vector3::new(next(0), next(1), next(2));
+                    about(UnitQuaternion::from_scaled_axis(vector), joint.point)
+                }
+            };
+            g * own
+        })
+    })
+    .collect()
+}
+
+fn turned(turn: &UnitQuaternion<f64>, vector: Vector3<f64>) -> Vector3<f64> {
+    turn * vector
+}
+
+/// Every leg of every mode that reaches a pose ends where the platform is, and modes differ.
+#[test]
+fn legs_end_where_the_platform_is() {
+    let mut rng = Rng::with_seed(1);
+    for name in SHIPPED {
+        let m = example(name);
+        assert!(m.is_whole(), "{name}");
+        let (mut every, mut at) = (m.all_modes(), m.solution());
+        let (mut poses, mut solutions) = (0, 0);
+        for trial in 0..60 {
+            let share = [0.05, 0.2, 0.5][trial % 3];
+            let pose = near(&m, share, &mut rng);
+            let target = displacement(&m, &pose, m.home_mode());
+            let Some(found) = m.inverse_all(&pose, &mut every).unwrap() else { continue };
+            poses += 1;
+            let modes: Vec<_> = found.modes(&m).take(64).collect();
+            for mode in modes {
+                let joints = m.solution_in_mode(&every, mode, &mut at).unwrap().joints();
+                solutions += 1;
+                for end in by_exponentials(&m, joints) {
+                    let off =
+                        (end * m.mechanism().platform - target * m.mechanism().platform).norm();
+                    let turn = end.rotation.angle_to(&target.rotation);
+                    let size = m.characteristic_length();
+                    assert!(off < 1e-9 * size && turn < 1e-8, "{name} {pose:?}: {off} {turn}");
+                }
+            }
+        }
+        assert!(poses >= 30 && solutions > poses, "{name}: {poses} poses, {solutions} solutions");
+    }
+}
+
+/// Home is home: in the mode at home, every joint has its value there.
+#[test]
+fn home_is_home() {
+    for name in SHIPPED {
+        let m = example(name);
+        let mut at = m.solution();
+        let solution = m.inverse(&m.home_pose(), m.home_mode(), &mut at).unwrap().unwrap();
+        for (value, c) in solution.joints().iter().zip(m.coordinates()) {
+            assert!((value - c.home).abs() < 1e-7, "{name} {}: {value} {}", c.name, c.home);
+        }
+    }
+}
+
+/// The table of R. L. Williams II, "The Delta Parallel Robot: Kinematics Solutions", of ABB's IRB 360-1/1600.
+#[test]
+fn the_delta_of_williams() {
+    let m = example("delta");
+    assert_eq!(m.decomposition().platform(), PlatformSet::Subgroup);
+    let (mode, mut buffer) = (m.home_mode(), m.actuated_joints());
+    for (pose, expected) in
+        [([0.0, 0.0, -0.9], [-20.5, -20.5, -20.5]), ([0.3, 0.5, -1.1], [47.5, -11.6, 21.4])]
+    {
+        let found = m.inverse_actuated(&pose, mode, &mut buffer).unwrap().unwrap();
+        for (value, expected) in found.actuated().iter().zip(expected) {
+            assert!((value.to_degrees() - expected).abs() < 0.051, "{pose:?}: {value}");
+        }
+    }
+    // The other root of the first one, too: elbows inside.
+    let inside = m.parse_mode("-- -- --").unwrap();
+    let all: Vec<_> = m.modes().collect();
+    assert!(all.contains(&inside));
+}
+
+/// The lengths of a hexapod's legs are the distances of its joints.
+#[test]
+fn the_lengths_of_a_hexapod() {
+    let m = example("stewart");
+    assert_eq!(m.decomposition().platform(), PlatformSet::Free);
+    let names: Vec<_> = m.task_coordinates().iter().map(|c| c.name).collect();
+    assert_eq!(names, ["x", "y", "z", "roll", "pitch", "yaw"]);
+    let (mut rng, mut buffer) = (Rng::with_seed(2), m.actuated_joints());
+    for _ in 0..200 {
+        let mut pose = near(&m, 0.5, &mut rng);
+        pose[2] += 0.1;
+        let at = Translation3::new(pose[0], pose[1], pose[2]);
+        let turn = Rotation3::from_euler_angles(pose[3], pose[4], pose[5]);
+        let found = m.inverse_actuated(&pose, m.home_mode(), &mut buffer).unwrap().unwrap();
+        for (leg, length) in m.mechanism().legs.iter().zip(found.actuated()) {
+            let [base, top] = [leg.joints[0].point, leg.joints[2].point];
+            let moved = at * (turn * Point3::from(top - m.mechanism().platform));
+            assert!((length - (moved - base).norm()).abs() < 1e-12, "{pose:?}");
+        }
+    }
+}
+
+/// Each slider of a Tripteron moves the platform along its own axis alone.
+#[test]
+fn the_sliders_of_a_tripteron() {
+    let m = example("tripteron");
+    let mut buffer = m.actuated_joints();
+    let pose = [0.05, -0.03, 0.02];
+    let found = m.inverse_actuated(&pose, m.home_mode(), &mut buffer).unwrap().unwrap();
+    for (value, expected) in found.actuated().iter().zip(pose) {
+        assert!((value - expected).abs() < 1e-14);
+    }
+}
+
+/// A count of poses is that of plain geometry: a crank's circle meets a rod's sphere, an arm is long enough.
+#[test]
+fn counts_are_those_of_plain_geometry() {
+    let m = example("delta");
+    let axis = |name: &str, from: f64, to: f64| Axis::new(name, from, to, 17);
+    let axes = [axis("x", -1.2, 1.2), axis("y", -1.1, 1.3), axis("z", -1.7, 0.3)];
+    let grid = Grid::new(&m, axes.into()).unwrap();
+    let found = Sweep::new(&m, &grid, Modes::Any).count(&Progress::default()).unwrap();
+    let mut expected = 0;
+    for number in 0..grid.poses() {
+        let pose = grid.pose(number);
+        let reached = m.mechanism().legs.iter().all(|leg| {
+            let [motor, elbow, top] = [0, 1, 2].map(|i| leg.joints[i].point);
+            let axis = leg.joints[0].axis.into_inner();
+            let at = top + Vector3::new(pose[0], pose[1], pose[2]) - m.mechanism().platform.coords;
+            let (crank, rod) = ((elbow - motor).norm(), (top - elbow).norm());
+            let from = at - motor;
+            let (across, along) = (from - axis * axis.dot(&from), axis.dot(&from));
+            let reach = (rod * rod - along * along).sqrt();
+            let d = across.norm();
+            d <= crank + reach && d >= (crank - reach).abs()
+        });
+        expected += u64::from(reached);
+    }
+    assert_eq!(found.reachable, expected);
+    assert!(expected > 100 && expected < grid.poses());
+}
+
+/// Jacobians, rates and accelerations are those of differences.
+#[test]
+fn rates_are_those_of_differences() {
+    let mut rng = Rng::with_seed(3);
+    for name in SHIPPED {
+        let m = example(name);
+        let (mut at, mut other, mut jacobians) = (m.solution(), m.solution(), m.jacobians());
+        let (mut motion, mut singular) = (m.joint_motion(), m.singularities());
+        let mut tried = 0;
+        for _ in 0..12 {
+            let pose = near(&m, 0.2, &mut rng);
+            if m.inverse(&pose, m.home_mode(), &mut at).unwrap().is_none() {
+                continue;
+            }
+            if !m.differentiate(&at, &mut jacobians).unwrap() {
+                continue;
+            }
+            m.measure_singularities(&jacobians, &mut singular);
+            if singular.whole.serial.abs() < 1e-4 {
+                continue;
+            }
+            tried += 1;
+            let rates: Vec<f64> = pose.iter().map(|_| rng.f64() - 0.5).collect();
+            let second: Vec<f64> = pose.iter().map(|_| rng.f64() - 0.5).collect();
+            let by_pose = jacobians.joints_by_pose() * nalgebra::DVector::from_vec(rates.clone());
+            assert!(m.velocity(&at, &rates, &second, &mut motion).unwrap(), "{name}");
+            let step = 1e-4;
+            let mut joints = |t: f64| {
+                let moved: Vec<f64> = (0..pose.len())
+                    .map(|i| pose[i] + t * rates[i] + 0.5 * t * t * second[i])
+                    .collect();
+                other.clone_from(&at);
+                m.inverse_near(&moved, m.home_mode(), &mut other)
+                    .unwrap()
+                    .unwrap()
+                    .joints()
+                    .to_vec()
+            };
+            let (before, here, after) = (joints(-step), joints(0.0), joints(step));
+            for i in 0..here.len() {
+                let rate = (after[i] - before[i]) / (2.0 * step);
+                let acceleration = (after[i] - 2.0 * here[i] + before[i]) / (step * step);
+                let c = &m.coordinates()[i].name;
+                let scale = 1.0 + rate.abs();
+                assert!((motion.joint_rates[i] - by_pose[i]).abs() < 1e-9 * scale, "{name} {c}");
+                assert!(
+                    (by_pose[i] - rate).abs() < 1e-5 * scale * scale,
+                    "{name} {c}: {rate} {}",
+                    by_pose[i]
+                );
+                let found = motion.joint_accelerations[i];
+                assert!(
+                    (found - acceleration).abs() < 1e-3 * (1.0 + acceleration.abs() + rate * rate),
+                    "{name} {c}: {acceleration} {found}"
+                );
+            }
+        }
+        assert!(tried >= 4, "{name}: {tried}");
+    }
+}
+
+/// Newton's method finds the pose that the motors were computed from.
+#[test]
+fn forward_kinematics_near_a_pose() {
+    let mut rng = Rng::with_seed(4);
+    for name in SHIPPED {
+        let m = example(name);
+        let mut at = m.solution();
+        let mut found = 0;
+        for _ in 0..20 {
+            let pose = near(&m, 0.05, &mut rng);
+            let Some(solution) = m.inverse(&pose, m.home_mode(), &mut at).unwrap() else {
+                continue;
+            };
+            let actuated: Vec<f64> = m.actuated().iter().map(|&i| solution.joints()[i]).collect();
+            let Ok(assembly) = m.forward_near(&actuated, &m.home_pose(), m.home_mode()) else {
+                continue;
+            };
+            found +=
+                usize::from(assembly.pose.iter().zip(&pose).all(|(a, b)| (a - b).abs() < 1e-9));
+            assert!(assembly.residual < 1e-9, "{name}: {}", assembly.residual);
+        }
+        assert!(found >= 18, "{name}: {found} of 20");
+    }
+}
+
+/// Rods that are more level hold less of what is upright: the parallel measure of a Delta falls as it rises.
+#[test]
+fn a_delta_with_rods_that_are_nearly_level() {
+    let m = example("delta");
+    let (mut at, mut jacobians, mut measured) = (m.solution(), m.jacobians(), m.singularities());
+    let mut parallel = |z: f64| {
+        m.inverse(&[0.0, 0.0, z], m.home_mode(), &mut at).unwrap().unwrap();
+        m.differentiate(&at, &mut jacobians).unwrap();
+        m.measure_singularities(&jacobians, &mut measured);
+        measured.whole.parallel.unwrap().abs()
+    };
+    let found = [-1.06, -0.9, -0.8].map(&mut parallel);
+    assert!(found[0] > 0.05 && found.is_sorted_by(|a, b| a > b), "{found:?}");
+}
