@@ -182,7 +182,7 @@ pub struct ChangeArgs {
 /// Parses which angles an orientation is written with.
 fn coordinates() -> impl TypedValueParser<Value = OrientationCoordinates> {
     let names = PossibleValuesParser::new(OrientationCoordinates::NAMED.map(|(name, _)| name));
-    names.map(|name| OrientationCoordinates::from_name(&name).unwrap_or_default())
+    names.try_map(|name| OrientationCoordinates::from_name(&name).ok_or("no such angles"))
 }
 
 /// Find the partial subspaces and the imaginary joints of a mechanism

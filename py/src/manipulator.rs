@@ -284,7 +284,7 @@ impl Manipulator {
             )));
         };
         let mut file = self.file();
-        file.mechanism.task.coordinates = chosen;
+        file.mechanism.task.coordinates = Some(chosen);
         py.detach(|| self.changed(file))
     }
 

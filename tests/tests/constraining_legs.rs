@@ -34,7 +34,7 @@ fn compiled(
 ) -> Result<Manipulator, CompileError> {
     if round % 3 == 1 {
         let plain = mechanism.task.coordinates;
-        mechanism.task.coordinates = OrientationCoordinates::TiltTorsion;
+        mechanism.task.coordinates = Some(OrientationCoordinates::TiltTorsion);
         match Manipulator::with_decomposition(mechanism.clone(), decomposition.clone()) {
             Err(error) if error.to_string().contains("tilt-torsion") => {}
             other => return other,

@@ -484,7 +484,7 @@ fn boxes_of_constrained_mechanisms_are_never_contradicted() {
                 let drawn = constrained(&mut rng, pair, lacks, false, options);
                 let Some((mut mechanism, decomposition)) = drawn else { continue };
                 if rng.bool() {
-                    mechanism.task.coordinates = OrientationCoordinates::TiltTorsion;
+                    mechanism.task.coordinates = Some(OrientationCoordinates::TiltTorsion);
                 }
                 let Ok(m) = Manipulator::with_decomposition(mechanism, decomposition) else {
                     // There are no such angles, or the height is inclined.

@@ -240,12 +240,18 @@ impl Task {
             let orientation = euler(home(0), home(1), home(2));
             (orientation != Matrix3::identity()).then(|| orientation.transpose())
         });
-        let angles = mechanism.task.coordinates;
-        if angles == OrientationCoordinates::TiltTorsion {
-            let Some(first) = zeta else {
+        let angles = match (mechanism.task.coordinates, zeta) {
+            (Some(given), Some(_)) => given,
+            (None, Some(_)) => default_coordinates(decomposition),
+            (Some(OrientationCoordinates::EulerAngles) | None, None) => {
+                OrientationCoordinates::EulerAngles
+            }
+            (Some(OrientationCoordinates::TiltTorsion), None) => {
                 let problem = FrameProblem::NoOrientation;
                 return Err(TaskError::Frame { key: TaskKey::Coordinates, problem });
-            };
+            }
+        };
+        if let (OrientationCoordinates::TiltTorsion, Some(first)) = (angles, zeta) {
             coordinate::write_tilt_and_torsion(&mut coordinates[first..first + 3]);
         }
         refuse_names_of_joints(mechanism, &coordinates)?;
@@ -444,6 +450,11 @@ impl Task {
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
     }
+}
+
+/// The angles that an orientation is written with where a file does not say: Euler angles, whatever the decomposition.
+fn default_coordinates(_: &Decomposition) -> OrientationCoordinates {
+    OrientationCoordinates::EulerAngles
 }
 
 /// Refuses joints with the name of one of these coordinates. Files keep the names of all coordinates from joints but

@@ -18,8 +18,8 @@ pub struct TaskHints {
     pub lower: FrameHints,
     /// The upper section's frame.
     pub upper: FrameHints,
-    /// The angles that an orientation is written with.
-    pub coordinates: OrientationCoordinates,
+    /// The angles that an orientation is written with; `None` for those that suit the mechanism.
+    pub coordinates: Option<OrientationCoordinates>,
     /// Home values of task coordinates by name, metres or radians; the others follow from the
     /// geometry.
     pub home: Vec<(String, f64)>,
@@ -46,11 +46,10 @@ pub const HOME_COORDINATES: [(&str, Quantity); 12] = {
 };
 
 /// The angles with which the orientation of a spherical section is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum OrientationCoordinates {
     /// Euler angles: `zeta xi psi` with `R = Rz(zeta) Ry(xi) Rz(psi)`.
-    #[default]
     EulerAngles,
     /// Tilt and torsion: `azimuth tilt torsion` with `R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)` (I. A. Bonev,
     /// *Geometric analysis of parallel mechanisms*, 2002). The third direction is tilted towards the azimuth, and a
