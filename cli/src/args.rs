@@ -174,7 +174,8 @@ pub struct ChangeArgs {
     /// (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=..., S1.max_rate=... and S1.home=...
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<Change>,
-    /// Angles of orientations: `euler-angles` (zeta xi psi) or `tilt-torsion` (azimuth tilt torsion)
+    /// Angles of orientations: `euler-angles` (zeta xi psi), `tilt-torsion` (azimuth tilt torsion) or `roll-pitch-yaw` (roll
+    /// pitch yaw)
     #[arg(long, value_name = "ANGLES", value_parser = coordinates())]
     pub coordinates: Option<OrientationCoordinates>,
 }
