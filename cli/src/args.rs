@@ -174,7 +174,8 @@ pub struct ChangeArgs {
     /// (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=..., S1.max_rate=... and S1.home=...
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<Change>,
-    /// Angles of orientations: `euler-angles` (zeta xi psi) or `tilt-torsion` (azimuth tilt torsion)
+    /// Angles of orientations: `euler-angles` (zeta xi psi), `tilt-torsion` (azimuth tilt torsion) or `roll-pitch-yaw` (roll
+    /// pitch yaw)
     #[arg(long, value_name = "ANGLES", value_parser = coordinates())]
     pub coordinates: Option<OrientationCoordinates>,
 }
@@ -182,7 +183,7 @@ pub struct ChangeArgs {
 /// Parses which angles an orientation is written with.
 fn coordinates() -> impl TypedValueParser<Value = OrientationCoordinates> {
     let names = PossibleValuesParser::new(OrientationCoordinates::NAMED.map(|(name, _)| name));
-    names.map(|name| OrientationCoordinates::from_name(&name).unwrap_or_default())
+    names.try_map(|name| OrientationCoordinates::from_name(&name).ok_or("no such angles"))
 }
 
 /// Find the partial subspaces and the imaginary joints of a mechanism

@@ -109,8 +109,7 @@ impl Loaded {
         if !changes.is_empty() {
             changed = changed.with(changes.iter().copied()).map_err(|errors| errors.to_string())?;
         }
-        changed.mechanism.task.coordinates =
-            coordinates.unwrap_or(changed.mechanism.task.coordinates);
+        changed.mechanism.task.coordinates = coordinates.or(changed.mechanism.task.coordinates);
         let text = changed.text();
         let read =
             file::read(&text).map_err(|errors| format!("the changed {}: {errors}", self.label))?;

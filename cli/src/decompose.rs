@@ -453,6 +453,9 @@ impl Report<'_> {
             if has(CoordinateKind::Azimuth) {
                 line(&"tilt and torsion: R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)\n");
             }
+            if has(CoordinateKind::Roll) {
+                line(&"roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll)\n");
+            }
         }
         line(&actuation(self.loaded, self.mobility));
         if let Some(manipulator) = self.manipulator {

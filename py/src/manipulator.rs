@@ -257,7 +257,7 @@ impl Manipulator {
     /// coordinates : str
     ///     ``"euler-angles"``: ``zeta xi psi``, R = Rz(zeta) Ry(xi) Rz(psi). ``"tilt-torsion"``: ``azimuth tilt torsion``,
     ///     R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth), with the tilt from 0 to pi. Where that is 0 or pi, the azimuth is
-    ///     free: :meth:`locate` takes that at home.
+    ///     free: :meth:`locate` takes that at home. ``"roll-pitch-yaw"``: ``roll pitch yaw``, R = Rz(yaw) Ry(pitch) Rx(roll).
     ///
     /// Returns
     /// -------
@@ -277,14 +277,14 @@ impl Manipulator {
     /// ['x', 'y', 'azimuth', 'tilt', 'torsion']
     fn with_coordinates(&self, py: Python<'_>, coordinates: &str) -> PyResult<Self> {
         let Some(chosen) = OrientationCoordinates::from_name(coordinates) else {
-            let names = OrientationCoordinates::NAMED.map(|(name, _)| format!("{name:?}"));
+            let [first, second, third] =
+                OrientationCoordinates::NAMED.map(|(name, _)| format!("{name:?}"));
             return Err(wrong(format!(
-                "coordinates is {coordinates:?}, expected {}",
-                names.join(" or ")
+                "coordinates is {coordinates:?}, expected {first}, {second} or {third}"
             )));
         };
         let mut file = self.file();
-        file.mechanism.task.coordinates = chosen;
+        file.mechanism.task.coordinates = Some(chosen);
         py.detach(|| self.changed(file))
     }
 

@@ -31,7 +31,7 @@ def test_tilt_and_torsion_are_those_of_the_formula() -> None:
     assert m == pickle.loads(pickle.dumps(m)) == opm.Manipulator.parse(m.text)
     longer = m.with_parameters({"leg1.h": 0.13})
     assert [c.name for c in longer.task_coordinates][2:] == ["azimuth", "tilt", "torsion"]
-    with pytest.raises(opm.OpmError, match='expected "euler-angles" or "tilt-torsion"'):
+    with pytest.raises(opm.OpmError, match='expected "euler-angles", "tilt-torsion" or "roll-pitch-yaw"'):
         m.with_coordinates("tilt")
     with pytest.raises(opm.OpmError, match="has no Euler angles"):
         opm.examples.load("planar-3rrr").with_coordinates("tilt-torsion")

@@ -170,7 +170,7 @@ def test_values_that_do_not_assemble_are_rows_that_say_so(ask):
         (["--vary", "hh=0.1:0.2:3"], "did you mean `h`"),
         (["--vary", "h=0.1:0.2"], "NAME=MIN:MAX:COUNT"),
         (["--vary", "h=0.1:0.2:0"], "0 values, expected 1"),
-        (["--coordinates", "tilt"], "possible values: euler-angles, tilt-torsion"),
+        (["--coordinates", "tilt"], "possible values: euler-angles, tilt-torsion, roll-pitch-yaw"),
         (["--explain", "--kind", "upper"], "--explain: is of poses"),
         (["--inscribed", "ball", *GRID], "--inscribed: a ball needs a set that varies in three"),
         (["--inscribed", "disc", "--grid=x=-0.1:0.1:5", "--grid=xi=-0.1:0.1:5"], "of one unit"),

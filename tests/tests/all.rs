@@ -25,6 +25,7 @@ mod one_subspace;
 mod paper;
 mod paths;
 mod rejections;
+mod roll_pitch_yaw;
 mod rows;
 mod shards;
 mod singularity;

@@ -26,17 +26,22 @@ fn options(round: usize) -> Options {
     Options { limited: 0.0, balls: round % 2 == 1 }
 }
 
-/// Compiles a mechanism; every third one has tilt and torsion in place of its Euler angles, if it has these.
+/// Compiles a mechanism; every third one has tilt and torsion in place of its Euler angles, if it has these, and every third
+/// one roll, pitch and yaw.
 fn compiled(
     mut mechanism: Mechanism,
     decomposition: Decomposition,
     round: usize,
 ) -> Result<Manipulator, CompileError> {
-    if round % 3 == 1 {
-        let plain = mechanism.task.coordinates;
-        mechanism.task.coordinates = OrientationCoordinates::TiltTorsion;
+    let other = match round % 3 {
+        0 => None,
+        1 => Some(OrientationCoordinates::TiltTorsion),
+        _ => Some(OrientationCoordinates::RollPitchYaw),
+    };
+    if let Some(other) = other {
+        let plain = mechanism.task.coordinates.replace(other);
         match Manipulator::with_decomposition(mechanism.clone(), decomposition.clone()) {
-            Err(error) if error.to_string().contains("tilt-torsion") => {}
+            Err(error) if error.to_string().contains(other.name()) => {}
             other => return other,
         }
         mechanism.task.coordinates = plain;

@@ -483,9 +483,8 @@ fn boxes_of_constrained_mechanisms_are_never_contradicted() {
                 let options = Options { limited: [0.0, 0.3][rng.usize(..2)], balls: false };
                 let drawn = constrained(&mut rng, pair, lacks, false, options);
                 let Some((mut mechanism, decomposition)) = drawn else { continue };
-                if rng.bool() {
-                    mechanism.task.coordinates = OrientationCoordinates::TiltTorsion;
-                }
+                let others = OrientationCoordinates::NAMED.map(|(_, coordinates)| coordinates);
+                mechanism.task.coordinates = Some(others[rng.usize(..others.len())]);
                 let Ok(m) = Manipulator::with_decomposition(mechanism, decomposition) else {
                     // There are no such angles, or the height is inclined.
                     continue;

@@ -484,8 +484,8 @@ fn given_frames_shift_home() {
 #[test]
 fn names_of_coordinates_are_no_names_of_joints() {
     let text = opm_core::mechanism::examples::find("planar-3rrr").unwrap().text;
-    use CoordinateKind::{Azimuth, H, Tilt, Torsion};
-    let rare = [Azimuth, H, Tilt, Torsion];
+    use CoordinateKind::{Azimuth, H, Pitch, Roll, Tilt, Torsion, Yaw};
+    let rare = [Azimuth, H, Tilt, Torsion, Roll, Pitch, Yaw];
     for kind in CoordinateKind::ALL.into_iter().filter(|kind| !rare.contains(kind)) {
         let renamed = text.replacen("name = \"A1\"", &format!("name = {:?}", kind.name()), 1);
         assert_ne!(renamed, text);

@@ -29,7 +29,7 @@ fn mechanism(name: &str) -> Mechanism {
 fn both(name: &str) -> [Manipulator; 2] {
     let euler = mechanism(name);
     let mut tilted = euler.clone();
-    tilted.task = TaskHints { coordinates: TiltTorsion, ..tilted.task };
+    tilted.task = TaskHints { coordinates: Some(TiltTorsion), ..tilted.task };
     [euler, tilted].map(|mechanism| Manipulator::new(mechanism).unwrap())
 }
 
@@ -221,7 +221,7 @@ fn all_orientations_have_the_haar_measure() {
 #[test]
 fn a_planar_mechanism_has_no_tilt() {
     let mut planar = mechanism("planar-3rrr");
-    planar.task.coordinates = TiltTorsion;
+    planar.task.coordinates = Some(TiltTorsion);
     let error = Manipulator::new(planar).unwrap_err().to_string();
     assert!(!error.is_empty());
 }

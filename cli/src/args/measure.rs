@@ -18,9 +18,10 @@ const MOST_BOXES: f64 = 1e12;
 /// of threads. A pose counts as in `opm workspace`: if it is in reach and within all joint limits.
 ///
 /// The measure is taken over the product of all ranges. Orientations are weighed by the Haar measure, which
-/// is uniform over rotations: xi by sin xi, tilt by sin tilt, nu by cos(nu - home). All orientations, each once, are
-/// zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to
-/// positive xi counts orientations twice if zeta has a full revolution.
+/// is uniform over rotations: xi by sin xi, tilt by sin tilt, pitch by cos pitch, nu by cos(nu - home). All orientations,
+/// each once, are zeta=-180deg:180deg, xi=0:180deg, psi=-180deg:180deg, or roll=-180deg:180deg, pitch=-90deg:90deg,
+/// yaw=-180deg:180deg, together 8 pi^2 rad^3. A range from negative to positive xi counts orientations twice if zeta has a
+/// full revolution.
 ///
 /// Where legs tie coordinates together, --over takes those that the others follow from, and the measure is over
 /// these. An orientation of which an angle follows is not weighed.

@@ -17,9 +17,9 @@
 //! The bounds hold for the poses that [`Manipulator::inverse`] finds in reach and within limits, including
 //! its tolerance for rounding on a limit or on the boundary of reach, a fraction of 1e-12.
 //!
-//! The coordinates of a box are lengths and angles, except for `xi` and `nu`, which tilt an axis in a
-//! sphere. For these the coordinate is the cosine or the sine, so that all points of a box have the same
-//! weight in the invariant measure of rotations (Haar's, `sin xi`) and of directions (`cos nu`).
+//! The coordinates of a box are lengths and angles, except for `xi`, `pitch` and `nu`, which tilt an axis
+//! in a sphere. For these the coordinate is the cosine or the sine, so that all points of a box have the same
+//! weight in the invariant measure of rotations (Haar's, `sin xi`, `cos pitch`) and of directions (`cos nu`).
 
 mod area;
 mod boundary;
@@ -55,7 +55,8 @@ pub struct Side {
 }
 
 /// An interval of an angle `α` from one multiple of π to the next, over which `-cos α` or `cos α` grows from
-/// -1 to 1. The one that grows replaces the angle. `α` is `xi`, or `nu` minus its value at home plus π/2.
+/// -1 to 1. The one that grows replaces the angle. `α` is `xi`, `pitch` plus π/2, or `nu` minus its
+/// value at home plus π/2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HalfTurn {
     /// The beginning of the interval, in multiples of π.
@@ -328,7 +329,7 @@ impl Manipulator {
     }
 }
 
-/// The unit vector at the angle that `at` replaces: `xi`, or `nu` minus its value at home.
+/// The unit vector at the angle that `at` replaces: `xi`, `pitch`, or `nu` minus its value at home.
 fn polar<const N: usize>(
     half_turn: HalfTurn,
     at: Affine<N>,
@@ -337,6 +338,10 @@ fn polar<const N: usize>(
     let sign = half_turn.sign();
     let (cosine, sine) = (at * -sign, (-at.square() + 1.0).sqrt() * sign);
     let alpha = Plane { re: cosine, im: sine };
-    // nu is α - π/2.
-    if kind == Some(CoordinateKind::Nu) { Plane { re: alpha.im, im: -alpha.re } } else { alpha }
+    // pitch and nu are α - π/2.
+    if matches!(kind, Some(CoordinateKind::Pitch | CoordinateKind::Nu)) {
+        Plane { re: alpha.im, im: -alpha.re }
+    } else {
+        alpha
+    }
 }

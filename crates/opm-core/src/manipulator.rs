@@ -283,6 +283,9 @@ impl Manipulator {
             | CoordinateKind::Azimuth
             | CoordinateKind::Tilt
             | CoordinateKind::Torsion
+            | CoordinateKind::Roll
+            | CoordinateKind::Pitch
+            | CoordinateKind::Yaw
             | CoordinateKind::Mu
             | CoordinateKind::Nu => return false,
         };
@@ -424,23 +427,25 @@ impl Manipulator {
         modes.min_by(|&a, &b| displaced(a).total_cmp(&displaced(b))).unwrap_or(of_legs)
     }
 
-    /// Takes the values at home of the dependent coordinates that follow there. Where Euler angles are singular at
-    /// home, the first one makes up for the third.
+    /// Takes the values at home of the dependent coordinates that follow there. Where the angles of an orientation are
+    /// singular at home, the one about the third direction makes up for the last rotation.
     fn complete_home(&mut self) {
         let Some(dependent) = &self.dependent else { return };
         let (coordinates, independent) = (&dependent.coordinates, &dependent.independent);
         let Ok(mut all) = self.completed(&self.home_pose(), self.home_mode) else { return };
         let kind = |i: usize| self.task.coordinates[i].kind();
-        let first =
-            |&&i: &&usize| matches!(kind(i), CoordinateKind::Zeta | CoordinateKind::Azimuth);
-        if let Some(&zeta) = independent.iter().find(first) {
+        let about_third = |&&i: &&usize| {
+            matches!(kind(i), CoordinateKind::Zeta | CoordinateKind::Azimuth | CoordinateKind::Yaw)
+        };
+        if let Some(&found) = independent.iter().find(about_third) {
+            let first = if kind(found) == CoordinateKind::Yaw { found - 2 } else { found };
+            let angles: [usize; 3] = [first, first + 1, first + 2];
             let (v, b) = self.task.sections(&all);
-            let displacement = if zeta < self.task.lower_count { v } else { b };
+            let displacement = if first < self.task.lower_count { v } else { b };
             let r = displacement.spherical();
-            let angles: [usize; 3] = [zeta, zeta + 1, zeta + 2];
-            let mut euler = self.task.angles.to_euler(angles.map(|i| all[i]));
-            euler[0] -= r[(1, 0)].atan2(r[(0, 0)]);
-            let moved = self.task.angles.of_euler(euler);
+            let mut factors = self.task.angles.to_factors(angles.map(|i| all[i]));
+            factors[0] -= r[(1, 0)].atan2(r[(0, 0)]);
+            let moved = self.task.angles.of_factors(factors);
             angles.into_iter().zip(moved).for_each(|(i, angle)| all[i] = angle);
         }
         for (coordinate, &i) in self.dependent_coordinates.iter_mut().zip(coordinates) {

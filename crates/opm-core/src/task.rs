@@ -22,7 +22,7 @@
 //! one is that of `I`;
 //! `theta phi` are angles about the normal or the axis, `zeta xi psi` are Euler angles
 //! `Rz(zeta) Ry(xi) Rz(psi)`; [`OrientationCoordinates`] can make them `azimuth tilt torsion`,
-//! `Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)`; and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
+//! `Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)`, or `roll pitch yaw`, `Rz(yaw) Ry(pitch) Rx(roll)`; and `mu nu` tilt the axis of `I` by `Rx(mu) Ry(nu)`. All of them have
 //! their home values at home.
 //!
 //! # Frames
@@ -53,7 +53,8 @@
 //!
 //! [`TaskHints`](crate::mechanism::TaskHints), `[task]` in a file, can override these rules: the sense of
 //! `d`, of `w` and of a normal, the direction of `x`, and the point that lengths are measured from; the
-//! values at home change accordingly. Where `I` is a rotation about a plane's normal, that normal cannot be
+//! values at home change accordingly. It can give values at home, too: an orientation in Euler angles or in roll, pitch and
+//! yaw, from which the angles that the pose is written with follow. Where `I` is a rotation about a plane's normal, that normal cannot be
 //! chosen: it is `axis`. Without `I`, `axis` of a section is the third direction of the frame of a sphere or of a
 //! translational space, or the sense of a cylinder's axis.
 
@@ -68,12 +69,12 @@ mod pose;
 pub use coordinate::{CoordinateKind, TaskCoordinate};
 pub use displacement::euler;
 pub(crate) use displacement::{
-    Form, SectionValues, euler_of, lower_angles, lower_displacement, upper_angles,
+    Form, SectionValues, lower_angles, lower_displacement, orientation_of, upper_angles,
     upper_displacement,
 };
 pub use error::{FrameProblem, OddJoint, TaskError};
 pub(crate) use height::Height;
-pub(crate) use pose::other_triple;
+pub(crate) use pose::other_factors;
 
 // The types of `Task`'s fields and results.
 pub use crate::group::{Displacement, Subspace, SubspaceKind};
@@ -84,8 +85,10 @@ use crate::group::{CylindricalDisplacement, IntersectionMotion, MotionType, Path
 use crate::mechanism::leg::{Leg, Section};
 use crate::mechanism::{Mechanism, OrientationCoordinates, TaskKey};
 use crate::numeric::angle::sin_cos_of_each;
+use displacement::orientation;
 use frame::Meeting;
 use nalgebra::{Complex, Isometry3, Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
+use pose::angles_of;
 
 /// The subspaces' frames and the coordinates of a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,8 +111,8 @@ pub struct Task {
     pub(crate) height: Option<Height>,
     /// The angles that the orientation of the pose is written with, if it has one.
     pub(crate) angles: OrientationCoordinates,
-    /// The inverse of the platform's orientation at home, in the frame of the section that has the Euler
-    /// angles; `None` where the pose has no Euler angles, and where it is the identity.
+    /// The inverse of the platform's orientation at home, in the frame of the section that has an orientation; `None` where
+    /// the pose has none, and where it is the identity.
     home_orientation_inverse: Option<Matrix3<f64>>,
     /// The coordinates other than a height of both sections.
     in_plane: [InPlane; 2],
@@ -224,29 +227,38 @@ impl Task {
         });
         let lower_count = coordinates.len();
         coordinates.extend(of_upper);
-        for (name, value) in &mechanism.task.home {
-            match coordinates.iter_mut().find(|c| c.name == name) {
-                Some(coordinate) => coordinate.home = *value,
-                None => {
-                    let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
-                    let expected = names.join(", ");
-                    return Err(TaskError::Unknown { name: name.clone(), expected });
-                }
-            }
-        }
         let zeta = coordinates.iter().position(|c| c.kind() == CoordinateKind::Zeta);
-        let home_orientation_inverse = zeta.and_then(|first| {
-            let home = |i: usize| coordinates[first + i].home;
-            let orientation = euler(home(0), home(1), home(2));
-            (orientation != Matrix3::identity()).then(|| orientation.transpose())
+        let given = take_home(&mechanism.task.home, &mut coordinates)?;
+        let home_orientation = zeta.map(|first| match given {
+            Some(given) => orientation(OrientationCoordinates::RollPitchYaw, given),
+            None => {
+                let home = |i: usize| coordinates[first + i].home;
+                euler(home(0), home(1), home(2))
+            }
         });
-        let angles = mechanism.task.coordinates;
-        if angles == OrientationCoordinates::TiltTorsion {
-            let Some(first) = zeta else {
-                let problem = FrameProblem::NoOrientation;
+        let home_orientation_inverse = home_orientation
+            .filter(|orientation| *orientation != Matrix3::identity())
+            .map(|orientation| orientation.transpose());
+        let angles = match (mechanism.task.coordinates, zeta) {
+            (Some(given), Some(_)) => given,
+            (None, Some(_)) => default_coordinates(decomposition),
+            (Some(OrientationCoordinates::EulerAngles) | None, None) => {
+                OrientationCoordinates::EulerAngles
+            }
+            (
+                Some(
+                    given @ (OrientationCoordinates::TiltTorsion
+                    | OrientationCoordinates::RollPitchYaw),
+                ),
+                None,
+            ) => {
+                let problem = FrameProblem::NoOrientation(given);
                 return Err(TaskError::Frame { key: TaskKey::Coordinates, problem });
-            };
-            coordinate::write_tilt_and_torsion(&mut coordinates[first..first + 3]);
+            }
+        };
+        if let (Some(first), Some(orientation)) = (zeta, &home_orientation) {
+            let of_section = &mut coordinates[first..first + 3];
+            write_orientation(angles, of_section, given, orientation);
         }
         refuse_names_of_joints(mechanism, &coordinates)?;
         let motion = |frame: &Subspace| match &intersection {
@@ -321,8 +333,8 @@ impl Task {
         self.intersection.as_ref().map(IntersectionAxis::motion_type)
     }
 
-    /// The section that has the Euler angles of the pose; `None` where the pose has none.
-    pub(crate) fn euler_section(&self) -> Option<Section> {
+    /// The section that has the orientation of the pose, as three angles; `None` where the pose has none.
+    pub(crate) fn oriented_section(&self) -> Option<Section> {
         match (self.lower.kind, self.shared(), self.upper.kind) {
             (_, _, SubspaceKind::Spherical) => Some(Section::Upper),
             (SubspaceKind::Spherical, None, _) => Some(Section::Lower),
@@ -330,12 +342,12 @@ impl Task {
         }
     }
 
-    /// The displacement from home of a section that its coordinates describe: Euler angles are absolute.
+    /// The displacement from home of a section that its coordinates describe: the angles of an orientation are absolute.
     #[inline(always)]
     fn displaced_from_home(&self, section: Section, displacement: Displacement) -> Displacement {
         match (displacement, &self.home_orientation_inverse) {
             (Displacement::Spherical(absolute), Some(inverse))
-                if self.euler_section() == Some(section) =>
+                if self.oriented_section() == Some(section) =>
             {
                 Displacement::Spherical(absolute * inverse)
             }
@@ -343,16 +355,19 @@ impl Task {
         }
     }
 
-    /// Whether [`Task::row`] is the path of a row: the azimuth moves the lower section along no path of one screw.
+    /// Whether [`Task::row`] is the path of a row: the azimuth moves the lower section along no path of one screw, and the
+    /// axis of a roll is another one in each row.
     pub(crate) fn rows_are_paths(&self) -> bool {
         match self.angles {
             OrientationCoordinates::EulerAngles => true,
-            OrientationCoordinates::TiltTorsion => self.euler_section() == Some(Section::Upper),
+            OrientationCoordinates::TiltTorsion | OrientationCoordinates::RollPitchYaw => {
+                self.oriented_section() == Some(Section::Upper)
+            }
         }
     }
 
     /// The path of `v · exp(I τ)` as the first coordinate grows from its value at home, where that is `start`;
-    /// of Euler angles, not of tilt and torsion: see [`Task::rows_are_paths`].
+    /// of Euler angles, not of other angles: see [`Task::rows_are_paths`].
     #[inline(always)]
     pub(crate) fn row(&self, start: &Displacement) -> Path {
         let rate = Complex::new(1.0, 0.0);
@@ -420,13 +435,18 @@ impl Task {
         self.lower.isometry(v) * self.upper.isometry(b)
     }
 
-    /// The platform's orientation at home, base coordinates: that of the Euler angles at home about the axes of
-    /// their section's frame, or the identity where the pose has no Euler angles.
+    /// The angles that the orientation of the pose is written with; Euler angles where it has none.
+    pub fn orientation_coordinates(&self) -> OrientationCoordinates {
+        self.angles
+    }
+
+    /// The platform's orientation at home, base coordinates: that of the angles at home about the axes of
+    /// their section's frame, or the identity where the pose has no orientation.
     pub fn home_orientation(&self) -> UnitQuaternion<f64> {
         let Some(inverse) = self.home_orientation_inverse else {
             return UnitQuaternion::identity();
         };
-        let axes = match self.euler_section() {
+        let axes = match self.oriented_section() {
             Some(Section::Lower) => self.lower.axes,
             Some(Section::Upper) | None => self.upper.axes,
         };
@@ -434,15 +454,88 @@ impl Task {
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation))
     }
 
-    /// The inverse of the platform's orientation at home, which turns an orientation by Euler angles into a
-    /// displacement from home; `None` for the identity.
+    /// The inverse of the platform's orientation at home, which turns an orientation into a displacement from
+    /// home; `None` for the identity.
     pub(crate) fn home_orientation_inverse(&self) -> Option<&Matrix3<f64>> {
         self.home_orientation_inverse.as_ref()
+    }
+
+    /// The orientation at home for which Euler angles are those of the pose; `None` for the identity. With
+    /// `Rx(roll) Ry(π/2) = Ry(π/2) Rz(roll)`, the Euler angles `yaw`, `pitch + π/2` and `roll` are of the orientation after a
+    /// right angle about the second direction.
+    #[inline(always)]
+    pub(crate) fn euler_home(&self) -> Option<Matrix3<f64>> {
+        let home = self.home_orientation_inverse.as_ref().map(Matrix3::transpose);
+        match self.angles {
+            OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion => home,
+            OrientationCoordinates::RollPitchYaw => {
+                let home = home.unwrap_or_else(Matrix3::identity);
+                let [x, y, z] = [0, 1, 2].map(|i| home.column(i));
+                Some(Matrix3::from_columns(&[-z, y.into_owned(), x.into_owned()]))
+            }
+        }
     }
 
     /// The pose at home, radians and metres.
     pub fn home(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.home).collect()
+    }
+}
+
+/// The angles that an orientation is written with where a file does not say: Euler angles, whatever the decomposition.
+fn default_coordinates(_: &Decomposition) -> OrientationCoordinates {
+    OrientationCoordinates::EulerAngles
+}
+
+/// Takes the values at home of a file. Roll, pitch and yaw, if one of them is given, are returned.
+fn take_home(
+    given: &[(String, f64)],
+    coordinates: &mut [TaskCoordinate],
+) -> Result<Option<[f64; 3]>, TaskError> {
+    use CoordinateKind::{Pitch, Psi, Roll, Xi, Yaw, Zeta};
+    let oriented = coordinates.iter().any(|c| c.kind() == Zeta);
+    let mut angles = None;
+    for (name, value) in given {
+        let place = [Roll, Pitch, Yaw].iter().position(|kind| kind.name() == name);
+        match (coordinates.iter_mut().find(|c| c.name == name), place.filter(|_| oriented)) {
+            (Some(coordinate), _) => coordinate.home = *value,
+            (None, Some(place)) => angles.get_or_insert([0.0; 3])[place] = *value,
+            (None, None) => {
+                let names: Vec<_> = coordinates.iter().map(|c| c.name).collect();
+                let expected = names.join(", ");
+                return Err(TaskError::Unknown { name: name.clone(), expected });
+            }
+        }
+    }
+    let first = |kinds: [CoordinateKind; 3]| {
+        let mut names = given.iter().map(|(name, _)| name);
+        names.find(|name| kinds.iter().any(|kind| kind.name() == *name)).cloned()
+    };
+    match (first([Zeta, Xi, Psi]), first([Roll, Pitch, Yaw])) {
+        (Some(euler), Some(other)) => Err(TaskError::HomeTwice { euler, other }),
+        (Some(_), None) | (None, Some(_)) | (None, None) => Ok(angles),
+    }
+}
+
+/// Replaces Euler angles, with their values at home, by the angles of a kind. `given` are the roll, the pitch and the yaw at
+/// home if these are given, and the orientation is that at home.
+fn write_orientation(
+    angles: OrientationCoordinates,
+    of_section: &mut [TaskCoordinate],
+    given: Option<[f64; 3]>,
+    orientation: &Matrix3<f64>,
+) {
+    if given.is_some() {
+        let euler = angles_of(OrientationCoordinates::EulerAngles, orientation, [0.0; 3]);
+        of_section.iter_mut().zip(euler).for_each(|(coordinate, home)| coordinate.home = home);
+    }
+    match angles {
+        OrientationCoordinates::EulerAngles => {}
+        OrientationCoordinates::TiltTorsion => coordinate::write_tilt_and_torsion(of_section),
+        OrientationCoordinates::RollPitchYaw => {
+            let home = given.unwrap_or_else(|| angles_of(angles, orientation, [0.0; 3]));
+            coordinate::write_roll_pitch_yaw(of_section, home);
+        }
     }
 }
 
@@ -452,8 +545,9 @@ fn refuse_names_of_joints(
     mechanism: &Mechanism,
     coordinates: &[TaskCoordinate],
 ) -> Result<(), TaskError> {
-    use CoordinateKind::{Azimuth, H, Tilt, Torsion};
-    let rare = coordinates.iter().filter(|c| matches!(c.kind(), H | Azimuth | Tilt | Torsion));
+    use CoordinateKind::{Azimuth, H, Pitch, Roll, Tilt, Torsion, Yaw};
+    let is_rare = |kind| matches!(kind, H | Azimuth | Tilt | Torsion | Roll | Pitch | Yaw);
+    let rare = coordinates.iter().filter(|c| is_rare(c.kind()));
     for TaskCoordinate { name, .. } in rare {
         let has = |leg: &&Leg| leg.joints.iter().any(|joint| joint.name == *name);
         if let Some(leg) = mechanism.legs.iter().find(has) {

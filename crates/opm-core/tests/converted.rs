@@ -25,7 +25,7 @@ fn families() -> Vec<MechanismFile> {
         let limits = [("max_rate.S", Number(0.5)), ("limits.S", Pair([-0.6, 0.7]))];
         let mut other = file.with(moved.chain(limits)).unwrap();
         if file.quantity_of("home.xi").is_some() {
-            other.mechanism.task.coordinates = OrientationCoordinates::TiltTorsion;
+            other.mechanism.task.coordinates = Some(OrientationCoordinates::TiltTorsion);
         }
         other
     });

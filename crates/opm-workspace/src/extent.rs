@@ -114,8 +114,10 @@ impl Range {
         let (name, home) = (coordinate.name, coordinate.home);
         let [min, max] = match coordinate.quantity {
             Quantity::Length => [home - size, home + size],
-            // Elsewhere zeta and psi tell a tilt from its opposite.
-            Quantity::Angle if is_tilt(coordinate.kind()) && follows_tilt(manipulator) => {
+            // Elsewhere the other two angles tell a tilt from its opposite.
+            Quantity::Angle
+                if singular_at(coordinate.kind()).is_some() && follows_tilt(manipulator) =>
+            {
                 [-PI, PI].map(|end| end + whole_turns(home))
             }
             Quantity::Angle => one_turn(coordinate.kind(), home),
@@ -130,11 +132,11 @@ impl Range {
         self.extent.max - self.extent.min
     }
 
-    /// Whether it is an angle that others make up for at a tilt of zero: an Euler angle about the intersection motion or
-    /// the platform's axis, or the azimuth.
-    fn is_free_where_level(&self) -> bool {
-        use CoordinateKind::{Azimuth, Psi, Zeta};
-        matches!(self.kind, Zeta | Psi | Azimuth)
+    /// Whether it is an angle that another one makes up for where the angles of an orientation are singular: an Euler angle
+    /// about the intersection motion or the platform's axis, the azimuth, a roll or a yaw.
+    fn is_free_where_singular(&self) -> bool {
+        use CoordinateKind::{Azimuth, Psi, Roll, Yaw, Zeta};
+        matches!(self.kind, Zeta | Psi | Azimuth | Roll | Yaw)
     }
 
     /// The range with half its width more on both sides, if it may grow: thin parts may lie between the
@@ -169,15 +171,25 @@ impl Range {
     }
 }
 
-/// Whether it is the angle between the third directions, before and after.
-fn is_tilt(kind: CoordinateKind) -> bool {
-    matches!(kind, CoordinateKind::Xi | CoordinateKind::Tilt)
+/// Where the angles of an orientation are singular, up to half turns, if it is that of them which tells: for Euler angles and
+/// for tilt and torsion the angle between the third directions, before and after, and else the pitch.
+fn singular_at(kind: CoordinateKind) -> Option<f64> {
+    use CoordinateKind::{
+        Azimuth, H, Mu, Nu, Phi, Pitch, Psi, Roll, Theta, Tilt, Torsion, W, X, Xi, Y, Yaw, Z, Zeta,
+    };
+    match kind {
+        Xi | Tilt => Some(0.0),
+        Pitch => Some(FRAC_PI_2),
+        X | Y | Z | H | W | Theta | Phi | Zeta | Psi | Azimuth | Torsion | Roll | Yaw | Mu | Nu => {
+            None
+        }
+    }
 }
 
-/// Whether the third angle of an orientation follows from the tilt, so that a negative tilt is another pose.
+/// Whether the last angle of an orientation follows from that which tilts, so that a tilt to the other side is another pose.
 fn follows_tilt(manipulator: &Manipulator) -> bool {
-    use CoordinateKind::{Psi, Torsion};
-    manipulator.dependent_coordinates().iter().any(|c| matches!(c.kind(), Psi | Torsion))
+    use CoordinateKind::{Psi, Roll, Torsion};
+    manipulator.dependent_coordinates().iter().any(|c| matches!(c.kind(), Psi | Torsion | Roll))
 }
 
 /// The search for the extent of the workspace, by sweeps of coarse grids.
@@ -247,17 +259,20 @@ impl<'a> Search<'a> {
             let Some(hits) = self.hits(&ranges)? else { return Ok(ranges) };
             let mut found = ranges.clone();
             let mut farther = false;
-            // At a tilt of zero, zeta and psi are angles about the same axis: going on along one of them
-            // gives orientations again that the other has given. The azimuth has no meaning there.
-            let tilt = ranges.iter().find(|range| is_tilt(range.kind));
-            let level = tilt.is_some_and(|tilt| {
-                let slack = FOLLOWED * tilt.width();
-                let nearest = PI * (tilt.extent.min / PI).round();
-                nearest >= tilt.extent.min - slack && nearest <= tilt.extent.max + slack
+            // Where these are singular, as at a tilt of zero, two angles are about the same axis: going on along one of
+            // them gives orientations again that the other has given. The azimuth has no meaning there.
+            let tilt = ranges.iter().find_map(|range| Some((range, singular_at(range.kind)?)));
+            let singular = tilt.is_some_and(|(Range { extent, .. }, at)| {
+                let slack = FOLLOWED * (extent.max - extent.min);
+                let nearest = at + PI * ((extent.min - at) / PI).round();
+                nearest >= extent.min - slack && nearest <= extent.max + slack
             });
             for (number, range) in found.iter_mut().enumerate() {
                 let least = FOLLOWED * range.width();
-                if range.extent.unbounded || least == 0.0 || level && range.is_free_where_level() {
+                if range.extent.unbounded
+                    || least == 0.0
+                    || singular && range.is_free_where_singular()
+                {
                     continue;
                 }
                 let mut ends = [0.0; 2];
@@ -451,15 +466,16 @@ struct Hit {
     poses: [Vec<f64>; 2],
 }
 
-/// The range of an angle whose full revolutions do not matter. Of Euler angles and tilts it gives every
+/// The range of an angle whose full revolutions do not matter. Of the angles of orientations and of tilts it gives every
 /// orientation or direction once, that of home among them.
 pub(crate) fn one_turn(kind: CoordinateKind, home: f64) -> [f64; 2] {
     use CoordinateKind::{
-        Azimuth, H, Mu, Nu, Phi, Psi, Theta, Tilt, Torsion, W, X, Xi, Y, Z, Zeta,
+        Azimuth, H, Mu, Nu, Phi, Pitch, Psi, Roll, Theta, Tilt, Torsion, W, X, Xi, Y, Yaw, Z, Zeta,
     };
     match kind {
         Xi | Tilt => [0.0, PI].map(|end| end + PI * (home / PI).floor()),
-        Zeta | Psi | Azimuth | Torsion => [-PI, PI].map(|end| end + whole_turns(home)),
+        Pitch => [-FRAC_PI_2, FRAC_PI_2].map(|end| end + PI * (home / PI).round()),
+        Zeta | Psi | Azimuth | Torsion | Roll | Yaw => [-PI, PI].map(|end| end + whole_turns(home)),
         Nu => [home - FRAC_PI_2, home + FRAC_PI_2],
         Theta | Phi | Mu => [home - PI, home + PI],
         X | Y | Z | H | W => unreachable!("a length has no revolutions"),

@@ -121,6 +121,7 @@ fn word(bytes: &mut Bytes<'_>) -> &'static str {
         "json",
         "euler-angles",
         "tilt-torsion",
+        "roll-pitch-yaw",
         "axes",
         "links",
         "axis",

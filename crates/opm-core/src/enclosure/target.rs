@@ -7,8 +7,8 @@ use crate::boxes::{Affine, Plane, Target};
 pub enum Coordinate<const N: usize> {
     /// A coordinate that is linear in the box.
     Linear(Affine<N>),
-    /// An angle that the box replaces by its cosine or sine, as a unit vector at `xi`, or at `nu` minus its
-    /// value at home.
+    /// An angle that the box replaces by its cosine or sine, as a unit vector at `xi` or `pitch`, or at `nu`
+    /// minus its value at home.
     Polar(Plane<N>),
 }
 
@@ -54,7 +54,7 @@ pub mod task {
     use crate::group::{IntersectionMotion, MotionType, SphericalMotion, SubspaceKind};
     use crate::mechanism::OrientationCoordinates;
     use crate::mechanism::leg::Section;
-    use crate::task::{Task, euler_of, lower_displacement, upper_displacement};
+    use crate::task::{Task, lower_displacement, orientation_of, upper_displacement};
     use nalgebra::Complex;
 
     /// The coordinates of a section other than a height, and their values at home; zeros beyond the last. `pose` begins
@@ -111,10 +111,10 @@ pub mod task {
         })
     }
 
-    /// An orientation by Euler angles as a displacement from home; other displacements are that already.
+    /// An orientation as a displacement from home; other displacements are that already.
     fn from_home<const N: usize>(task: &Task, section: Section, g: Target<N>) -> Target<N> {
         match (g, task.home_orientation_inverse()) {
-            (Target::Spherical(r), Some(inverse)) if task.euler_section() == Some(section) => {
+            (Target::Spherical(r), Some(inverse)) if task.oriented_section() == Some(section) => {
                 Target::Spherical(r.after(inverse))
             }
             _ => g,
@@ -128,34 +128,41 @@ pub mod task {
         task: &Task,
         pose: &[Coordinate<N>],
     ) -> Option<(Affine<N>, Target<N>)> {
-        let (mut pose, _) = in_plane(task, Section::Upper, pose);
-        match (task.upper_intersection, pose[0]) {
+        let (pose, _) = in_plane(task, Section::Upper, pose);
+        let mut factors = factors(task, &pose);
+        match (task.upper_intersection, factors[0]) {
             (
                 IntersectionMotion::Spherical(SphericalMotion::Rotation),
                 Coordinate::Linear(turn),
             ) => {
-                pose = euler_angles(task, &pose);
-                pose[0] = Coordinate::Linear(Affine::constant(0.0));
-                let rest = euler_of::<Affine<N>>(pose.map(|angle| angle.unit_vector(0.0)));
+                factors[0] = Coordinate::Linear(Affine::constant(0.0));
+                let units = factors.map(|angle| angle.unit_vector(0.0));
+                let rest = orientation_of::<Affine<N>>(task.angles, units);
                 Some((turn, from_home(task, Section::Upper, Target::Spherical(rest))))
             }
             _ => None,
         }
     }
 
-    /// The Euler angles of an orientation's coordinates, of which the second alone may be polar.
-    fn euler_angles<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> [Coordinate<N>; 3] {
-        match (task.angles, pose) {
+    /// The angles of the rotations whose product is an orientation, for its coordinates, of which the second alone may be
+    /// polar.
+    fn factors<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> [Coordinate<N>; 3] {
+        let [first, second, third] = *pose;
+        match (task.angles, first, third) {
             (
                 OrientationCoordinates::TiltTorsion,
-                &[Coordinate::Linear(azimuth), tilt, Coordinate::Linear(torsion)],
-            ) => [pose[0], tilt, Coordinate::Linear(torsion - azimuth)],
-            _ => *pose,
+                Coordinate::Linear(azimuth),
+                Coordinate::Linear(torsion),
+            ) => [first, second, Coordinate::Linear(torsion - azimuth)],
+            (OrientationCoordinates::RollPitchYaw, roll, yaw) => [yaw, second, roll],
+            (OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion, ..) => {
+                *pose
+            }
         }
     }
 
-    /// The unit vectors of the Euler angles of an orientation.
+    /// The unit vectors of these angles.
     fn orientation<const N: usize>(task: &Task, pose: &[Coordinate<N>; 3]) -> [Plane<N>; 3] {
-        euler_angles(task, pose).map(|angle| angle.unit_vector(0.0))
+        factors(task, pose).map(|angle| angle.unit_vector(0.0))
     }
 }

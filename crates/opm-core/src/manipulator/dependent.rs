@@ -286,7 +286,8 @@ fn closed(
         _ if modulo && second.is_none() && first == bridge => {
             Some(Closed::Constant { leg, section, coordinates })
         }
-        // The imaginary joint rotates about the axis of the first Euler angle, and does not change the others.
+        // The imaginary joint rotates about the third direction, as the first factor of an orientation does, and does not
+        // change the others.
         (1, Some(second))
             if subspace.kind == SubspaceKind::Spherical && bridge.is_some() && !modulo =>
         {
@@ -333,9 +334,13 @@ fn preference(kind: CoordinateKind) -> u8 {
         CoordinateKind::Zeta
         | CoordinateKind::Theta
         | CoordinateKind::Phi
-        | CoordinateKind::Azimuth => 0,
-        CoordinateKind::Psi | CoordinateKind::Nu | CoordinateKind::Torsion => 1,
-        CoordinateKind::Xi | CoordinateKind::Mu | CoordinateKind::Tilt => 2,
+        | CoordinateKind::Azimuth
+        | CoordinateKind::Yaw => 0,
+        CoordinateKind::Psi
+        | CoordinateKind::Nu
+        | CoordinateKind::Torsion
+        | CoordinateKind::Roll => 1,
+        CoordinateKind::Xi | CoordinateKind::Mu | CoordinateKind::Tilt | CoordinateKind::Pitch => 2,
         CoordinateKind::X
         | CoordinateKind::Y
         | CoordinateKind::Z

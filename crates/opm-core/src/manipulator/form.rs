@@ -23,8 +23,8 @@ pub struct ClosedForms {
     pub independent: Vec<usize>,
     /// The legs, in the order of the mechanism.
     pub legs: Vec<LegForm>,
-    /// The inverse of the platform's orientation at home, which turns an orientation by Euler angles into a displacement
-    /// from home; `None` for the identity.
+    /// The inverse of the platform's orientation at home, which turns an orientation into a displacement from
+    /// home; `None` for the identity.
     pub home_orientation_inverse: Option<Matrix3<f64>>,
     /// The height of a Schoenflies section; `None` where there is none.
     pub height: Option<HeightForm>,

@@ -71,8 +71,8 @@ impl Manipulator {
     /// The platform's pose in SE(3): the position of its reference point, metres, and its orientation, in base
     /// coordinates.
     ///
-    /// The orientation at home is the identity, unless the task coordinates are `zeta xi psi` or `azimuth tilt torsion`:
-    /// then it is that of their values at home about the upper frame's axes.
+    /// The orientation at home is the identity, unless the task coordinates are `zeta xi psi`, `azimuth tilt torsion`
+    /// or `roll pitch yaw`: then it is that of their values at home about the upper frame's axes.
     ///
     /// Dependent coordinates are those of the home mode; [`Solution::displacement`](super::Solution::displacement)
     /// gives the displacement in the mode that was solved.

@@ -39,6 +39,12 @@ pub enum CoordinateKind {
     Tilt,
     /// `torsion`: the rotation about the third direction that a tilt alone would not make.
     Torsion,
+    /// `roll`: the angle of roll, pitch and yaw about the first direction, which is applied first.
+    Roll,
+    /// `pitch`: their angle about the second direction; singular where its cosine is zero.
+    Pitch,
+    /// `yaw`: their angle about the third direction.
+    Yaw,
     /// `mu`: the first tilt of the axis of the intersection motion, about the first direction.
     Mu,
     /// `nu`: its second tilt, about the second direction; singular where its cosine is zero.
@@ -47,7 +53,7 @@ pub enum CoordinateKind {
 
 impl CoordinateKind {
     /// Every kind.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 18] = [
         Self::X,
         Self::Y,
         Self::Z,
@@ -61,6 +67,9 @@ impl CoordinateKind {
         Self::Azimuth,
         Self::Tilt,
         Self::Torsion,
+        Self::Roll,
+        Self::Pitch,
+        Self::Yaw,
         Self::Mu,
         Self::Nu,
     ];
@@ -81,6 +90,9 @@ impl CoordinateKind {
             Self::Azimuth => "azimuth",
             Self::Tilt => "tilt",
             Self::Torsion => "torsion",
+            Self::Roll => "roll",
+            Self::Pitch => "pitch",
+            Self::Yaw => "yaw",
             Self::Mu => "mu",
             Self::Nu => "nu",
         }
@@ -103,6 +115,9 @@ impl CoordinateKind {
             | Self::Azimuth
             | Self::Tilt
             | Self::Torsion
+            | Self::Roll
+            | Self::Pitch
+            | Self::Yaw
             | Self::Mu
             | Self::Nu => Quantity::Angle,
         }
@@ -210,6 +225,14 @@ pub(super) fn write_tilt_and_torsion(of_section: &mut [TaskCoordinate]) {
         (CoordinateKind::Torsion, zeta + psi),
     ];
     of_section.clone_from_slice(&listed(home));
+}
+
+/// Replaces Euler angles by roll, pitch and yaw with these values at home.
+pub(super) fn write_roll_pitch_yaw(of_section: &mut [TaskCoordinate], home: [f64; 3]) {
+    let kinds = [CoordinateKind::Roll, CoordinateKind::Pitch, CoordinateKind::Yaw];
+    for ((coordinate, kind), home) in of_section.iter_mut().zip(kinds).zip(home) {
+        *coordinate = TaskCoordinate::new(kind, home);
+    }
 }
 
 fn listed<const N: usize>(coordinates: [(CoordinateKind, f64); N]) -> Vec<TaskCoordinate> {

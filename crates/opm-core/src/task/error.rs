@@ -5,7 +5,7 @@ use crate::group::SubspaceKind;
 use crate::group::screw::Screw;
 use crate::group::subspace::{MotionSubspace, SubspaceClass};
 use crate::mechanism::leg::{Leg, Section};
-use crate::mechanism::{Mechanism, TaskKey};
+use crate::mechanism::{Mechanism, OrientationCoordinates, TaskKey};
 use std::fmt;
 
 /// Why a decomposition has no task coordinates.
@@ -73,6 +73,17 @@ pub enum TaskError {
         /// Why it does not fit the geometry.
         problem: FrameProblem,
     },
+    /// The orientation at home is given in two ways.
+    #[error(
+        "[task] home gives the orientation by `{euler}` and by `{other}`, expected Euler angles alone, or roll, pitch \
+         and yaw alone"
+    )]
+    HomeTwice {
+        /// The name of an Euler angle that is given.
+        euler: String,
+        /// The name of one of the other angles.
+        other: String,
+    },
     /// The mechanism names a coordinate that its subspaces do not have.
     #[error("[task] home gives `{name}`, but the task coordinates are {expected}")]
     Unknown {
@@ -89,7 +100,7 @@ impl TaskError {
         match self {
             Self::Axis { .. } => Some(TaskKey::Axis),
             Self::Frame { key, .. } => Some(*key),
-            Self::Unknown { .. } => Some(TaskKey::Home),
+            Self::Unknown { .. } | Self::HomeTwice { .. } => Some(TaskKey::Home),
             Self::Subspace { .. } | Self::Screw | Self::Height { .. } | Self::JointName { .. } => {
                 None
             }
@@ -164,7 +175,7 @@ pub enum FrameProblem {
     /// The hint orients the intersection motion, and the two subspaces share none.
     NoIntersection,
     /// The hint chooses the angles of an orientation, and the pose has none.
-    NoOrientation,
+    NoOrientation(OrientationCoordinates),
     /// The hint is perpendicular to the line whose sense it chooses.
     Perpendicular {
         /// The direction given.
@@ -202,9 +213,18 @@ impl fmt::Display for FrameProblem {
                 "orients the motion that the two subspaces share, but these share none, expected `axis` of \
                  `lower` or `upper`",
             ),
-            Self::NoOrientation => f.write_str(
-                "is tilt-torsion, but this mechanism's pose has no Euler angles that tilt and torsion could replace",
-            ),
+            Self::NoOrientation(angles) => {
+                let words = match angles {
+                    OrientationCoordinates::EulerAngles => "others",
+                    OrientationCoordinates::TiltTorsion => "tilt and torsion",
+                    OrientationCoordinates::RollPitchYaw => "roll, pitch and yaw",
+                };
+                let name = angles.name();
+                write!(
+                    f,
+                    "is {name}, but this mechanism's pose has no Euler angles that {words} could replace"
+                )
+            }
             Self::Perpendicular { given, line } => {
                 let (given, along) = (triple(given), triple(line));
                 write!(f, "is {given}, perpendicular to the axis {along} that it orients")

@@ -12,7 +12,7 @@ use crate::numeric::angle::{atan2, atan2_of_each, near, sin_cos, unit};
 use crate::numeric::four_wide::FourWide;
 use nalgebra::{Complex, Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The sine of an angle between two axes that counts as zero: the rounding of a rotation.
 const POLE: f64 = 1e-13;
@@ -23,8 +23,8 @@ const TOGETHER: usize = 8;
 impl Task {
     /// The coordinates of `v · b`, however the displacement along the intersection motion is distributed
     /// between `v` and `b`. Angles are within π of home, except those of a cylinder, which count revolutions.
-    /// Of the two triples of Euler angles of a rotation it is the one nearer to home; where they are singular,
-    /// `zeta` and `psi` are changed from home by equal amounts. Of tilt and torsion, the tilt is in [0, π]; where it is 0 or
+    /// Of the two triples of Euler angles of a rotation, or of roll, pitch and yaw, it is the one nearer to home; where they
+    /// are singular, the first and the third are changed from home by equal amounts. Of tilt and torsion, the tilt is in [0, π]; where it is 0 or
     /// π, the azimuth is that at home. `rise` is the height above home, metres; zero where there
     /// is no Schoenflies section.
     ///
@@ -63,7 +63,7 @@ impl Task {
             for (described, b) in described.iter_mut().zip(bs).skip(1) {
                 *described = self.described_factors(v, b, rise);
             }
-            let together = match (self.angles, self.euler_section()) {
+            let together = match (self.angles, self.oriented_section()) {
                 (OrientationCoordinates::EulerAngles, Some(Section::Upper)) => {
                     let rotations = described.map(|(_, b, _)| self.orientation(b.spherical()));
                     let first = self.coordinates.len() - 3;
@@ -195,10 +195,7 @@ impl Task {
     /// The angles of a displacement of a sphere from home, those nearest to the values at home.
     fn angles(&self, r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         let orientation = self.orientation(r);
-        match self.angles {
-            OrientationCoordinates::EulerAngles => euler_angles(&orientation, home),
-            OrientationCoordinates::TiltTorsion => tilt_and_torsion(&orientation, home),
-        }
+        angles_of(self.angles, &orientation, home)
     }
 
     /// The orientation after a displacement of a sphere from home.
@@ -210,14 +207,15 @@ impl Task {
     }
 
     /// Replaces the angles of which this coordinate is the second one by the others with which the pose is the same:
-    /// `zeta + π`, `-xi`, `psi + π`; or `mu + π`, `π - nu`. There are no others of a coordinate of another kind.
+    /// `zeta + π`, `-xi`, `psi + π`; `roll + π`, `π - pitch`, `yaw + π`; or `mu + π`, `π - nu`. There are no others of a coordinate of another kind.
     pub(crate) fn take_other_angles(&self, second: usize, pose: &mut [f64]) {
         let home = |i: usize| self.coordinates[i].home;
         match self.coordinates[second].kind() {
-            CoordinateKind::Xi | CoordinateKind::Tilt => {
+            CoordinateKind::Xi | CoordinateKind::Tilt | CoordinateKind::Pitch => {
                 let numbers = [second - 1, second, second + 1];
-                let euler = other_triple(self.angles.to_euler(numbers.map(|i| pose[i])));
-                for (i, angle) in numbers.into_iter().zip(self.angles.of_euler(euler)) {
+                let factors = self.angles.to_factors(numbers.map(|i| pose[i]));
+                let other = other_factors(self.angles, factors);
+                for (i, angle) in numbers.into_iter().zip(self.angles.of_factors(other)) {
                     pose[i] = near(angle, home(i));
                 }
             }
@@ -321,6 +319,20 @@ fn translation_along(motion: &IntersectionMotion, g: &Displacement) -> JointDisp
     })
 }
 
+/// The angles of a kind of an orientation, those nearest to the values at home; where they are singular, a choice that depends
+/// on these.
+pub(super) fn angles_of(
+    angles: OrientationCoordinates,
+    r: &Matrix3<f64>,
+    home: [f64; 3],
+) -> [f64; 3] {
+    match angles {
+        OrientationCoordinates::EulerAngles => euler_angles(r, home),
+        OrientationCoordinates::TiltTorsion => tilt_and_torsion(r, home),
+        OrientationCoordinates::RollPitchYaw => roll_pitch_yaw(r, home),
+    }
+}
+
 /// The angles `mu nu` of the rotation that takes the third direction to `axis`.
 pub(super) fn tilt_angles(axis: &Vector3<f64>) -> [f64; 2] {
     [(-axis.y).atan2(axis.z), axis.x.atan2(axis.y.hypot(axis.z))]
@@ -357,7 +369,7 @@ fn tilt_and_torsion(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         let psi = atan2(cos * r[(1, 0)] - sin * r[(0, 0)], cos * r[(1, 1)] - sin * r[(0, 1)]);
         [azimuth, tilt, psi]
     };
-    let [azimuth, tilt, torsion] = OrientationCoordinates::TiltTorsion.of_euler(angles);
+    let [azimuth, tilt, torsion] = OrientationCoordinates::TiltTorsion.of_factors(angles);
     [near(azimuth, home[0]), tilt, near(torsion, home[2])]
 }
 
@@ -371,24 +383,50 @@ fn euler_angles(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         let extra = 0.5 * (sum - home[0] - up * home[2]);
         return [home[0] + extra, xi, home[2] + up * extra];
     }
-    nearer_triple(with_sine(r, sine), home)
+    nearer_factors(OrientationCoordinates::EulerAngles, with_sine(r, sine), home)
 }
 
-/// The other triple of Euler angles `zeta xi psi` of the same rotation.
-#[inline(always)]
-pub(crate) fn other_triple([zeta, xi, psi]: [f64; 3]) -> [f64; 3] {
-    [zeta + PI, -xi, psi + PI]
+/// The angles `roll pitch yaw` with `Rz(yaw) Ry(pitch) Rx(roll) = r`: of all triples, the one nearest to `home`.
+fn roll_pitch_yaw(r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
+    let kind = OrientationCoordinates::RollPitchYaw;
+    let cosine = (r[(0, 0)] * r[(0, 0)] + r[(1, 0)] * r[(1, 0)]).sqrt();
+    if cosine < POLE {
+        // Only roll ∓ yaw is known.
+        let up = if r[(2, 0)] < 0.0 { 1.0 } else { -1.0 };
+        let difference = near(atan2(up * r[(0, 1)], r[(1, 1)]), home[0] - up * home[2]);
+        let extra = 0.5 * (difference - home[0] + up * home[2]);
+        return [home[0] + extra, up * FRAC_PI_2, home[2] - up * extra];
+    }
+    // Near the singularity roll ∓ yaw is accurate: roll is computed from what this yaw leaves of the rotation.
+    let (cos, sin) = (r[(0, 0)] / cosine, r[(1, 0)] / cosine);
+    let y = [r[(1, 0)], 0.0 - r[(2, 0)], sin * r[(0, 2)] - cos * r[(1, 2)]];
+    let x = [r[(0, 0)], cosine, cos * r[(1, 1)] - sin * r[(0, 1)]];
+    let factors = nearer_factors(kind, atan2_of_each(&y, &x), kind.to_factors(home));
+    kind.of_factors(factors)
 }
 
-/// Of the two triples of Euler angles of a rotation, of which one is given, the one nearest to `home`.
+/// The angles of the three other rotations, about the same directions, whose product is the same orientation.
 #[inline(always)]
-fn nearer_triple([zeta, xi, psi]: [f64; 3], home: [f64; 3]) -> [f64; 3] {
+pub(crate) fn other_factors(
+    angles: OrientationCoordinates,
+    [first, second, last]: [f64; 3],
+) -> [f64; 3] {
+    let second = match angles {
+        OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion => -second,
+        OrientationCoordinates::RollPitchYaw => PI - second,
+    };
+    [first + PI, second, last + PI]
+}
+
+/// Of the two triples of angles whose rotations have the same product, of which one is given, the one nearest to `home`.
+#[inline(always)]
+fn nearer_factors(angles: OrientationCoordinates, given: [f64; 3], home: [f64; 3]) -> [f64; 3] {
     let placed = |[a, b, c]: [f64; 3]| [near(a, home[0]), near(b, home[1]), near(c, home[2])];
     let distance = |angles: &[f64; 3]| {
         let [a, b, c] = [angles[0] - home[0], angles[1] - home[1], angles[2] - home[2]];
         a * a + b * b + c * c
     };
-    let (plain, other) = (placed([zeta, xi, psi]), placed(other_triple([zeta, xi, psi])));
+    let (plain, other) = (placed(given), placed(other_factors(angles, given)));
     let nearer = distance(&other) < distance(&plain);
     let chosen = |i: usize| if nearer { other[i] } else { plain[i] };
     [chosen(0), chosen(1), chosen(2)]
@@ -418,7 +456,8 @@ impl WithSimd for EulerAngles<'_> {
         let [zeta, xi, psi] = [0, 1, 2].map(|k| atan2_of_each(&y[k], &x[k]));
         let mut angles = [[0.0; 3]; TOGETHER];
         for i in 0..TOGETHER {
-            angles[i] = nearer_triple([zeta[i], xi[i], psi[i]], home);
+            let given = [zeta[i], xi[i], psi[i]];
+            angles[i] = nearer_factors(OrientationCoordinates::EulerAngles, given, home);
         }
         for i in (0..TOGETHER).filter(|&i| sines[i] < POLE) {
             angles[i] = euler_angles(&rotations[i], home);
@@ -432,7 +471,6 @@ mod tests {
     use super::*;
     use crate::Manipulator;
     use crate::group::{Spherical, Subgroup};
-    use std::f64::consts::FRAC_PI_2;
 
     /// Poses are written together as each alone: random rotations, half turns, quarter turns, and the poles of Euler angles.
     #[test]
@@ -464,6 +502,37 @@ mod tests {
                 let each = bs.iter().flat_map(|b| m.task().pose(&v, b, 0.01));
                 assert_eq!(written, each.collect::<Vec<f64>>(), "{name}");
             }
+        }
+    }
+
+    /// Roll, pitch and yaw are those of nalgebra's rotations, and a rotation has the triple that is nearest to home. Angles
+    /// are random, zero, quarter and half turns, and near these, so that the pitch is at its poles and next to them.
+    #[test]
+    fn roll_pitch_and_yaw_are_found_again() {
+        let mut rng = fastrand::Rng::with_seed(2);
+        let kind = OrientationCoordinates::RollPitchYaw;
+        let mut angle = || match rng.u32(..3) {
+            0 => PI * (2.0 * rng.f64() - 1.0),
+            1 => FRAC_PI_2 * f64::from(rng.i32(-2..=2)),
+            _ => FRAC_PI_2 * f64::from(rng.i32(-2..=2)) + 1e-9 * f64::from(rng.i32(-1..=1)),
+        };
+        for _ in 0..2000 {
+            let [roll, pitch, yaw] = [angle(), angle(), angle()];
+            let r = nalgebra::Rotation3::from_euler_angles(roll, pitch, yaw);
+            let made = super::super::displacement::orientation(kind, [roll, pitch, yaw]);
+            assert!((made - r.matrix()).norm() < 1e-14, "{roll} {pitch} {yaw}");
+            let home = [angle(), angle(), angle()];
+            let found = roll_pitch_yaw(r.matrix(), home);
+            let again = nalgebra::Rotation3::from_euler_angles(found[0], found[1], found[2]);
+            assert!((again.matrix() - r.matrix()).norm() < 1e-13, "{roll} {pitch} {yaw}");
+            let far = |of: [f64; 3]| {
+                let each = of.into_iter().zip(home);
+                each.map(|(angle, home)| near(angle - home, 0.0).powi(2)).sum::<f64>()
+            };
+            // At a pole, there are nearer ones than those that were given.
+            let others = [[roll, pitch, yaw], [roll + PI, PI - pitch, yaw + PI]];
+            let nearest = others.into_iter().map(far).fold(f64::INFINITY, f64::min);
+            assert!(far(found) < nearest + 1e-6, "{found:?} {roll} {pitch} {yaw} {home:?}");
         }
     }
 }

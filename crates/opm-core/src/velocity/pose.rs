@@ -3,33 +3,37 @@
 //! Both displacements are products of exponentials of their coordinates, relative to home, in the order of
 //! the table in [`crate::task`]: `(x, y, theta)` are two translations and a rotation, `(zeta, xi, psi)` are
 //! rotations about z, y and z, and `(mu, nu)` are rotations about x and y. [`Screws`] gives their
-//! derivatives. Tilt and torsion are no such displacements, but Euler angles are linear in them.
+//! derivatives. Tilt and torsion are no such displacements, but Euler angles are linear in them; roll, pitch and yaw are
+//! rotations about x, y and z in the opposite order.
 
 use super::screws::Screws;
 use crate::group::{
     CylindricalMotion, IntersectionMotion, LocalTwist, PlanarMotion, SphericalMotion, SubspaceKind,
 };
+use crate::mechanism::OrientationCoordinates;
 use crate::mechanism::leg::Section;
 use crate::numeric::angle::unit;
 use crate::task::Task;
+use nalgebra::Complex;
 
 impl Task {
     /// The rates of a section's screws for those of its coordinates other than a height, or the accelerations.
     #[inline]
     pub(crate) fn screw_rates(&self, section: Section, rates: LocalTwist) -> LocalTwist {
-        if self.euler_section() == Some(section) {
-            self.angles.to_euler(rates.into()).into()
+        if self.oriented_section() == Some(section) {
+            self.angles.to_factors(rates.into()).into()
         } else {
             rates
         }
     }
 
-    /// The screws of the coordinates of `v` at a pose, in the frame of the lower section.
+    /// The screws of the coordinates of `v` at a pose, in the frame of the lower section; of an orientation, those of the
+    /// rotations whose product it is.
     pub(crate) fn lower_screws(&self, pose: &[f64]) -> Screws {
         let q = |i: usize| pose[i] - self.coordinates[i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.lower_intersection {
-            IntersectionMotion::None(kind) => alone(kind, pose, q),
+            IntersectionMotion::None(kind) => self.alone(kind, pose, q),
             IntersectionMotion::Planar(PlanarMotion::Rotation) => {
                 [LocalTwist::y(), LocalTwist::z(), zero]
             }
@@ -55,8 +59,10 @@ impl Task {
         let q = |i: usize| at(i) - self.coordinates[self.lower_count + i].home;
         let zero = LocalTwist::zeros();
         let moved = match self.upper_intersection {
-            IntersectionMotion::None(kind) => alone(kind, &pose[self.lower_count..], q),
-            IntersectionMotion::Spherical(SphericalMotion::Rotation) => euler(at(0), at(1)),
+            IntersectionMotion::None(kind) => self.alone(kind, &pose[self.lower_count..], q),
+            IntersectionMotion::Spherical(SphericalMotion::Rotation) => {
+                self.orientation_screws([at(0), at(1), at(2)])
+            }
             IntersectionMotion::Planar(PlanarMotion::Rotation) => planar(q(0), q(1)),
             IntersectionMotion::Planar(PlanarMotion::Translation(_)) => {
                 let [_, second, third] = planar(0.0, q(0));
@@ -73,29 +79,34 @@ impl Task {
         };
         Screws { kind: self.upper.kind, moved }
     }
-}
 
-/// The screws of the coordinates of a section that shares no motion with the other one. `pose` begins with its
-/// coordinates, and `q` gives them minus their values at home.
-fn alone(kind: SubspaceKind, pose: &[f64], q: impl Fn(usize) -> f64) -> [LocalTwist; 3] {
-    let zero = LocalTwist::zeros();
-    match kind {
-        SubspaceKind::Identity => [zero; 3],
-        SubspaceKind::Planar => planar(q(0), q(1)),
-        SubspaceKind::Spherical => euler(pose[0], pose[1]),
-        SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
-            [LocalTwist::x(), LocalTwist::y(), zero]
+    /// The screws of the coordinates of a section that shares no motion with the other one. `pose` begins with its
+    /// coordinates, and `q` gives them minus their values at home.
+    fn alone(&self, kind: SubspaceKind, pose: &[f64], q: impl Fn(usize) -> f64) -> [LocalTwist; 3] {
+        let zero = LocalTwist::zeros();
+        match kind {
+            SubspaceKind::Identity => [zero; 3],
+            SubspaceKind::Planar => planar(q(0), q(1)),
+            SubspaceKind::Spherical => self.orientation_screws([pose[0], pose[1], pose[2]]),
+            SubspaceKind::Cylindrical | SubspaceKind::TranslationalPlane => {
+                [LocalTwist::x(), LocalTwist::y(), zero]
+            }
+            SubspaceKind::TranslationalSpace => [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()],
         }
-        SubspaceKind::TranslationalSpace => [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()],
     }
-}
 
-/// The screws of the three Euler angles, about the third, the second and the third direction, for the first two
-/// angles.
-fn euler(zeta: f64, xi: f64) -> [LocalTwist; 3] {
-    let (zeta, xi) = (unit(zeta), unit(xi));
-    let third = LocalTwist::new(zeta.re * xi.im, zeta.im * xi.im, xi.re);
-    [LocalTwist::z(), LocalTwist::new(-zeta.im, zeta.re, 0.0), third]
+    /// The screws of the three rotations whose product is an orientation: about the third direction, the second one, and
+    /// the third or, of roll, pitch and yaw, the first.
+    fn orientation_screws(&self, angles: [f64; 3]) -> [LocalTwist; 3] {
+        let [first, second, _] = self.angles.to_factors(angles).map(unit);
+        let level = match self.angles {
+            OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion => second,
+            // The first direction is the third one, rotated about the second by a right angle.
+            OrientationCoordinates::RollPitchYaw => Complex::new(-second.im, second.re),
+        };
+        let last = LocalTwist::new(first.re * level.im, first.im * level.im, level.re);
+        [LocalTwist::z(), LocalTwist::new(-first.im, first.re, 0.0), last]
+    }
 }
 
 /// The screws of two translations along the directions of the plane, followed by a rotation about the point

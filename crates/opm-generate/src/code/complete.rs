@@ -8,6 +8,7 @@ use crate::trace::*;
 use opm_core::chain::condition::Condition;
 use opm_core::group::{MotionType, SubspaceKind};
 use opm_core::manipulator::form::{SectionMotion, StepForm, StepKind};
+use opm_core::mechanism::OrientationCoordinates;
 use opm_core::numeric::Quantity;
 
 /// The parameters of the function, and the displacements that other sections write.
@@ -253,6 +254,22 @@ impl Writer<'_> {
         });
     }
 
+    /// The angles of the factors of an orientation, for its coordinates in their order.
+    fn to_factors(&self, [a, b, c]: [Real; 3]) -> [Real; 3] {
+        match self.angles_of_pose() {
+            OrientationCoordinates::EulerAngles | OrientationCoordinates::RollPitchYaw => [a, b, c],
+            OrientationCoordinates::TiltTorsion => [a, b, c - a],
+        }
+    }
+
+    /// The coordinates of an orientation, in the order of its factors, for their angles.
+    fn of_factors(&self, [a, b, c]: [Real; 3]) -> [Real; 3] {
+        match self.angles_of_pose() {
+            OrientationCoordinates::EulerAngles | OrientationCoordinates::RollPitchYaw => [a, b, c],
+            OrientationCoordinates::TiltTorsion => [a, b, a + c],
+        }
+    }
+
     fn joint_step(
         &self,
         place: usize,
@@ -291,8 +308,8 @@ impl Writer<'_> {
                 let still = still();
                 match kind {
                     SubspaceKind::Spherical => {
-                        let [zeta, xi, psi] = self.to_euler([0, 1, 2].map(home));
-                        self.of_euler([zeta + third_of(still.is()), xi, psi])
+                        let [first, second, last] = self.to_factors([0, 1, 2].map(home));
+                        self.of_factors([first + third_of(still.is()), second, last])
                     }
                     _ => coordinates_of(kind, still, home),
                 }
@@ -329,8 +346,8 @@ impl Writer<'_> {
                 coordinates_of(kind, moved, home)
             }
             SectionMotion::Third => {
-                let [_, xi, psi] = self.to_euler([0, 1, 2].map(home));
-                let angles = self.of_euler([at(0), xi, psi]);
+                let [_, second, last] = self.to_factors([0, 1, 2].map(home));
+                let angles = self.of_factors([at(0), second, last]);
                 for (&coordinate, angle) in coordinates.iter().zip(angles).skip(1) {
                     q.at(number(coordinate)).set(angle);
                 }
@@ -339,14 +356,26 @@ impl Writer<'_> {
             SectionMotion::Axis(_) | SectionMotion::LastAngle(_) => {
                 let still = tau.is_some().then(|| still().is::<Rotation>());
                 let sign_of = step.bit.map_or(Real::from(1.0), |bit| sign(mode, bit));
-                let (axis, xi) = (g.member::<Vector>(&joint), at(1));
+                let axis = g.member::<Vector>(&joint);
                 name!(zeta = 0.0, psi = 0.0);
                 let missed = all.missed(section);
-                missed.set(match self.forms.home_orientation_inverse {
-                    None => axis_from_identity(axis, xi, sign_of, zeta, psi),
-                    Some(_) => {
-                        let home = transposed(g.member::<Rotation>("home_orientation_inverse"));
-                        axis_from_home(axis, home, xi, sign_of, zeta, psi)
+                let home = self
+                    .forms
+                    .home_orientation_inverse
+                    .map(|_| transposed(g.member::<Rotation>("home_orientation_inverse")));
+                missed.set(match (self.angles_of_pose(), home) {
+                    (
+                        OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion,
+                        None,
+                    ) => axis_from_identity(axis, at(1), sign_of, zeta, psi),
+                    (
+                        OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion,
+                        Some(home),
+                    ) => axis_from_home(axis, home, at(1), sign_of, zeta, psi),
+                    (OrientationCoordinates::RollPitchYaw, home) => {
+                        let home = home.unwrap_or_else(|| identity(kind).is());
+                        let xi = at(1) + PI / 2.0;
+                        axis_from_home(axis, quarter_turned(home), xi, sign_of, zeta, psi)
                     }
                 });
                 when(missed.gt(0.0), || give(number(step.leg + 1)));
@@ -355,7 +384,7 @@ impl Writer<'_> {
                     (_, Some(still)) => zeta + third_of(still),
                     (_, None) => zeta,
                 };
-                self.of_euler([zeta, xi, psi])
+                self.of_factors([zeta, at(1), psi])
             }
         };
         for (&coordinate, value) in coordinates.iter().zip(found) {

@@ -8,7 +8,8 @@ use opm_core::group::{
     CylindricalMotion, IntersectionMotion, MotionType, PlanarMotion, SubspaceKind,
 };
 use opm_core::manipulator::Section;
-use opm_core::task::{CoordinateKind, IntersectionAxis};
+use opm_core::mechanism::OrientationCoordinates;
+use opm_core::task::IntersectionAxis;
 
 /// A displacement along the intersection motion.
 #[derive(Clone, Copy)]
@@ -82,9 +83,9 @@ impl Writer<'_> {
         self.task.intersection.as_ref().map(IntersectionAxis::motion_type)
     }
 
-    /// Whether the orientation of the pose is written as azimuth, tilt and torsion.
-    pub fn tilt_torsion(&self) -> bool {
-        self.task.coordinates.iter().any(|c| c.kind() == CoordinateKind::Torsion)
+    /// The angles that the orientation of the pose is written with.
+    pub fn angles_of_pose(&self) -> OrientationCoordinates {
+        self.task.orientation_coordinates()
     }
 
     /// The numbers of a section's coordinates, without that of a height.
@@ -96,16 +97,15 @@ impl Writer<'_> {
         range.filter(|&i| self.forms.height.is_none_or(|height| height.coordinate != i)).collect()
     }
 
-    /// The Euler angles of three angles of a pose.
-    pub fn to_euler(&self, [first, second, third]: [Real; 3]) -> [Real; 3] {
-        let third = if self.tilt_torsion() { third - first } else { third };
-        [first, second, third]
-    }
-
-    /// Three angles of a pose for the Euler angles.
-    pub fn of_euler(&self, [zeta, xi, psi]: [Real; 3]) -> [Real; 3] {
-        let third = if self.tilt_torsion() { zeta + psi } else { psi };
-        [zeta, xi, third]
+    /// The orientation with three angles of a pose.
+    pub fn orientation_with(&self, angles: [Real; 3]) -> Rotation {
+        let [first, second, last] = self.angles_of_pose().to_factors(angles);
+        match self.angles_of_pose() {
+            OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion => {
+                euler(first, second, last)
+            }
+            OrientationCoordinates::RollPitchYaw => yaw_pitch_roll(first, second, last),
+        }
     }
 
     /// A coordinate of a section from home.
@@ -151,8 +151,7 @@ impl Writer<'_> {
             SubspaceKind::Spherical if rotates => tilt(q(0), q(1)).into(),
             SubspaceKind::Spherical => {
                 let angles = [0, 1, 2].map(|i| pose.at(super::number(numbers[i])));
-                let [zeta, xi, psi] = self.to_euler(angles);
-                let turned = euler(zeta, xi, psi);
+                let turned = self.orientation_with(angles);
                 match self.forms.home_orientation_inverse {
                     Some(_) => {
                         product(turned, g.member::<Rotation>("home_orientation_inverse")).into()

@@ -7,10 +7,11 @@
 use super::rates::follow::numbers;
 use super::*;
 use crate::library::{
-    REACH, apart, eliminate, euler, euler_in, euler_near, near, numbers as check_numbers, product,
-    rotation_by, torsion_in, torsion_near, vector_of,
+    REACH, apart, eliminate, euler_in, euler_near, near, numbers as check_numbers, product,
+    roll_in, roll_near, rotation_by, torsion_in, torsion_near, vector_of,
 };
 use crate::trace::*;
+use opm_core::mechanism::OrientationCoordinates;
 use opm_core::mechanism::joint::JointKind;
 use opm_core::numeric::Quantity;
 
@@ -252,7 +253,7 @@ impl Writer<'_> {
         }));
     }
 
-    /// The numbers of the three Euler angles among all coordinates.
+    /// The numbers of the three angles of the orientation among all coordinates.
     fn angles(&self) -> [Int; 3] {
         let first = self.first_angle();
         [0, 1, 2].map(|i| number(first + i))
@@ -260,8 +261,7 @@ impl Writer<'_> {
 
     /// The orientation of coordinates.
     fn orientation(&self, q: Array<Real>) -> library::Rotation {
-        let [zeta, xi, psi] = self.to_euler(self.angles().map(|i| q.at(i)));
-        euler(zeta, xi, psi)
+        self.orientation_with(self.angles().map(|i| q.at(i)))
     }
 
     /// The function of the pose after a step, where the orientation is rotated.
@@ -286,9 +286,10 @@ impl Writer<'_> {
             let [x, y, z] = self.angles().map(|i| start.at(i));
             let start = vector_of(x, y, z);
             name!(
-                angles = match self.tilt_torsion() {
-                    true => torsion_near(moved, start),
-                    false => euler_near(moved, start),
+                angles = match self.angles_of_pose() {
+                    OrientationCoordinates::EulerAngles => euler_near(moved, start),
+                    OrientationCoordinates::TiltTorsion => torsion_near(moved, start),
+                    OrientationCoordinates::RollPitchYaw => roll_near(moved, start),
                 }
             );
             for (place, part) in self.angles().into_iter().zip([angles.x, angles.y, angles.z]) {
@@ -328,9 +329,10 @@ impl Writer<'_> {
                 let [x, y, z] = self.angles().map(|i| start.at(i));
                 let start = vector_of(x, y, z);
                 name!(
-                    angles = match self.tilt_torsion() {
-                        true => torsion_in(rotation, start, chart),
-                        false => euler_in(rotation, start, chart),
+                    angles = match self.angles_of_pose() {
+                        OrientationCoordinates::EulerAngles => euler_in(rotation, start, chart),
+                        OrientationCoordinates::TiltTorsion => torsion_in(rotation, start, chart),
+                        OrientationCoordinates::RollPitchYaw => roll_in(rotation, start, chart),
                     }
                 );
                 let parts = [angles.x, angles.y, angles.z];

@@ -71,6 +71,19 @@ functions! {
         vector_of(super::near(a.x, near.x), a.y, super::near(a.x + a.z, near.z))
     }
 
+    /// The same for roll, pitch and yaw: with Rx(roll) Ry(pi / 2) = Ry(pi / 2) Rz(roll), the Euler angles yaw, pitch + pi / 2
+    /// and roll are those of the rotation after a quarter turn.
+    fn roll_in(r: Rotation, near: Vector, chart: Int) -> Vector {
+        name!(a = euler_in(quarter_turned(r), vector_of(near.z, near.y + PI / 2.0, near.x), chart));
+        vector_of(a.z, a.y - PI / 2.0, a.x)
+    }
+
+    /// The roll, the pitch and the yaw of a rotation nearest to others.
+    fn roll_near(r: Rotation, near: Vector) -> Vector {
+        name!(a = euler_near(quarter_turned(r), vector_of(near.z, near.y + PI / 2.0, near.x)));
+        vector_of(a.z, a.y - PI / 2.0, a.x)
+    }
+
     /// How far two rotations are apart: four times the square of the sine of half the angle between them.
     fn apart(r: Rotation, s: Rotation) -> Real {
         3.0 - dot(r.x, s.x) - dot(r.y, s.y) - dot(r.z, s.z)

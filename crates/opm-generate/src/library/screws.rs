@@ -162,4 +162,15 @@ functions! {
             vector_of(z.re * x.im, z.im * x.im, x.re),
         )
     }
+
+    /// The screws of yaw, pitch and roll.
+    #[inline]
+    fn yaw_pitch_roll_screws(yaw: Real, pitch: Real) -> Screws {
+        name!(y = unit(yaw), p = unit(pitch));
+        Screws::made(
+            vector_of(0.0, 0.0, 1.0),
+            vector_of(-y.im, y.re, 0.0),
+            vector_of(y.re * p.re, y.im * p.re, -p.im),
+        )
+    }
 }

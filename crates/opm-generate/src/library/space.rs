@@ -90,6 +90,31 @@ functions! {
         )
     }
 
+    /// Rz(yaw) Ry(pitch) Rx(roll)
+    #[inline]
+    fn yaw_pitch_roll(yaw: Real, pitch: Real, roll: Real) -> Rotation {
+        name!(y = unit(yaw), p = unit(pitch), r = unit(roll));
+        Rotation::made(
+            vector_of(y.re * p.re, y.im * p.re, -p.im),
+            vector_of(
+                y.re * p.im * r.im - y.im * r.re,
+                y.im * p.im * r.im + y.re * r.re,
+                p.re * r.im,
+            ),
+            vector_of(
+                y.re * p.im * r.re + y.im * r.im,
+                y.im * p.im * r.re - y.re * r.im,
+                p.re * r.re,
+            ),
+        )
+    }
+
+    /// R Ry(pi / 2)
+    #[inline]
+    fn quarter_turned(r: Rotation) -> Rotation {
+        Rotation::made(vector_of(-r.z.x, -r.z.y, -r.z.z), r.y, r.x)
+    }
+
     /// Rx(mu) Ry(nu)
     #[inline]
     fn tilt(mu: Real, nu: Real) -> Rotation {

@@ -2,6 +2,7 @@
 
 use crate::program::Question;
 use fastrand::Rng;
+use opm_core::mechanism::OrientationCoordinates;
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::{Manipulator, Quantity};
 use opm_tests::random::{self, Options};
@@ -31,9 +32,13 @@ pub fn random_mechanisms(seed: u64) -> Vec<Manipulator> {
             else {
                 continue;
             };
-            // An orientation at home other than the identity has closed forms of its own.
-            let oriented = m.task().coordinates.iter().any(|c| c.name == "zeta") && rng.bool();
+            let oriented = m.task().coordinates.iter().any(|c| c.name == "zeta");
             if oriented {
+                let (_, angles) = OrientationCoordinates::NAMED[all.len() % 3];
+                mechanism.task.coordinates = Some(angles);
+            }
+            // An orientation at home other than the identity has closed forms of its own.
+            if oriented && rng.bool() {
                 let home = [("zeta", 0.3), ("xi", 0.7), ("psi", -0.4)];
                 mechanism.task.home = home.map(|(name, value)| (name.into(), value)).into();
             }

@@ -40,8 +40,8 @@
 //! | `w` | the positive direction of coordinate `w` | upper planes with `w` |
 //! | `normal` | the plane's normal about which `y` and the angle are positive | planes that share a translation and have an angle or `y` |
 //! | `origin` | the point that lengths are measured from | all sections with a length among their coordinates |
-//! | `coordinates` | `"euler-angles"` (default) or `"tilt-torsion"`: the angles of an orientation, [`OrientationCoordinates`](super::OrientationCoordinates); in the files of families too | the one with `zeta xi psi` |
-//! | `home` | the values of task coordinates at home, such as `{ x = 10, xi = 5 }`; without it lengths follow from the geometry, and angles are zero | all sections |
+//! | `coordinates` | `"euler-angles"` (default), `"tilt-torsion"` or `"roll-pitch-yaw"`: the angles of an orientation, [`OrientationCoordinates`](super::OrientationCoordinates); in the files of families too | the one with `zeta xi psi` |
+//! | `home` | the values of task coordinates at home, such as `{ x = 10, xi = 5 }`, of an orientation Euler angles or `roll pitch yaw`; without it lengths follow from the geometry, and angles are zero | all sections |
 //!
 //! Every key may be left out. `opm decompose` prints the resulting frames.
 //!

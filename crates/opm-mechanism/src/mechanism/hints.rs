@@ -4,6 +4,7 @@ use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt;
+use std::ops::{Add, Sub};
 
 /// How the platform's pose is measured: `[task]` in a mechanism file.
 ///
@@ -18,16 +19,16 @@ pub struct TaskHints {
     pub lower: FrameHints,
     /// The upper section's frame.
     pub upper: FrameHints,
-    /// The angles that an orientation is written with.
-    pub coordinates: OrientationCoordinates,
+    /// The angles that an orientation is written with; `None` for those that suit the mechanism.
+    pub coordinates: Option<OrientationCoordinates>,
     /// Home values of task coordinates by name, metres or radians; the others follow from the
     /// geometry.
     pub home: Vec<(String, f64)>,
 }
 
-/// The task coordinates whose values at home a file can give. Tilt and torsion follow from the Euler angles, in whose place
-/// they stand.
-pub const HOME_COORDINATES: [(&str, Quantity); 12] = {
+/// The task coordinates whose values at home a file can give. An orientation at home is given in Euler angles or in roll,
+/// pitch and yaw, whichever angles poses are written with. Tilt and torsion follow from it.
+pub const HOME_COORDINATES: [(&str, Quantity); 15] = {
     use Quantity::{Angle, Length};
     [
         ("x", Length),
@@ -40,34 +41,43 @@ pub const HOME_COORDINATES: [(&str, Quantity); 12] = {
         ("zeta", Angle),
         ("xi", Angle),
         ("psi", Angle),
+        ("roll", Angle),
+        ("pitch", Angle),
+        ("yaw", Angle),
         ("mu", Angle),
         ("nu", Angle),
     ]
 };
 
 /// The angles with which the orientation of a spherical section is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum OrientationCoordinates {
     /// Euler angles: `zeta xi psi` with `R = Rz(zeta) Ry(xi) Rz(psi)`.
-    #[default]
     EulerAngles,
     /// Tilt and torsion: `azimuth tilt torsion` with `R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)` (I. A. Bonev,
     /// *Geometric analysis of parallel mechanisms*, 2002). The third direction is tilted towards the azimuth, and a
     /// torsion of zero is a tilt alone, whichever way.
     TiltTorsion,
+    /// Roll, pitch and yaw: `roll pitch yaw` with `R = Rz(yaw) Ry(pitch) Rx(roll)`. They are regular where the others are
+    /// singular, at the identity.
+    RollPitchYaw,
 }
 
 impl OrientationCoordinates {
-    /// Both, with their names in files and options.
-    pub const NAMED: [(&'static str, Self); 2] =
-        [("euler-angles", Self::EulerAngles), ("tilt-torsion", Self::TiltTorsion)];
+    /// All of them, with their names in files and options.
+    pub const NAMED: [(&'static str, Self); 3] = [
+        ("euler-angles", Self::EulerAngles),
+        ("tilt-torsion", Self::TiltTorsion),
+        ("roll-pitch-yaw", Self::RollPitchYaw),
+    ];
 
     /// The name in files and options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::EulerAngles => "euler-angles",
             Self::TiltTorsion => "tilt-torsion",
+            Self::RollPitchYaw => "roll-pitch-yaw",
         }
     }
 
@@ -76,21 +86,25 @@ impl OrientationCoordinates {
         Self::NAMED.into_iter().find(|(known, _)| *known == name).map(|(_, choice)| choice)
     }
 
-    /// The Euler angles `zeta xi psi` for three angles of this kind. It is linear.
+    /// The angles of the three rotations whose product is the orientation, from left to right, for three angles of this
+    /// kind. The first is about the third direction, the second about the second, and the last about the third or, of roll,
+    /// pitch and yaw, the first. It is linear.
     #[inline(always)]
-    pub fn to_euler(self, [first, second, third]: [f64; 3]) -> [f64; 3] {
+    pub fn to_factors<T: Copy + Sub<Output = T>>(self, [first, second, third]: [T; 3]) -> [T; 3] {
         match self {
             Self::EulerAngles => [first, second, third],
             Self::TiltTorsion => [first, second, third - first],
+            Self::RollPitchYaw => [third, second, first],
         }
     }
 
-    /// Three angles of this kind for the Euler angles.
+    /// Three angles of this kind for those of the three rotations.
     #[inline(always)]
-    pub fn of_euler(self, [zeta, xi, psi]: [f64; 3]) -> [f64; 3] {
+    pub fn of_factors<T: Copy + Add<Output = T>>(self, [first, second, last]: [T; 3]) -> [T; 3] {
         match self {
-            Self::EulerAngles => [zeta, xi, psi],
-            Self::TiltTorsion => [zeta, xi, zeta + psi],
+            Self::EulerAngles => [first, second, last],
+            Self::TiltTorsion => [first, second, first + last],
+            Self::RollPitchYaw => [last, second, first],
         }
     }
 }

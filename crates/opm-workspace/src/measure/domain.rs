@@ -253,7 +253,7 @@ impl Domain {
     }
 
     /// The measure of the whole domain: the product of its ranges. The range of a tilt counts
-    /// `∫ |sin xi| dxi` or `∫ |cos(nu - home)| dnu`. It is one if no axis has a width.
+    /// `∫ |sin xi| dxi`, `∫ |cos pitch| dpitch` or `∫ |cos(nu - home)| dnu`. It is one if no axis has a width.
     pub fn whole(&self) -> f64 {
         self.whole
     }
@@ -345,6 +345,7 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
         Some(CoordinateKind::Xi) => SideKind::Tilt { shift: 0.0, weight: "sin xi" },
         // The Euler angles are linear in tilt and torsion, with a determinant of one.
         Some(CoordinateKind::Tilt) => SideKind::Tilt { shift: 0.0, weight: "sin tilt" },
+        Some(CoordinateKind::Pitch) => SideKind::Tilt { shift: FRAC_PI_2, weight: "cos pitch" },
         Some(CoordinateKind::Nu) => SideKind::Tilt {
             shift: FRAC_PI_2 - home,
             weight: if home == 0.0 { "cos nu" } else { "cos(nu - home)" },
@@ -361,6 +362,8 @@ fn axes(manipulator: &Manipulator, sections: Sections) -> Vec<DomainAxis> {
             | CoordinateKind::Psi
             | CoordinateKind::Azimuth
             | CoordinateKind::Torsion
+            | CoordinateKind::Roll
+            | CoordinateKind::Yaw
             | CoordinateKind::Mu,
         ) => SideKind::Plain,
     };

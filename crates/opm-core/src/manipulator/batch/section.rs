@@ -145,7 +145,7 @@ pub fn displace(
         }};
     }
     use MotionType::{Rotation, Translation};
-    use OrientationCoordinates::{EulerAngles, TiltTorsion};
+    use OrientationCoordinates::{EulerAngles, RollPitchYaw, TiltTorsion};
     let Form { kind, shared, angles } = task.form(section);
     match (kind, shared) {
         (SubspaceKind::Identity, _) => {}
@@ -155,10 +155,12 @@ pub fn displace(
         (SubspaceKind::Spherical, Some(_)) => match angles {
             EulerAngles => each!(Spherical, Some(Rotation)),
             TiltTorsion => each!(Spherical, Some(Rotation), TiltTorsion),
+            RollPitchYaw => each!(Spherical, Some(Rotation), RollPitchYaw),
         },
         (SubspaceKind::Spherical, None) => match angles {
             EulerAngles => each!(Spherical, None),
             TiltTorsion => each!(Spherical, None, TiltTorsion),
+            RollPitchYaw => each!(Spherical, None, RollPitchYaw),
         },
         (SubspaceKind::Cylindrical, Some(Rotation)) => each!(Cylindrical, Some(Rotation)),
         (SubspaceKind::Cylindrical, Some(Translation)) => each!(Cylindrical, Some(Translation)),
@@ -168,8 +170,8 @@ pub fn displace(
         (SubspaceKind::TranslationalSpace, Some(_)) => each!(TranslationalSpace, Some(Translation)),
         (SubspaceKind::TranslationalSpace, None) => each!(TranslationalSpace, None),
     }
-    let euler = task.euler_section() == Some(section);
-    if let (true, Some(inverse)) = (euler, task.home_orientation_inverse()) {
+    let oriented = task.oriented_section() == Some(section);
+    if let (true, Some(inverse)) = (oriented, task.home_orientation_inverse()) {
         for lane in 0..lanes {
             (Matrix3::load(to, lane) * inverse).store(to, lane);
         }

@@ -3,7 +3,8 @@
 //!
 //! Of a rotation about an axis `s` the second Euler angle tells `q`: the third direction makes the angle `ξ` with
 //! itself before. Where the platform's home orientation is the identity that is
-//! `sin(ξ/2) = ρ sin(q/2)`, with `ρ` the sine of the angle between `s` and the third direction.
+//! `sin(ξ/2) = ρ sin(q/2)`, with `ρ` the sine of the angle between `s` and the third direction. The pitch of roll, pitch and
+//! yaw is such an angle, too, less a right one: see [`Task::euler_home`].
 
 use crate::chain::{Closes, REACH_TOLERANCE, ReachDeficit};
 use crate::group::{
@@ -18,9 +19,10 @@ use crate::numbers::{
 };
 use crate::numeric::Quantity;
 use crate::numeric::angle::near;
-use crate::task::{Task, other_triple};
+use crate::task::{Task, other_factors};
 use nalgebra::{Complex, Matrix3};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::{Add, Sub};
 
 /// An axis whose angle with the third direction has a sine below this is along that direction; a coordinate that changes by less
 /// than this along a line does not tell the place on it.
@@ -36,7 +38,8 @@ pub(crate) struct OneJoint {
     pub section: Section,
     /// The numbers of the dependent coordinates.
     pub coordinates: Vec<usize>,
-    /// The numbers of the section's coordinates, but that of a height.
+    /// The numbers of the section's coordinates, but that of a height. Those of an orientation are in the order of its
+    /// [factors](OrientationCoordinates::to_factors).
     pub all: Vec<usize>,
     /// What each of these is, if it is dependent.
     pub follows: [Option<Quantity>; 3],
@@ -52,12 +55,12 @@ pub enum SectionMotion {
     Turn(LocalTwist),
     /// A translation along this screw; this coordinate of the section tells the joint.
     Slide(LocalTwist, usize),
-    /// A rotation about the third direction, told by the first Euler angle.
+    /// A rotation about the third direction, told by the angle of the first factor of the orientation.
     Third,
-    /// A rotation about this axis, told by the second Euler angle.
+    /// A rotation about this axis, told by the angle of the second factor.
     Axis(LocalTwist),
-    /// Any rotation about the third direction, after a rotation about this axis that is told by the second
-    /// Euler angle. The third Euler angle follows.
+    /// Any rotation about the third direction, after a rotation about this axis that is told by the angle of the second
+    /// factor. The third angle follows.
     LastAngle(LocalTwist),
 }
 
@@ -70,7 +73,7 @@ impl OneJoint {
         section: Section,
         free: Option<LocalTwist>,
     ) -> Option<Self> {
-        let all: Vec<usize> = task.in_plane(section, task.range(section)).collect();
+        let all = numbers(task, section);
         let (motion, given) = match (subspace(task, section).kind, free) {
             (_, None) => (SectionMotion::None, None),
             (SubspaceKind::Planar, Some(s)) if s.x != 0.0 => (SectionMotion::Turn(s), Some(2)),
@@ -105,7 +108,7 @@ impl OneJoint {
 
     /// A rotation about the third direction, and one about the axis `s`.
     pub fn last_angle(task: &Task, leg: usize, section: Section, s: LocalTwist) -> Self {
-        let all: Vec<usize> = task.range(section).collect();
+        let all = numbers(task, section);
         Self::of(task, leg, section, all, vec![2], SectionMotion::LastAngle(s))
     }
 
@@ -131,7 +134,7 @@ impl OneJoint {
         matches!(self.motion, SectionMotion::Axis(_) | SectionMotion::LastAngle(_))
     }
 
-    /// Chooses among the Euler angles of an orientation. Where the section only rotates about the third direction,
+    /// Chooses among the angles of an orientation. Where the section only rotates about the third direction,
     /// the first angle gets the whole rotation: at home the angles may be singular, so that the first and the third
     /// share it. Elsewhere there are two triples, and the one is chosen that belongs to the branch `sign`.
     pub fn choose_angles(&self, manipulator: &Manipulator, sign: f64, pose: &mut [f64]) {
@@ -140,7 +143,7 @@ impl OneJoint {
         let &[first, second, third] = &self.all[..] else { return };
         let numbers = [first, second, third];
         let at_home = numbers.map(|i| task.coordinates[i].home);
-        let home = task.angles.to_euler(at_home);
+        let home = to_factors(task, at_home);
         let chosen = match self.motion {
             SectionMotion::Turn(_) | SectionMotion::Slide(..) => return,
             SectionMotion::None | SectionMotion::Third => {
@@ -151,11 +154,14 @@ impl OneJoint {
                 [zeta, home[1], home[2]]
             }
             SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
-                let [zeta, xi, psi] = task.angles.to_euler(numbers.map(|i| pose[i]));
-                let [a, b, c] = other_triple([zeta, xi, psi]);
+                let [zeta, xi, psi] = to_factors(task, numbers.map(|i| pose[i]));
+                let [a, b, c] = other_factors(task.angles, [zeta, xi, psi]);
                 let other = [near(a, home[0]), b, near(c, home[2])];
                 // The last angle that follows from the second one.
-                let follows = |xi: f64| last_angle(task, &s, xi, sign);
+                let follows = |xi: f64| {
+                    let (exists, [_, psi]) = about_axis(task, &s, xi, sign);
+                    exists.holds(REACH_TOLERANCE).then_some(psi)
+                };
                 let off = |[_, xi, psi]: [f64; 3]| {
                     follows(xi).map_or(f64::INFINITY, |found| near(found - psi, 0.0).abs())
                 };
@@ -163,11 +169,11 @@ impl OneJoint {
                     if off(other) < off([zeta, xi, psi]) { other } else { [zeta, xi, psi] };
                 // Near their singularity only the sum of the two angles is known, or their difference.
                 let follows = follows(xi).map_or(psi, |found| near(found, psi));
-                let rest = if xi.cos() > 0.0 { psi - follows } else { follows - psi };
+                let rest = if tilt(task, xi).cos() > 0.0 { psi - follows } else { follows - psi };
                 [zeta + rest, xi, follows]
             }
         };
-        let chosen = task.angles.of_euler(chosen);
+        let chosen = of_factors(task, chosen);
         for ((number, angle), home) in numbers.into_iter().zip(chosen).zip(at_home) {
             pose[number] = near(angle, home);
         }
@@ -192,7 +198,7 @@ impl OneJoint {
                 SectionMotion::Slide(s, given) => {
                     self.line::<f64>(manipulator, s, given, tau).deficit(at)
                 }
-                _ => self.deficit(exists, manipulator.task().home_orientation_inverse(), at),
+                _ => self.deficit(exists, manipulator.task(), at),
             });
         }
         Ok(self.taken(subspace(manipulator.task(), self.section).kind, at, found))
@@ -200,21 +206,17 @@ impl OneJoint {
 
     /// By how much the coordinate that tells the joint is out of its range.
     #[cold]
-    fn deficit(
-        &self,
-        exists: Closes<f64>,
-        home: Option<&Matrix3<f64>>,
-        at: [f64; 3],
-    ) -> ReachDeficit {
-        let xi = near(at[1], 0.0).abs();
+    fn deficit(&self, exists: Closes<f64>, task: &Task, at: [f64; 3]) -> ReachDeficit {
+        let tilt = tilt(task, at[1]);
+        let xi = near(tilt, 0.0).abs();
         match (self.motion, exists) {
             (SectionMotion::Axis(s) | SectionMotion::LastAngle(s), Closes::Within(_, ends)) => {
-                ReachDeficit::angle(match home {
+                ReachDeficit::angle(match task.euler_home() {
                     None => xi - 2.0 * s.x.hypot(s.y).min(1.0).asin(),
                     // cos ξ - c₀ is beyond one of its ends.
-                    Some(inverse) => {
-                        let c0 = s.z * s.dot(&inverse.row(2).transpose());
-                        let nearest = (at[1].cos() - c0).clamp(ends[0], ends[1]) + c0;
+                    Some(home) => {
+                        let c0 = s.z * s.dot(&home.column(2));
+                        let nearest = (tilt.cos() - c0).clamp(ends[0], ends[1]) + c0;
                         (xi - nearest.clamp(-1.0, 1.0).acos()).abs()
                     }
                 })
@@ -235,16 +237,16 @@ impl OneJoint {
         let task = manipulator.task();
         // Zero for a displacement along the intersection motion, for which there is no coordinate.
         let home = |i: usize| self.all.get(i).map_or(0.0, |&i| task.coordinates[i].home);
-        let euler_at_home = || task.angles.to_euler([0, 1, 2].map(home)).map(T::constant);
+        let factors_at_home = || to_factors(task, [0, 1, 2].map(home)).map(T::constant);
         let kind = subspace(task, self.section).kind;
         let shifted = |motion: Displacement<T>| self.shifted(manipulator, motion, tau);
         let still = || shifted(Displacement::still(kind));
         let found = match self.motion {
             SectionMotion::None => match still() {
-                // The rotation about the third direction is that of the first Euler angle.
+                // The rotation about the third direction is that of the first factor.
                 Displacement::Spherical(r) => {
-                    let [zeta, xi, psi] = euler_at_home();
-                    of_euler(task, [about_third::<T>(r) + zeta, xi, psi])
+                    let [zeta, xi, psi] = factors_at_home();
+                    of_factors(task, [about_third::<T>(r) + zeta, xi, psi])
                 }
                 other => of_displacement(&other, home),
             },
@@ -258,20 +260,17 @@ impl OneJoint {
                 return self.line::<T>(manipulator, s, given, tau).found(at);
             }
             SectionMotion::Third => {
-                let [_, xi, psi] = euler_at_home();
-                return (Closes::Always, of_euler(task, [at[0], xi, psi]));
+                let [_, xi, psi] = factors_at_home();
+                return (Closes::Always, of_factors(task, [at[0], xi, psi]));
             }
             SectionMotion::Axis(s) | SectionMotion::LastAngle(s) => {
-                let (exists, [mut zeta, psi]) = match task.home_orientation_inverse() {
-                    None => from_identity(&s, at[1], sign),
-                    Some(inverse) => from_orientation(&s, &inverse.transpose(), at[1], sign),
-                };
+                let (exists, [mut zeta, psi]) = about_axis(task, &s, at[1], sign);
                 if let SectionMotion::LastAngle(_) = self.motion {
                     zeta = at[0];
                 } else if let Displacement::Spherical(r) = still() {
                     zeta = zeta + about_third::<T>(r);
                 }
-                return (exists, of_euler(task, [zeta, at[1], psi]));
+                return (exists, of_factors(task, [zeta, at[1], psi]));
             }
         };
         (Closes::Always, found)
@@ -382,13 +381,59 @@ fn subspace(task: &Task, section: Section) -> &Subspace {
     }
 }
 
-/// The last Euler angle of the platform after the rotation about `s` from home whose second angle is `xi`, if there is one.
-fn last_angle(task: &Task, s: &LocalTwist, xi: f64, sign: f64) -> Option<f64> {
-    let (exists, [_, psi]) = match task.home_orientation_inverse() {
+/// The numbers of a section's coordinates, but that of a height; of an orientation, in the order of its factors.
+fn numbers(task: &Task, section: Section) -> Vec<usize> {
+    let mut all: Vec<usize> = task.in_plane(section, task.range(section)).collect();
+    if task.oriented_section() == Some(section) {
+        match task.angles {
+            OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion => {}
+            OrientationCoordinates::RollPitchYaw => all.reverse(),
+        }
+    }
+    all
+}
+
+/// The angles of the factors of an orientation, for its coordinates in their order.
+#[inline(always)]
+fn to_factors<T: Copy + Sub<Output = T>>(task: &Task, [a, b, c]: [T; 3]) -> [T; 3] {
+    match task.angles {
+        OrientationCoordinates::EulerAngles | OrientationCoordinates::RollPitchYaw => [a, b, c],
+        OrientationCoordinates::TiltTorsion => [a, b, c - a],
+    }
+}
+
+/// The coordinates of an orientation, in the order of its factors, for their angles.
+#[inline(always)]
+fn of_factors<T: Copy + Add<Output = T>>(task: &Task, [a, b, c]: [T; 3]) -> [T; 3] {
+    match task.angles {
+        OrientationCoordinates::EulerAngles | OrientationCoordinates::RollPitchYaw => [a, b, c],
+        OrientationCoordinates::TiltTorsion => [a, b, a + c],
+    }
+}
+
+/// The second Euler angle for the angle of the second factor of an orientation: see [`Task::euler_home`].
+#[inline(always)]
+fn tilt<T: Real>(task: &Task, second: T) -> T {
+    match task.angles {
+        OrientationCoordinates::EulerAngles | OrientationCoordinates::TiltTorsion => second,
+        OrientationCoordinates::RollPitchYaw => second + FRAC_PI_2,
+    }
+}
+
+/// The angles of the first and the last factor of the platform's orientation after the rotation about `s` from home, for that
+/// of the second one, and what decides whether there are any.
+#[inline(always)]
+fn about_axis<T: Over<f64>>(
+    task: &Task,
+    s: &LocalTwist,
+    second: T,
+    sign: T::Sign,
+) -> (Closes<T>, [T; 2]) {
+    let xi = tilt(task, second);
+    match task.euler_home() {
         None => from_identity(s, xi, sign),
-        Some(inverse) => from_orientation(s, &inverse.transpose(), xi, sign),
-    };
-    exists.holds(REACH_TOLERANCE).then_some(psi)
+        Some(home) => from_orientation(s, &home, xi, sign),
+    }
 }
 
 /// The displacement by one unit along the screw of a slider: a translation of a plane, or of space.
@@ -420,15 +465,6 @@ fn lengths<T: Real>(g: &Displacement<T>) -> [T; 3] {
 fn about_third<T: Real>(r: T::Rotation) -> T {
     let [[x, ..], [y, ..], _] = r.rows();
     T::Plane::new(x, y).argument()
-}
-
-/// Three angles of the task's kind for Euler angles.
-#[inline(always)]
-fn of_euler<T: Real>(task: &Task, [zeta, xi, psi]: [T; 3]) -> [T; 3] {
-    match task.angles {
-        OrientationCoordinates::EulerAngles => [zeta, xi, psi],
-        OrientationCoordinates::TiltTorsion => [zeta, xi, zeta + psi],
-    }
 }
 
 /// The coordinates of a displacement of a section that has all coordinates of its subspace. A rotation about a

@@ -13,6 +13,7 @@ use opm_core::group::{
     CylindricalMotion, IntersectionMotion, MotionType, PlanarMotion, SubspaceKind,
 };
 use opm_core::manipulator::form::SectionForm;
+use opm_core::mechanism::OrientationCoordinates;
 
 fn zero() -> Vector {
     vector_of(0.0, 0.0, 0.0)
@@ -92,14 +93,23 @@ impl Writer<'_> {
     /// The screws of the three angles of a section's orientation.
     pub fn angle_screws(&self, section: Section, q: Array<Real>) -> [Vector; 3] {
         let numbers = self.numbers(section);
-        let [zeta, xi] = [0, 1].map(|i| q.at(number(numbers[i])));
-        let screws = named(&format!("{}_angles", word(section)), euler_screws(zeta, xi));
-        // The third Euler angle is the torsion minus the azimuth.
-        let s1 = match self.tilt_torsion() {
-            true => add(screws.s1, -1.0, screws.s3),
-            false => screws.s1,
-        };
-        [s1, screws.s2, screws.s3]
+        let q = |i: usize| q.at(number(numbers[i]));
+        let name = format!("{}_angles", word(section));
+        match self.angles_of_pose() {
+            OrientationCoordinates::EulerAngles => {
+                let Screws { s1, s2, s3, .. } = named(&name, euler_screws(q(0), q(1)));
+                [s1, s2, s3]
+            }
+            // The third Euler angle is the torsion minus the azimuth.
+            OrientationCoordinates::TiltTorsion => {
+                let Screws { s1, s2, s3, .. } = named(&name, euler_screws(q(0), q(1)));
+                [add(s1, -1.0, s3), s2, s3]
+            }
+            OrientationCoordinates::RollPitchYaw => {
+                let Screws { s1, s2, s3, .. } = named(&name, yaw_pitch_roll_screws(q(2), q(1)));
+                [s3, s2, s1]
+            }
+        }
     }
 
     /// The unit twist of the intersection motion in the frame of a section.

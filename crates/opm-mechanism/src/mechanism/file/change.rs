@@ -263,11 +263,11 @@ mod tests {
     fn parameters_of_a_family_keep_the_coordinates() {
         use crate::mechanism::OrientationCoordinates::TiltTorsion;
         let mut file = example("plano-spherical-5dof");
-        file.mechanism.task.coordinates = TiltTorsion;
+        file.mechanism.task.coordinates = Some(TiltTorsion);
         let changed = file.with([("leg1.h", ParameterValue::Number(0.13))]).unwrap();
-        assert_eq!(changed.mechanism.task.coordinates, TiltTorsion);
+        assert_eq!(changed.mechanism.task.coordinates, Some(TiltTorsion));
         let again = read(&changed.text()).unwrap();
-        assert_eq!(again.mechanism.task.coordinates, TiltTorsion);
+        assert_eq!(again.mechanism.task.coordinates, Some(TiltTorsion));
         assert_eq!(again.family, changed.family);
         let error = file.with([("leg1.hh", ParameterValue::Number(0.13))]).unwrap_err();
         assert!(error.to_string().contains("did you mean `leg1.h`"), "{error}");

@@ -175,9 +175,9 @@ fn read_home(task: &Table<'_>, locations: &mut Locations<usize>) -> Vec<(String,
 pub(super) fn read_angles(
     task: &Table<'_>,
     locations: &mut Locations<usize>,
-) -> OrientationCoordinates {
+) -> Option<OrientationCoordinates> {
     let value = task_value(task, TaskKey::Coordinates, locations);
-    value.and_then(|value| value.word(&OrientationCoordinates::NAMED)).unwrap_or_default()
+    value.and_then(|value| value.word(&OrientationCoordinates::NAMED))
 }
 
 fn read_frame(task: &Table<'_>, section: Section, locations: &mut Locations<usize>) -> FrameHints {

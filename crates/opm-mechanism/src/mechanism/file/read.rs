@@ -83,7 +83,7 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     root.allow(&[form.keys, FAMILY_KEYS].concat());
     let mut noted = Locations::default();
     let task = root.get("task").and_then(|value| value.table(joints::FAMILY_TASK_KEYS));
-    let coordinates = task.map(|task| joints::read_angles(&task, &mut noted)).unwrap_or_default();
+    let coordinates = task.and_then(|task| joints::read_angles(&task, &mut noted));
     let (family, mut mechanism) = (form.read)(root, name, &branches(root, form.choices))?;
     mechanism.task.coordinates = coordinates;
     mechanism.units = units;

@@ -2,9 +2,7 @@
 
 use super::FileUnits;
 use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
-use crate::mechanism::{
-    HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, OrientationCoordinates, TaskHints,
-};
+use crate::mechanism::{HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, TaskHints};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
@@ -93,8 +91,8 @@ impl Writer {
         if !home.is_empty() {
             lines.push(format!("home = {{ {} }}", home.join(", ")));
         }
-        if hints.coordinates != OrientationCoordinates::default() {
-            lines.push(format!("coordinates = {}", quoted(hints.coordinates.name())));
+        if let Some(coordinates) = hints.coordinates {
+            lines.push(format!("coordinates = {}", quoted(coordinates.name())));
         }
         if lines.is_empty() { String::new() } else { format!("\n[task]\n{}\n", lines.join("\n")) }
     }

@@ -62,8 +62,9 @@ fn task_key(key: &str) -> Value {
 fn orientation_coordinates() -> Value {
     let words = OrientationCoordinates::NAMED.map(|(word, _)| word);
     json!({
-        "description": "The angles of an orientation: euler-angles (zeta xi psi, the default), or tilt-torsion \
-                        (azimuth tilt torsion, with R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)).",
+        "description": "The angles of an orientation: euler-angles (zeta xi psi, the default), tilt-torsion \
+                        (azimuth tilt torsion, with R = Rz(azimuth) Ry(tilt) Rz(torsion - azimuth)), or \
+                        roll-pitch-yaw (roll pitch yaw, with R = Rz(yaw) Ry(pitch) Rx(roll)).",
         "enum": words,
     })
 }

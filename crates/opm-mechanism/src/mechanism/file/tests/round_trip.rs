@@ -4,7 +4,8 @@ use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, wri
 use crate::mechanism::joint::{Joint, JointKind, MotionLimits};
 use crate::mechanism::leg::Leg;
 use crate::mechanism::{
-    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, Shapes, TaskHints,
+    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape,
+    OrientationCoordinates, Shapes, TaskHints,
 };
 use nalgebra::{Point3, Unit, Vector3};
 use proptest::prelude::*;
@@ -82,10 +83,12 @@ prop_compose! {
         axis in proptest::option::of(direction()), lower in frame(), upper in frame(),
         home in prop::sample::subsequence(&HOME_COORDINATES[..], 0..=HOME_COORDINATES.len()),
         values in prop::collection::vec(-3.0..3.0_f64, HOME_COORDINATES.len()),
+        coordinates in proptest::option::of(prop::sample::select(&OrientationCoordinates::NAMED[..])),
     ) -> TaskHints {
         let home = home.into_iter().zip(values).map(|((name, _), value)| (name.to_owned(), value));
         let axis = axis.map(Unit::into_inner);
-        TaskHints { axis, lower, upper, home: home.collect(), ..TaskHints::default() }
+        let coordinates = coordinates.map(|(_, coordinates)| coordinates);
+        TaskHints { axis, lower, upper, coordinates, home: home.collect() }
     }
 }
 
@@ -238,6 +241,7 @@ proptest! {
             prop_assert_eq!(found.len(), expected.len());
             prop_assert!(found.iter().zip(expected).all(|(a, b)| near(*a, b)), "{text}");
         }
+        prop_assert_eq!(read.task.coordinates, mechanism.task.coordinates);
         prop_assert_eq!(read.task.home.len(), mechanism.task.home.len());
         for (read, written) in read.task.home.iter().zip(&mechanism.task.home) {
             prop_assert_eq!(&read.0, &written.0);
