@@ -32,7 +32,9 @@ impl Report<'_> {
         let causes: Vec<Value> = (self.found.rejections.iter())
             .map(|rejection| {
                 let (section, joint, limit) = match rejection.cause {
-                    Cause::Reach(section) => (section.map(|section| section.to_string()), None, None),
+                    Cause::Reach(section) => {
+                        (section.map(|section| section.to_string()), None, None)
+                    }
                     Cause::Lowest(joint) => (None, Some(&*coordinates[joint].name), Some("lowest")),
                     Cause::Highest(joint) => {
                         (None, Some(&*coordinates[joint].name), Some("highest"))

@@ -482,9 +482,13 @@ impl Task {
     }
 }
 
-/// The angles that an orientation is written with where a file does not say: Euler angles, whatever the decomposition.
-fn default_coordinates(_: &Decomposition) -> OrientationCoordinates {
-    OrientationCoordinates::EulerAngles
+/// The angles that an orientation is written with where a file does not say: Euler angles where legs are split; roll, pitch and
+/// yaw, which are regular at home, where they are solved whole.
+fn default_coordinates(decomposition: &Decomposition) -> OrientationCoordinates {
+    match decomposition.is_whole() {
+        true => OrientationCoordinates::RollPitchYaw,
+        false => OrientationCoordinates::EulerAngles,
+    }
 }
 
 /// Takes the values at home of a file. Roll, pitch and yaw, if one of them is given, are returned.

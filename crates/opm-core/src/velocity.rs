@@ -378,7 +378,8 @@ impl Manipulator {
                 && singular.section == Some(leg.split_section);
         let sections = [(&leg.lower, Section::Lower), (&leg.upper, Section::Upper)];
         let section = singular.section;
-        let chains = sections.into_iter().filter(move |(_, other)| whole_leg || Some(*other) == section);
+        let chains =
+            sections.into_iter().filter(move |(_, other)| whole_leg || Some(*other) == section);
         // A lift that follows the imaginary joint has no rate where that has none.
         let lift = leg.lift.filter(|lift| whole_leg && lift.slope != 0.0);
         chains
@@ -391,8 +392,8 @@ impl Manipulator {
     /// The number of the imaginary joint of a singular leg, if that has no rate either.
     pub fn rateless_imaginary(&self, singular: &SingularLeg) -> Option<usize> {
         let leg = &self.legs[singular.leg];
-        let lost = singular.cause == SingularCause::Serial
-            && singular.section == Some(leg.split_section);
+        let lost =
+            singular.cause == SingularCause::Serial && singular.section == Some(leg.split_section);
         leg.imaginary.filter(|_| lost)
     }
 

@@ -137,27 +137,15 @@ fn planar_and_cylindrical_subspaces() {
     assert_direction(axis, Vector3::x_axis());
 }
 
+/// It has no partial subspaces: each leg is solved by itself.
 #[test]
-fn a_gough_platform_has_no_partial_subspaces() {
-    let error = decompose(&gough(&mut Numbers::new(1))).unwrap_err();
-    let subspace = Some(Box::new(SubspaceClass::Full));
-    let expected = DecomposeError::NoPartialSubspaces {
-        lambda: 6,
-        mobility: 6,
-        order: None,
-        near: None,
-        odd: None,
-        height: None,
-        subspace,
-        units: FileUnits::SI,
-    };
-    assert_eq!(error, expected);
-    assert_eq!(
-        error.to_string(),
-        "no partial subspaces (lambda = 6, mobility N = 6): the joints of all legs together move in \
-         all six dimensions; opm needs legs that split between two subgroups of less than 6 \
-         dimensions that share a one-parameter motion"
-    );
+fn a_gough_platform_is_solved_leg_by_leg() {
+    let found = decompose(&gough(&mut Numbers::new(1))).unwrap();
+    let [found] = &found[..] else { panic!("{found:?}") };
+    assert!(found.is_whole());
+    assert_eq!(found.platform(), PlatformSet::Free);
+    assert_eq!([found.lambda, found.mobility, found.imaginary_joints], [6, 6, 0]);
+    assert!(found.legs.iter().all(|leg| leg.whole.is_some() && leg.lower.len() == 6));
 }
 
 /// A revolute joint that passes the common centre is named, with its distance from the centre.

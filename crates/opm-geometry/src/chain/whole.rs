@@ -32,7 +32,7 @@ use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use nodes::Nodes;
 use objects::Leg;
 use order::Search;
-use program::Program;
+use program::{Program, Run};
 use samples::Sample;
 use solve::{General, Solved};
 use step::Candidate;
@@ -84,7 +84,7 @@ pub struct StepName {
     pub joint: usize,
     /// How it is found: `linear`, `quadratic`, `direct`, `pair`, `double`, `twofold`, `ball` or `swing`.
     pub root: &'static str,
-    /// By which invariant: `distance`, `height`, `angle`, `point` or `direction`; `None` for a spherical joint.
+    /// By which invariant: `distance`, `height`, `angle`, `point`, `line` or `direction`; `None` for a spherical joint.
     pub invariant: Option<&'static str>,
 }
 
@@ -315,7 +315,8 @@ impl WholeLeg {
         let (elements, size) = (&self.elements, self.size);
         let mut roots = General { doubt: T::constant(0.0), size };
         let g = (rotation, translation);
-        let run = self.program.run::<T>(elements, size, g, signs, &mut roots);
+        let mut run = Run::new();
+        self.program.run::<T>((elements, size), g, signs, &mut roots, &mut run);
         let open = roots.doubt + self.program.open::<T>(&run, size);
         let holds = T::constant(CLOSURE * CLOSURE).at_least(open);
         WholeAttempt { displacements: run.joints, holds, beyond: T::Truth::NO }

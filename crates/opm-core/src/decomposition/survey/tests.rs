@@ -1,6 +1,6 @@
 use super::*;
 use crate::decomposition::samples::*;
-use crate::decomposition::{DecomposeError, decompose, search_all};
+use crate::decomposition::{DecomposeError, WholeMiss, decompose, search_all};
 use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{Point3, Unit, Vector3};
 
@@ -108,6 +108,8 @@ fn three_rps_legs() {
     assert_eq!((&*found.notation, found.common_name), ("3-RPS", Some("3-RPS tripod")));
     assert_eq!((found.platform.dimension, found.platform.translations), (3, 1));
     assert_eq!(found.platform.subspace, None);
+    // Legs that constrain the platform together leave it no group.
+    assert_eq!(found.whole, Some(WholeMiss::NoGroup { dimension: 3 }));
     let Applies::Outside(Outside::NothingShared { legs, odd: None }) = &found.applies else {
         panic!("{:?}", found.applies)
     };

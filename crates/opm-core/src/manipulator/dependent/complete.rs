@@ -250,7 +250,8 @@ impl Manipulator {
             return Ok(JointDisplacement::Value(0.0));
         }
         let bridge = leg.split_section;
-        let missed = |deficit: ReachDeficit| Unreachable { leg: number, section: Some(bridge), deficit };
+        let missed =
+            |deficit: ReachDeficit| Unreachable { leg: number, section: Some(bridge), deficit };
         let (task, branches) = (self.task(), self.branches(mode, number));
         let leg = leg.at(task.rise(pose)).map_err(|(_, deficit)| missed(deficit))?;
         match bridge {

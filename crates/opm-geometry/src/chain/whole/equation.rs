@@ -1,6 +1,6 @@
 //! Equations in one joint alone, and what finds the joint by one or two of them.
 
-use super::element::{Element, Kind, Moved};
+use super::element::{Element, Kind, Moved, constant};
 use crate::chain::kernel::Row;
 use crate::numbers::{Joint, Plane, Real, Space};
 
@@ -50,6 +50,8 @@ pub(super) enum Kernel<P> {
     Quadratic(Equation<P>),
     /// A point that the joint moves to a known place.
     Point { moved: P, fixed: P },
+    /// A line parallel to the axis that the joint turns to a known place: by a point of it.
+    Line { moved: P, fixed: P },
     /// A direction that the joint turns to a known one.
     Direction { moved: P, fixed: P },
     /// An angle, by two equations that are linear in its cosine and sine.
@@ -170,7 +172,7 @@ impl<P: Copy> Equation<P> {
         match *self {
             Self::Height { moved, normal, base, height, back } => {
                 let normal = read(normal);
-                let rate = normal.inner(super::element::constant::<T>(&element.direction));
+                let rate = normal.inner(constant::<T>(&element.direction));
                 let level = read(moved).plus(T::constant(-1.0), read(base)).inner(normal);
                 (if back { -rate } else { rate }, height.of::<T>(read) - level)
             }
@@ -188,7 +190,7 @@ impl<P: Copy> Equation<P> {
         match *self {
             Self::Distance { moved, fixed, square } => {
                 let across = read(moved).plus(T::constant(-1.0), read(fixed));
-                let half = across.inner(super::element::constant::<T>(&element.direction));
+                let half = across.inner(constant::<T>(&element.direction));
                 let square = square.of::<T>(read);
                 (half, across.inner(across) - square, square)
             }
@@ -207,6 +209,7 @@ impl<P: Copy> Kernel<P> {
             Self::Difference(two) => Kernel::Difference(two.map(|one| one.map(f))),
             Self::Quadratic(one) => Kernel::Quadratic(one.map(f)),
             Self::Point { moved, fixed } => Kernel::Point { moved: f(moved), fixed: f(fixed) },
+            Self::Line { moved, fixed } => Kernel::Line { moved: f(moved), fixed: f(fixed) },
             Self::Direction { moved, fixed } => {
                 Kernel::Direction { moved: f(moved), fixed: f(fixed) }
             }
@@ -223,6 +226,7 @@ impl<P: Copy> Kernel<P> {
             Self::Linear(_)
             | Self::Difference(_)
             | Self::Point { .. }
+            | Self::Line { .. }
             | Self::Direction { .. }
             | Self::Pair(_)
             | Self::Double(_) => false,
@@ -236,6 +240,7 @@ impl<P: Copy> Kernel<P> {
             Self::Difference([one, _]) => ("linear", one.name()),
             Self::Quadratic(one) => ("quadratic", one.name()),
             Self::Point { .. } => ("direct", "point"),
+            Self::Line { .. } => ("direct", "line"),
             Self::Direction { .. } => ("direct", "direction"),
             Self::Pair([one, _]) => ("pair", one.name()),
             Self::Double(one) => ("double", one.name()),
@@ -245,13 +250,13 @@ impl<P: Copy> Kernel<P> {
 
     /// The joint.
     #[inline(always)]
-    pub fn solve<T: Real>(
+    pub fn solve<T: Real, R: Roots<T>>(
         &self,
         element: &Element,
         size: f64,
         sign: T::Sign,
         read: impl Fn(P) -> T::Space + Copy,
-        roots: &mut impl Roots<T>,
+        roots: &mut R,
     ) -> (Moved<T>, T::Joint) {
         let slid = |shift: T| match element.kind {
             Kind::Helix(pitch) => {
@@ -272,6 +277,17 @@ impl<P: Copy> Kernel<P> {
             }
         };
         let minus = T::constant(-1.0);
+        let direction = constant::<T>(&element.direction);
+        // What turns the part of a vector across the axis to that of another one.
+        let towards = |y: T::Space, w: T::Space, size: f64, roots: &mut R| {
+            let across = y.plus(-direction.inner(y), direction);
+            let vector = T::Plane::new(across.inner(w), direction.crossed(y).inner(w));
+            roots.turned(vector, across.inner(across), size)
+        };
+        let about = |moved: T::Space, fixed: T::Space, roots: &mut R| {
+            let point = constant::<T>(&element.point);
+            towards(moved.plus(minus, point), fixed.plus(minus, point), size, roots)
+        };
         match self {
             Self::Linear(one) => {
                 let (rate, constant) = one.linear::<T>(element, read);
@@ -286,28 +302,15 @@ impl<P: Copy> Kernel<P> {
                 let (half, constant, square) = one.quadratic::<T>(element, read);
                 slid(roots.quadratic(half, constant, square, sign))
             }
-            &Self::Point { moved, fixed } => {
-                let direction = super::element::constant::<T>(&element.direction);
-                match element.kind {
-                    Kind::Turn => {
-                        let point = super::element::constant::<T>(&element.point);
-                        let y = read(moved).plus(minus, point);
-                        let w = read(fixed).plus(minus, point);
-                        let across = y.plus(-direction.inner(y), direction);
-                        let vector = T::Plane::new(across.inner(w), direction.crossed(y).inner(w));
-                        turned(roots.turned(vector, across.inner(across), size))
-                    }
-                    Kind::Helix(_) | Kind::Slide | Kind::Ball => {
-                        slid(read(fixed).plus(minus, read(moved)).inner(direction))
-                    }
+            &Self::Point { moved, fixed } => match element.kind {
+                Kind::Turn => turned(about(read(moved), read(fixed), roots)),
+                Kind::Helix(_) | Kind::Slide | Kind::Ball => {
+                    slid(read(fixed).plus(minus, read(moved)).inner(direction))
                 }
-            }
+            },
+            &Self::Line { moved, fixed } => turned(about(read(moved), read(fixed), roots)),
             &Self::Direction { moved, fixed } => {
-                let direction = super::element::constant::<T>(&element.direction);
-                let (y, w) = (read(moved), read(fixed));
-                let across = y.plus(-direction.inner(y), direction);
-                let vector = T::Plane::new(across.inner(w), direction.crossed(y).inner(w));
-                turned(roots.turned(vector, across.inner(across), 1.0))
+                turned(towards(read(moved), read(fixed), 1.0, roots))
             }
             Self::Pair(two) => turned(roots.pair(two.map(|one| one.row::<T>(element, read).0))),
             Self::Double(one) => {

@@ -25,9 +25,24 @@ pub(super) struct Loop {
 /// An object that an arc leaves alone, as it is at a place of the loop.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Object {
-    Point { place: usize, point: Id },
-    Direction { place: usize, direction: Id },
-    Plane { place: usize, normal: Id, base: Id },
+    Point {
+        place: usize,
+        point: Id,
+    },
+    Direction {
+        place: usize,
+        direction: Id,
+    },
+    Plane {
+        place: usize,
+        normal: Id,
+        base: Id,
+    },
+    /// The axis of a helical joint.
+    Line {
+        place: usize,
+        joint: usize,
+    },
 }
 
 /// The objects that an arc leaves alone.
@@ -92,7 +107,8 @@ impl Leg<'_> {
         self.samples.iter().skip(1)
     }
 
-    fn parallel(&self, a: usize, b: usize) -> bool {
+    /// Whether the axes of two joints are parallel.
+    pub fn parallel(&self, a: usize, b: usize) -> bool {
         self.moved().all(|one| one.axes[a].1.cross(&one.axes[b].1).norm() <= STRUCTURE)
     }
 
@@ -141,6 +157,9 @@ impl Leg<'_> {
         }
         if !balls.is_empty() {
             return found;
+        }
+        if let ([(place, joint)], [], []) = (&helices[..], &turns[..], &slides[..]) {
+            found.some.push(Object::Line { place: *place, joint: *joint });
         }
         let axes = || turns.iter().chain(&helices);
         if let Some(&(place, first)) = axes().next() {

@@ -10,7 +10,7 @@ use crate::numbers::{Joint, Real, Rotation, Space};
 use nalgebra::Vector3;
 
 /// So many vectors are held at once, at most.
-const REGISTERS: usize = 24;
+const REGISTERS: usize = 16;
 
 /// Where a vector is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,13 +71,35 @@ pub(super) struct Program {
     pub balls: Balls,
 }
 
+/// Room for the joints. It is a power of two: to stay within costs nothing.
+const JOINTS: usize = 8;
+
 /// What the operations give.
 pub(super) struct Run<T: Real> {
     /// The displacement of each joint but balls.
-    pub moved: [Moved<T>; MOST_FREEDOMS],
+    moved: [Moved<T>; JOINTS],
     /// That of each freedom.
     pub joints: [T::Joint; MOST_FREEDOMS],
     registers: [T::Space; REGISTERS],
+}
+
+impl<T: Real> Run<T> {
+    /// Nothing yet.
+    #[inline(always)]
+    pub fn new() -> Self {
+        let zero = T::constant(0.0);
+        Self {
+            moved: [Moved::home(); JOINTS],
+            joints: [T::Joint::value(zero); MOST_FREEDOMS],
+            registers: [T::Space::new(zero, zero, zero); REGISTERS],
+        }
+    }
+
+    /// The displacement of a joint that is no ball.
+    #[inline(always)]
+    pub fn moved(&self, joint: usize) -> Moved<T> {
+        self.moved[joint % JOINTS]
+    }
 }
 
 #[inline(always)]
@@ -99,57 +121,55 @@ impl Program {
     #[inline(always)]
     pub fn run<T: Real>(
         &self,
-        elements: &[Element],
-        size: f64,
+        leg: (&[Element], f64),
         (rotation, translation): (T::Rotation, T::Space),
         signs: [T::Sign; 2],
         roots: &mut impl Roots<T>,
-    ) -> Run<T> {
-        let zero = T::constant(0.0);
-        let mut registers = [T::Space::new(zero, zero, zero); REGISTERS];
-        let mut moved = [Moved::home(); MOST_FREEDOMS];
-        let mut joints = [T::Joint::value(zero); MOST_FREEDOMS];
+        run: &mut Run<T>,
+    ) {
+        let (elements, size) = leg;
+        let back_rotation = rotation.inverse();
         for operation in &self.operations {
-            let at = |place| read::<T>(&self.constants, &registers, place);
-            let (made, to) = match *operation {
-                Operation::Target { back, kind, of, to } => {
+            let Run { moved, joints, registers } = &mut *run;
+            let at = |place| read::<T>(&self.constants, registers, place);
+            let (made, to) = match operation {
+                &Operation::Target { back, kind, of, to } => {
                     let v = at(of);
                     let made = match (back, kind) {
                         (false, Vector::Direction) => image::<T>(rotation, v),
                         (false, Vector::Point) => {
                             image::<T>(rotation, v).plus(T::constant(1.0), translation)
                         }
-                        (true, Vector::Direction) => image::<T>(rotation.inverse(), v),
+                        (true, Vector::Direction) => image::<T>(back_rotation, v),
                         (true, Vector::Point) => {
-                            image::<T>(rotation.inverse(), v.plus(T::constant(-1.0), translation))
+                            image::<T>(back_rotation, v.plus(T::constant(-1.0), translation))
                         }
                     };
                     (made, to)
                 }
-                Operation::Joint { joint, back, kind, of, to } => {
-                    let joint = usize::from(joint) % MOST_FREEDOMS;
-                    (elements[joint].carry(moved[joint], back, kind, at(of)), to)
+                &Operation::Joint { joint, back, kind, of, to } => {
+                    let joint = usize::from(joint);
+                    (elements[joint].carry(moved[joint % JOINTS], back, kind, at(of)), to)
                 }
-                Operation::Meet { lines: [[a, u], [b, v]], to } => {
+                &Operation::Meet { lines: [[a, u], [b, v]], to } => {
                     let [a, u, b, v] = [a, u, b, v].map(at);
                     let normal = u.crossed(v);
                     let apart = b.plus(T::constant(-1.0), a);
                     let along = apart.crossed(v).inner(normal).over(normal.inner(normal));
                     (a.plus(along, u), to)
                 }
-                Operation::Cross { two: [a, b], to } => (at(a).crossed(at(b)), to),
+                &Operation::Cross { two: [a, b], to } => (at(a).crossed(at(b)), to),
                 Operation::Solve { joint, kernel, choice } => {
-                    let joint = usize::from(joint) % MOST_FREEDOMS;
-                    let (element, sign) = (&elements[joint], signs[usize::from(choice) % 2]);
+                    let joint = usize::from(*joint);
+                    let (element, sign) = (&elements[joint], signs[usize::from(*choice) % 2]);
                     let (by, displacement) = kernel.solve(element, size, sign, at, roots);
-                    moved[joint] = by;
-                    joints[element.slot % MOST_FREEDOMS] = displacement;
+                    moved[joint % JOINTS] = by;
+                    joints[element.slot] = displacement;
                     continue;
                 }
             };
             registers[usize::from(to) % REGISTERS] = made;
         }
-        Run { moved, joints, registers }
     }
 
     /// The square of how far the loop is from closed; lengths relative to the size.

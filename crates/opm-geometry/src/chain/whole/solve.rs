@@ -235,6 +235,8 @@ fn numbers(target: &Isometry3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
 
 /// Newton's method mends a loop that is open by no more than this: joints that two singularities meet at.
 const MENDED: f64 = 1e-4;
+/// It takes so many steps.
+const MOST_MENDS: usize = 4;
 
 impl Solved<'_> {
     /// The joints, as [`super::WholeLeg::solve`] gives them.
@@ -248,7 +250,8 @@ impl Solved<'_> {
         let (Self { elements, program, size, .. }, g) = (*self, numbers(target));
         let signs = branches.map(Branch::sign);
         let mut roots = General { doubt: 0.0, size };
-        let run = program.run::<f64>(elements, size, g, signs, &mut roots);
+        let mut run = Run::new();
+        program.run::<f64>((elements, size), g, signs, &mut roots, &mut run);
         let open = program.open::<f64>(&run, size);
         let closed = roots.doubt + open <= CLOSURE * CLOSURE;
         if !closed {
@@ -258,7 +261,7 @@ impl Solved<'_> {
         self.balls(&run, |slot, rotation| {
             let vector = rotation_vector(rotation);
             for i in 0..3 {
-                out[(slot + i) % MOST_FREEDOMS] = JointDisplacement::Value(vector[i]);
+                out[slot + i] = JointDisplacement::Value(vector[i]);
             }
         });
         Ok(())
@@ -282,7 +285,7 @@ impl Solved<'_> {
                 let [x, y] = columns.map(|place| {
                     let inside = swing.tr_mul(&at(place));
                     between.iter().fold(inside, |v, &joint| {
-                        elements[joint].carry::<f64>(run.moved[joint], true, Vector::Direction, v)
+                        elements[joint].carry::<f64>(run.moved(joint), true, Vector::Direction, v)
                     })
                 });
                 give(elements[*two].slot, &Matrix3::from_columns(&[x, y, x.cross(&y)]));
@@ -314,7 +317,9 @@ impl Solved<'_> {
         let mut picks = 0;
         loop {
             let mut roots = Careful { size, picks, picked: 0, deficit: None };
-            let run = program.run::<f64>(elements, size, numbers(target), signs, &mut roots);
+            let mut run = Run::new();
+            let g = numbers(target);
+            program.run::<f64>((elements, size), g, signs, &mut roots, &mut run);
             if let Some(deficit) = roots.deficit
                 && picks == 0
             {
@@ -327,21 +332,28 @@ impl Solved<'_> {
                 self.write_balls(&values, out);
                 return Ok(());
             }
-            if rest.norm() <= MENDED && program.balls == Balls::None {
-                for _ in 0..4 {
-                    samples::step(elements, &mut joints, &mut values, target, centre, size, 1e-12);
+            if rest.norm() <= MENDED {
+                for _ in 0..MOST_MENDS {
+                    let damping = 1e-12;
+                    let (joints, values) = (&mut joints, &mut values);
+                    samples::step(elements, joints, values, target, centre, size, damping);
                 }
                 rest = samples::misfit(&joints, target, centre, size);
                 if rest.norm() <= CLOSURE {
-                    for element in elements {
+                    for (element, joint) in elements.iter().zip(&joints) {
                         let value = values[element.slot];
                         out[element.slot] = match element.kind {
                             Kind::Turn => JointDisplacement::Direction(angle::unit(value)),
-                            Kind::Helix(_) | Kind::Slide | Kind::Ball => {
-                                JointDisplacement::Value(value)
+                            Kind::Helix(_) | Kind::Slide => JointDisplacement::Value(value),
+                            Kind::Ball => {
+                                let vector = joint.rotation.scaled_axis();
+                                values[element.slot..element.slot + 3]
+                                    .copy_from_slice(vector.as_slice());
+                                JointDisplacement::Value(vector.x)
                             }
                         };
                     }
+                    self.write_balls(&values, out);
                     return Ok(());
                 }
             }

@@ -102,6 +102,7 @@ impl Leg<'_> {
         let end = seen.joints;
         let mut points: Vec<(usize, Id)> = Vec::new();
         let mut directions: Vec<(usize, Id)> = Vec::new();
+        let mut lines: Vec<(usize, Id)> = Vec::new();
         for (one, other) in [(a, b), (b, a)] {
             for object in &one.some {
                 match *object {
@@ -111,7 +112,17 @@ impl Leg<'_> {
                     Object::Direction { place, direction } if other.directions => {
                         directions.push((place, direction));
                     }
-                    Object::Point { .. } | Object::Direction { .. } | Object::Plane { .. } => {}
+                    Object::Line { place, joint }
+                        if other.everything
+                            && element.kind != Kind::Slide
+                            && self.parallel(joint, seen.joint) =>
+                    {
+                        lines.push((place, nodes.constant(self.foot(joint))));
+                    }
+                    Object::Point { .. }
+                    | Object::Direction { .. }
+                    | Object::Plane { .. }
+                    | Object::Line { .. } => {}
                 }
             }
         }
@@ -132,18 +143,27 @@ impl Leg<'_> {
                 self.add(seen, Kernel::Direction { moved, fixed }, quality, 0, cost, to);
             }
         }
+        let arm = |nodes: &Nodes<'_>, moved: Id| {
+            middle((1..samples).map(|s| {
+                let arm = nodes.value(moved, s) - element.point;
+                arm.cross(&element.direction).norm() / self.size
+            }))
+        };
         for (place, v) in points {
             let moved = seen.carry(nodes, Vector::Point, v, place, 0);
             let fixed = seen.carry(nodes, Vector::Point, v, place, end);
             let quality = match element.kind {
-                Kind::Turn => middle((1..samples).map(|s| {
-                    let arm = nodes.value(moved, s) - element.point;
-                    arm.cross(&element.direction).norm() / self.size
-                })),
+                Kind::Turn => arm(nodes, moved),
                 Kind::Helix(_) | Kind::Slide | Kind::Ball => 1.0,
             };
             let cost = nodes.cost(moved) + nodes.cost(fixed);
             self.add(seen, Kernel::Point { moved, fixed }, quality, 0, cost, to);
+        }
+        for (place, v) in lines {
+            let moved = seen.carry(nodes, Vector::Point, v, place, 0);
+            let fixed = seen.carry(nodes, Vector::Point, v, place, end);
+            let cost = nodes.cost(moved) + nodes.cost(fixed);
+            self.add(seen, Kernel::Line { moved, fixed }, arm(nodes, moved), 1, cost, to);
         }
     }
 
@@ -232,12 +252,16 @@ impl Leg<'_> {
                                 [moved, fixed, two[0], two[1], two[0], two[0]],
                             )
                         }
-                        (Object::Point { .. }, Object::Direction { .. })
-                        | (Object::Direction { .. }, Object::Point { .. } | Object::Plane { .. })
-                        | (Object::Plane { .. }, Object::Direction { .. } | Object::Plane { .. }) =>
-                        {
-                            break;
-                        }
+                        (Object::Point { .. }, Object::Direction { .. } | Object::Line { .. })
+                        | (
+                            Object::Direction { .. },
+                            Object::Point { .. } | Object::Plane { .. } | Object::Line { .. },
+                        )
+                        | (
+                            Object::Plane { .. },
+                            Object::Direction { .. } | Object::Plane { .. } | Object::Line { .. },
+                        )
+                        | (Object::Line { .. }, _) => break,
                     };
                     let cost = ids.iter().map(|&id| nodes.cost(id)).sum();
                     if best.is_none_or(|(_, least)| cost < least) {
