@@ -271,17 +271,7 @@ impl<'a> Way<'a> {
             PlatformSet::Subgroup => Some(d.lower.name()),
             PlatformSet::Free => Some(SubspaceClass::Full.name()),
         };
-        json!({ "kind": kind.name(), "subspace": subspace, "motion": self.motion() })
-    }
-
-    /// What the platform does, in words.
-    fn motion(&self) -> String {
-        let d = self.decomposition;
-        match d.platform() {
-            PlatformSet::Pair => format!("{}, then {}", words(&d.lower), words(&d.upper)),
-            PlatformSet::Subgroup => words(&d.lower).to_owned(),
-            PlatformSet::Free => words(&SubspaceClass::Full).to_owned(),
-        }
+        json!({ "kind": kind.name(), "subspace": subspace, "motion": d.motion() })
     }
 
     /// How legs are solved that are not split.
@@ -292,7 +282,7 @@ impl<'a> Way<'a> {
                 leg.kernels.iter().filter_map(|step| step["joint"].as_str()).collect();
             legs.row([leg.name, &leg.lower.join(" "), &steps.join(" ")]);
         }
-        format!("platform        {}\n\n{legs}", self.motion())
+        format!("platform        {}\n\n{legs}", self.decomposition.motion())
     }
 
     /// The subspaces, and the legs' parts in them.
@@ -583,28 +573,6 @@ fn kernels(leg: &Leg, split: &LegSplit) -> Vec<Value> {
             json!({ "joint": names.get(step.joint), "root": step.root, "invariant": step.invariant })
         })
         .collect()
-}
-
-/// The motions of a subgroup in words.
-fn words(class: &SubspaceClass) -> &'static str {
-    match class {
-        SubspaceClass::Identity => "nothing",
-        SubspaceClass::Rotation { .. } => "rotations about an axis",
-        SubspaceClass::Translation { .. } => "translations along a line",
-        SubspaceClass::Helical { .. } => "turns of a screw",
-        SubspaceClass::TranslationalPlane { .. } => "translations in a plane",
-        SubspaceClass::Cylindrical { .. } => "rotations about an axis and translations along it",
-        SubspaceClass::TranslationalSpace => "translations of space",
-        SubspaceClass::Planar { .. } => "motions in a plane",
-        SubspaceClass::Spherical { .. } => "rotations about a centre",
-        SubspaceClass::PlanarHelical { .. } => {
-            "translations in a plane and turns of screws across it"
-        }
-        SubspaceClass::Schoenflies { .. } => {
-            "translations of space and rotations about one direction"
-        }
-        SubspaceClass::Full => "translations and rotations of space",
-    }
 }
 
 /// The components of a vector. Adding zero turns -0 into 0.

@@ -317,7 +317,9 @@ impl<'a> Answer<'a> {
                 causes[1].join(" "),
             ]);
         };
-        if self.query.manipulator.task().upper.kind == SubspaceKind::Identity {
+        if self.query.manipulator.is_whole() {
+            row("whole", &self.measured.whole, self.causes(Section::Lower));
+        } else if self.query.manipulator.task().upper.kind == SubspaceKind::Identity {
             row("one section", &self.measured.lower, self.causes(Section::Lower));
         } else {
             row("upper section", &self.measured.upper, self.causes(Section::Upper));

@@ -171,6 +171,9 @@ fn pose_line(
 
 fn split_line(decomposition: &Decomposition) -> String {
     let Decomposition { lower, upper, .. } = decomposition;
+    if decomposition.is_whole() {
+        return format!("platform: {}; each leg is solved by itself", decomposition.motion());
+    }
     if matches!(upper, SubspaceClass::Identity) {
         return format!("all legs move in one subspace: {}", lower.name());
     }

@@ -67,6 +67,39 @@ pub enum WholeMiss {
     },
 }
 
+/// The motions of a subgroup in words.
+fn words(class: &SubspaceClass) -> &'static str {
+    match class {
+        SubspaceClass::Identity => "nothing",
+        SubspaceClass::Rotation { .. } => "rotations about an axis",
+        SubspaceClass::Translation { .. } => "translations along a line",
+        SubspaceClass::Helical { .. } => "turns of a screw",
+        SubspaceClass::TranslationalPlane { .. } => "translations in a plane",
+        SubspaceClass::Cylindrical { .. } => "rotations about an axis and translations along it",
+        SubspaceClass::TranslationalSpace => "translations of space",
+        SubspaceClass::Planar { .. } => "motions in a plane",
+        SubspaceClass::Spherical { .. } => "rotations about a centre",
+        SubspaceClass::PlanarHelical { .. } => {
+            "translations in a plane and turns of screws across it"
+        }
+        SubspaceClass::Schoenflies { .. } => {
+            "translations of space and rotations about one direction"
+        }
+        SubspaceClass::Full => "translations and rotations of space",
+    }
+}
+
+impl Decomposition {
+    /// What the platform does, in words: `translations of space`.
+    pub fn motion(&self) -> String {
+        match self.platform() {
+            PlatformSet::Pair => format!("{}, then {}", words(&self.lower), words(&self.upper)),
+            PlatformSet::Subgroup => words(&self.lower).to_owned(),
+            PlatformSet::Free => words(&SubspaceClass::Full).to_owned(),
+        }
+    }
+}
+
 /// The decomposition of a mechanism whose legs are solved whole.
 pub(super) fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {
     let frame = frame(mechanism);

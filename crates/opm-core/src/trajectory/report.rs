@@ -91,12 +91,17 @@ impl<'a> ViolationReport<'a> {
     /// A description in words, for instance `leg1: out of reach in its lower section`.
     pub fn what(&self) -> String {
         let section = self.section.map_or_else(String::new, |section| format!("{section} "));
+        let of_leg = self.section.map(|section| format!(" its {section} section"));
         let leg = self.leg.unwrap_or_default();
         match self.violation.gauge {
             Gauge::Reach { .. } if self.violation.is_singularity() => {
-                format!("{leg}: serial singularity of its {section}section")
+                let of = of_leg.map_or_else(String::new, |part| format!(" of{part}"));
+                format!("{leg}: serial singularity{of}")
             }
-            Gauge::Reach { .. } => format!("{leg}: out of reach in its {section}section"),
+            Gauge::Reach { .. } => {
+                let inside = of_leg.map_or_else(String::new, |part| format!(" in{part}"));
+                format!("{leg}: out of reach{inside}")
+            }
             Gauge::Limit { .. } => {
                 let joint = self.joint.unwrap_or_default();
                 format!("{leg}: {joint} past its {} value", self.bound.map_or("", Bound::name))

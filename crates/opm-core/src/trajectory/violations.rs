@@ -113,7 +113,7 @@ impl Trajectory<'_> {
                     Some(u) => (u.deficit.excess, Some(u.deficit.quantity), u.section),
                     None => {
                         let section = self.solver.manipulator.serial(&sample.solution, leg).1;
-                        (level, None, Some(section))
+                        (level, None, section)
                     }
                 }
             }

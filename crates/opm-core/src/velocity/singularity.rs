@@ -258,6 +258,9 @@ impl Manipulator {
         let lower_parallel = volume(closure, [0, middle], [0, lower_columns], work);
         let upper_parallel = volume(closure, [middle, rows], [lower_columns, columns], work);
         let whole_parallel = volume(closure, [0, rows], [0, columns], work);
+        // Legs that are solved whole have no sections.
+        let of_section = |parallel: Option<f64>| parallel.filter(|_| layout.whole.is_none());
+        let (lower_parallel, upper_parallel) = (of_section(lower_parallel), of_section(upper_parallel));
         let n = jacobians.pose.nrows();
         let coordinates = volume(&jacobians.pose, [0, n], [0, n], work);
         out.lower = Measures { serial: lower, parallel: lower_parallel };

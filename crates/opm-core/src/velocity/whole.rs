@@ -287,6 +287,12 @@ impl Manipulator {
         found
     }
 
+    /// The serial measure of a leg at a solution, which the leg reaches.
+    pub(super) fn whole_measure(&self, at: &Solution, leg: usize) -> f64 {
+        let displaced = DisplacedLeg::new(self, at, leg, Rows::Driven);
+        self.whole_differential(&displaced, &self.reference(at)).measure
+    }
+
     /// The place of the platform's reference point at a solution.
     fn reference(&self, at: &Solution) -> Vector3<f64> {
         (at.displacement(self) * self.mechanism().platform).coords
