@@ -11,8 +11,9 @@
 //!
 //! * A spherical joint that is left alone is read off. Where two are left, the first one swings by the smallest angle and does
 //!   not spin.
-//! * The sign of a choice is that of the slope of its equation: `F(q) = C`, with `F` as the kernel has it. It is constant
-//!   along a path, until the branches meet.
+//! * The sign of a choice is that of the slope of its equation, as the joint turns or slides on: for a slider of the square
+//!   of a distance; for a revolute joint of the height or the cosine of an angle, or against that of the square of a distance.
+//!   It is constant along a path, until the branches meet.
 //! * An angle that is free is that of home.
 
 mod element;
@@ -21,9 +22,11 @@ mod nodes;
 mod objects;
 mod order;
 mod program;
+mod roots;
 mod samples;
 mod solve;
 mod step;
+mod write;
 
 use super::{Branch, ReachDeficit};
 use crate::numbers::{JointDisplacement, Real, Truth};
@@ -33,8 +36,9 @@ use nodes::Nodes;
 use objects::Leg;
 use order::Search;
 use program::{Program, Run};
+use roots::General;
 use samples::Sample;
-use solve::{General, Solved};
+use solve::Solved;
 use step::Candidate;
 
 /// The most freedoms that a leg can have.
@@ -200,7 +204,7 @@ impl WholeLeg {
         let mut nodes = Nodes::new(&elements, &samples, size);
         let mut search = Search::new(leg, &mut nodes, actuated);
         let mut test = |nodes: &mut Nodes<'_>, steps: &[Candidate]| {
-            let program = program::write(leg, nodes, steps)?;
+            let program = write::write(leg, nodes, steps)?;
             let whole = Self::of(&elements, freedoms, steps, program, centre, size);
             whole.finds(&samples).then_some(whole)
         };

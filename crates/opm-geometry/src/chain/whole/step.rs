@@ -10,8 +10,11 @@ use nalgebra::Vector3;
 const HOLDS: f64 = 1e-7;
 /// A coefficient that is smaller at the middle one of the samples is zero.
 const NONE: f64 = 1e-6;
-/// A root with a smaller slope than this at the middle one of the samples is weak.
-const WEAK: f64 = 0.03;
+/// A root with a smaller slope than this at the middle one of the samples is weak. Few legs are near it, so that congruent
+/// ones have the same order whatever their samples.
+const WEAK: f64 = 0.02;
+/// The same for the rate of a slider's height, which is the same at most samples.
+const WEAK_RATE: f64 = 0.1;
 
 /// A kernel that finds a joint.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +87,8 @@ impl Leg<'_> {
         to: &mut Vec<Candidate>,
     ) {
         if quality > NONE {
-            let rank = (quality < WEAK, kernel.chooses(), order, cost);
+            let weak = if matches!(kernel, Kernel::Linear(_)) { WEAK_RATE } else { WEAK };
+            let rank = (quality < weak, kernel.chooses(), order, cost);
             to.push(Candidate { joint: seen.joint, kernel, rank });
         }
     }
@@ -261,7 +265,13 @@ impl Leg<'_> {
                             Object::Plane { .. },
                             Object::Direction { .. } | Object::Plane { .. } | Object::Line { .. },
                         )
-                        | (Object::Line { .. }, _) => break,
+                        | (
+                            Object::Line { .. },
+                            Object::Point { .. }
+                            | Object::Direction { .. }
+                            | Object::Plane { .. }
+                            | Object::Line { .. },
+                        ) => break,
                     };
                     let cost = ids.iter().map(|&id| nodes.cost(id)).sum();
                     if best.is_none_or(|(_, least)| cost < least) {
