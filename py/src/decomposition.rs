@@ -28,6 +28,10 @@ pub struct Decomposition {
     upper: Option<String>,
     /// The motion that both sections have in common; None where that is the identity alone.
     intersection: Option<Intersection>,
+    /// The set in which the platform moves: ``"pair"`` of subgroups, one ``"subgroup"``, or ``"free"``.
+    platform: String,
+    /// What the platform does, in words: ``"translations of space"``.
+    motion: String,
     /// One entry for each leg, in the order of the mechanism file.
     legs: Vec<LegSplit>,
 }
@@ -58,6 +62,8 @@ pub struct LegSplit {
     upper: Vec<String>,
     /// The imaginary joint at the split.
     imaginary: Option<String>,
+    /// How the leg is solved: by its ``"sections"``, or ``"whole"``; then all its joints are in ``lower``.
+    solved: String,
 }
 
 pickled!(Decomposition {
@@ -69,10 +75,12 @@ pickled!(Decomposition {
     lower,
     upper,
     intersection,
+    platform,
+    motion,
     legs,
 });
 pickled!(Intersection { kind, axis, point, pitch });
-pickled!(LegSplit { name, lower, upper, imaginary });
+pickled!(LegSplit { name, lower, upper, imaginary, solved });
 
 impl Decomposition {
     pub fn of(manipulator: &core::Manipulator) -> Self {
@@ -88,6 +96,7 @@ impl Decomposition {
             lower: names(leg, &split.lower),
             upper: names(leg, &split.upper),
             imaginary: split.imaginary.then(|| leg.imaginary_name()),
+            solved: if split.whole.is_some() { "whole" } else { "sections" }.to_owned(),
         });
         Self {
             name: mechanism.name.clone(),
@@ -98,6 +107,8 @@ impl Decomposition {
             lower: found.lower.name().to_owned(),
             upper: (found.upper != SubspaceClass::Identity).then(|| found.upper.name().to_owned()),
             intersection: Intersection::of(&found.intersection),
+            platform: found.platform().name().to_owned(),
+            motion: found.motion(),
             legs: splits.collect(),
         }
     }
@@ -126,7 +137,9 @@ impl Intersection {
 #[pymethods]
 impl Decomposition {
     fn __repr__(&self) -> String {
+        let whole = self.legs.iter().any(|leg| leg.solved == "whole");
         let sections = match &self.upper {
+            _ if whole => format!("{}, every leg by itself", self.motion),
             Some(upper) => format!("{} + {upper}", self.lower),
             None => self.lower.clone(),
         };
@@ -162,8 +175,12 @@ impl Intersection {
 #[pymethods]
 impl LegSplit {
     fn __repr__(&self) -> String {
-        let Self { name, lower, upper, imaginary } = self;
+        let Self { name, lower, upper, imaginary, .. } = self;
         let imaginary = imaginary.as_deref().map_or_else(String::new, |i| format!(", {i}"));
-        format!("<LegSplit {name}: {} | {}{imaginary}>", lower.join(" "), upper.join(" "))
+        let lower = lower.join(" ");
+        if self.solved == "whole" {
+            return format!("<LegSplit {name}: {lower}, solved whole>");
+        }
+        format!("<LegSplit {name}: {lower} | {}{imaginary}>", upper.join(" "))
     }
 }

@@ -501,6 +501,7 @@ impl Manipulator {
         let coordinates: Vec<_> = self.inner.task_coordinates().iter().map(|c| c.name).collect();
         let decomposition = self.inner.decomposition();
         let sections = match &decomposition.upper {
+            _ if decomposition.is_whole() => decomposition.motion(),
             SubspaceClass::Identity => decomposition.lower.name().to_owned(),
             upper => format!("{} + {}", decomposition.lower.name(), upper.name()),
         };

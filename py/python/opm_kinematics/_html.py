@@ -16,6 +16,9 @@ MOST_ROWS = 10
 
 def decomposition(found: Decomposition) -> str:
     sections = " + ".join(escape(section) for section in (found.lower, found.upper) if section)
+    if any(leg.solved == "whole" for leg in found.legs):
+        summary = f"<b>{escape(found.name)}</b>: {escape(found.motion)}, every leg by itself; N = {found.mobility}"
+        return _paragraph(summary) + _table(["leg", "joints"], ([leg.name, " ".join(leg.lower)] for leg in found.legs))
     shared = f", {escape(found.intersection.kind)} in common" if found.intersection else ""
     summary = (
         f"<b>{escape(found.name)}</b>: {sections}{shared}; "
