@@ -85,7 +85,7 @@ fn number_text(bytes: &mut Bytes<'_>) -> String {
 
 /// A name that some option knows.
 fn word(bytes: &mut Bytes<'_>) -> &'static str {
-    const WORDS: [&str; 40] = [
+    const WORDS: [&str; 41] = [
         "x",
         "y",
         "z",

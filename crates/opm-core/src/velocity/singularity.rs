@@ -86,8 +86,8 @@ pub struct Singularities {
     /// The serial measures of every leg, the lower section's first.
     pub legs: Vec<[f64; 2]>,
     /// The determinant of [`Jacobians::pose`], which is zero where the *task coordinates* are singular
-    /// (`sin xi` for Euler angles, `cos nu` for a tilt), or where dependent ones do not follow from the others (an arm
-    /// of a five-bar is stretched). The mechanism is not singular there.
+    /// (`sin xi` for Euler angles, `cos pitch` for roll, pitch and yaw, `cos nu` for a tilt), or where dependent ones do not
+    /// follow from the others (an arm of a five-bar is stretched). The mechanism is not singular there.
     pub coordinates: f64,
     /// The closure of both sections with the inputs locked. It has a row for each input, those of the lower
     /// section first. The columns are the rates along the intersection motion, then the components of the lower section's
