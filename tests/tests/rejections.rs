@@ -24,7 +24,7 @@ fn causes(
     let mut causes: Vec<(usize, String)> = solution
         .unreachable()
         .iter()
-        .map(|u| (u.leg, format!("{} {}", u.leg, u.section)))
+        .map(|u| (u.leg, format!("{} {:?}", u.leg, u.section)))
         .collect();
     let legs = &manipulator.mechanism().legs;
     let of_legs = legs.iter().enumerate().flat_map(|(number, leg)| {
@@ -52,7 +52,7 @@ fn causes(
 fn name(manipulator: &Manipulator, leg: usize, cause: Cause) -> String {
     let joint = |joint: usize| &manipulator.coordinates()[joint].name;
     match cause {
-        Cause::Reach(section) => format!("{leg} {section}"),
+        Cause::Reach(section) => format!("{leg} {section:?}"),
         Cause::Lowest(number) => format!("{} lowest", joint(number)),
         Cause::Highest(number) => format!("{} highest", joint(number)),
     }

@@ -280,7 +280,7 @@ fn measures_vanish_where_geometry_says_so() {
             let [at, near, away] =
                 [&found, &beside, &far].map(|found| found.conditioning.condition);
             assert!(at > 3.0 * near && near > 3.0 * away, "{kind:?}: {at} {near} {away}");
-            let expected = |section, cause| vec![SingularLeg { leg, section, cause }];
+            let expected = |section, cause| vec![SingularLeg { leg, section: Some(section), cause }];
             match kind {
                 SingularPose::InLine => {
                     assert!(found.jacobians.singular.is_empty());
@@ -325,7 +325,7 @@ fn only_that_leg_stands_still(manipulator: &Manipulator, found: &AtPose, beside:
         }
     }
     let imaginary = manipulator.rateless_imaginary(&motion.singular[0]);
-    assert_eq!(imaginary.is_some(), motion.singular[0].section == Section::Upper);
+    assert_eq!(imaginary.is_some(), motion.singular[0].section == Some(Section::Upper));
 }
 
 /// The parallel singularity of the spherical section: a root of the paper's determinant, between

@@ -213,7 +213,7 @@ fn a_ball_at_a_whole_turn_is_no_singularity_of_the_mechanism() {
     let rates = [0.1, 0.2, 0.3, 0.4, 0.5];
     assert!(!manipulator.velocity(&at, &rates, &rates, &mut motion).unwrap());
     let singular =
-        SingularLeg { leg: 3, section: Section::Upper, cause: SingularCause::RotationVector };
+        SingularLeg { leg: 3, section: Some(Section::Upper), cause: SingularCause::RotationVector };
     assert_eq!(motion.singular, [singular]);
     assert_eq!(manipulator.rateless(&singular).collect::<Vec<_>>(), ball);
     assert_eq!(manipulator.rateless_imaginary(&singular), None);

@@ -11,3 +11,6 @@ mod target;
 pub use affine::{Affine, Plane, WIDE};
 pub use share::{MOST, Share};
 pub use target::{Enclosed, PlanarTarget, Rotation, Target, dot};
+
+#[cfg(test)]
+mod whole;

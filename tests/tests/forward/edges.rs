@@ -186,7 +186,7 @@ fn out_of_reach_says_by_how_much() {
     // P = 0; the slider is at h e(30°) + S n(30°) with h = 120 mm.
     let expected = 0.12_f64.hypot(0.9) - 0.26;
     let [Unmet::Leg(unreachable)] = &found.unmet[..] else { panic!("{:?}", found.unmet) };
-    assert_eq!((unreachable.leg, unreachable.section), (0, Section::Lower));
+    assert_eq!((unreachable.leg, unreachable.section), (0, Some(Section::Lower)));
     assert!(
         (unreachable.deficit.excess - expected).abs() < 1e-12,
         "{}",
