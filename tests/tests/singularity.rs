@@ -280,7 +280,8 @@ fn measures_vanish_where_geometry_says_so() {
             let [at, near, away] =
                 [&found, &beside, &far].map(|found| found.conditioning.condition);
             assert!(at > 3.0 * near && near > 3.0 * away, "{kind:?}: {at} {near} {away}");
-            let expected = |section, cause| vec![SingularLeg { leg, section: Some(section), cause }];
+            let expected =
+                |section, cause| vec![SingularLeg { leg, section: Some(section), cause }];
             match kind {
                 SingularPose::InLine => {
                     assert!(found.jacobians.singular.is_empty());

@@ -139,7 +139,8 @@ fn look(manipulator: &Manipulator, motion: &PlatformMotion) -> Vec<Seen> {
             manipulator.measure_singularities(&jacobians, &mut measured);
             signs = [measured.upper, measured.lower].map(|m| m.parallel);
         }
-        let out_of_reach = solution.unreachable().iter().filter_map(|u| Some((u.leg, u.section?))).collect();
+        let out_of_reach =
+            solution.unreachable().iter().filter_map(|u| Some((u.leg, u.section?))).collect();
         seen.push(Seen { time, violated, known, out_of_reach, signs });
     }
     seen

@@ -260,7 +260,8 @@ impl Manipulator {
         let whole_parallel = volume(closure, [0, rows], [0, columns], work);
         // Legs that are solved whole have no sections.
         let of_section = |parallel: Option<f64>| parallel.filter(|_| layout.whole.is_none());
-        let (lower_parallel, upper_parallel) = (of_section(lower_parallel), of_section(upper_parallel));
+        let (lower_parallel, upper_parallel) =
+            (of_section(lower_parallel), of_section(upper_parallel));
         let n = jacobians.pose.nrows();
         let coordinates = volume(&jacobians.pose, [0, n], [0, n], work);
         out.lower = Measures { serial: lower, parallel: lower_parallel };

@@ -228,7 +228,8 @@ impl<'a> Comparison<'a> {
     fn compare_deficits(&self, answer: &Answer, place: &str) {
         let mut expected = vec![0.0; answer.deficits.len()];
         for missed in self.at.unreachable() {
-            expected[2 * missed.leg + missed.section as usize] = missed.deficit.excess;
+            let section = missed.section.map_or(0, |section| section as usize);
+            expected[2 * missed.leg + section] = missed.deficit.excess;
         }
         for (found, expected) in answer.deficits.iter().zip(expected) {
             // Where an arc is a pole of its cosine, it has half the digits.

@@ -1,6 +1,6 @@
 use super::*;
-use crate::decomposition::samples::*;
 use crate::decomposition::decompose;
+use crate::decomposition::samples::*;
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::Leg;
 use nalgebra::{Point3, Unit, Vector3};
