@@ -3,6 +3,7 @@
 use crate::allowed::{Displacement, allowed};
 use nalgebra::{DMatrix, Isometry3, Vector6};
 use opm_accuracy::{ErrorModel, Model};
+use opm_core::decomposition::PlatformSet;
 use opm_core::group::screw::Screw;
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::Mechanism;
@@ -55,12 +56,22 @@ pub enum InstanceError {
     /// The mechanism cannot be compiled.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// Legs are solved whole, and the platform moves in a subgroup: with a joint that is off, legs do not contain it.
+    #[error(
+        "calibration is for legs that are split into two sections, or that have six freedoms; this mechanism's legs are \
+         each solved by itself, and hold the platform in a subgroup only with the joints of the file"
+    )]
+    Whole,
 }
 
 impl Instance {
     /// The mechanism of the file.
     pub fn nominal(file: &MechanismFile) -> Result<Self, InstanceError> {
         let manipulator = Manipulator::new(file.mechanism.clone())?;
+        if manipulator.is_whole() && manipulator.decomposition().platform() == PlatformSet::Subgroup
+        {
+            return Err(InstanceError::Whole);
+        }
         Ok(Self { manipulator, file: file.clone(), values: Vec::new() })
     }
 

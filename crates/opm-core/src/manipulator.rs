@@ -73,6 +73,7 @@ use nalgebra::{Isometry3, Vector3};
 use plan::Plan;
 pub(crate) use solution::SolvedPose;
 use std::ops::Range;
+pub(crate) use whole::WholeJoint;
 
 /// The largest number of choices in a [`Mode`].
 const MOST_CHOICES: u32 = 63;
@@ -505,8 +506,12 @@ impl Compiled {
         let mut imaginary = Vec::new();
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let context =
-                CompileContext { task: &task, coordinates: &chain_coordinates, size: length };
+            let context = CompileContext {
+                task: &task,
+                decomposition,
+                coordinates: &chain_coordinates,
+                size: length,
+            };
             let mut compiled = CompiledLeg::new(leg, split, first, context)
                 .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
             if split.imaginary {

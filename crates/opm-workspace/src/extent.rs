@@ -20,6 +20,14 @@ const COARSE_POSES: f64 = 1e6;
 /// The number of poses of the default grid: enough for a good picture, in about a second.
 const DEFAULT_POSES: f64 = 4e6;
 
+/// Both grids have this share of their poses where legs are solved whole: poses are decided one by one.
+const ONE_BY_ONE: f64 = 0.125;
+
+/// The share of the poses of grids that a mechanism has.
+fn share(manipulator: &Manipulator) -> f64 {
+    if manipulator.is_whole() { ONE_BY_ONE } else { 1.0 }
+}
+
 /// The default grid has this many times more values along a coordinate of the lower section than along
 /// one of the upper section: fine slices, at few orientations.
 const FINER: f64 = 6.0;
@@ -87,7 +95,8 @@ pub fn default_grid(
     let lower = manipulator.lower_coordinates();
     let (n, uppers) = (ranges.len() as f64, (ranges.len() - lower) as f64);
     // lower^n / FINER^uppers = DEFAULT_POSES
-    let fine = (DEFAULT_POSES * FINER.powf(uppers)).powf(1.0 / n);
+    let poses = DEFAULT_POSES * share(manipulator);
+    let fine = (poses * FINER.powf(uppers)).powf(1.0 / n);
     let axes = ranges.iter().enumerate().map(|(number, range)| {
         let count = if number < lower { fine } else { fine / FINER };
         let [min, max] = range.rounded();
@@ -215,7 +224,8 @@ impl<'a> Search<'a> {
         let start = coordinates.iter().map(|c| Range::new(manipulator, c, size)).collect();
         let home = Grid::new(manipulator, vec![]).expect("home alone is a grid");
         let home = Sweep::new(manipulator, &home, modes).count(progress)?.reachable == 1;
-        let count = odd(COARSE_POSES.powf(1.0 / coordinates.len() as f64));
+        let poses = COARSE_POSES * share(manipulator);
+        let count = odd(poses.powf(1.0 / coordinates.len() as f64));
         Ok(Self { manipulator, modes, progress, start, count, home })
     }
 

@@ -117,7 +117,8 @@ pub(crate) fn lift(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::decomposition::decompose;
+    use crate::decomposition::mobility::mobility;
+    use crate::decomposition::{decompose, passive};
     use crate::mechanism::Mechanism;
     use crate::mechanism::joint::{Joint, JointKind};
     use crate::mechanism::{examples, file};
@@ -132,7 +133,8 @@ mod tests {
     fn told(change: impl Fn(&mut Mechanism)) -> String {
         let mut mechanism = shipped();
         change(&mut mechanism);
-        decompose(&mechanism).expect_err("it has no closed forms").to_string()
+        let report = mobility(&mechanism).expect("it is complete");
+        passive(&mechanism, &report).expect_err("it has no closed forms by sections").to_string()
     }
 
     #[test]

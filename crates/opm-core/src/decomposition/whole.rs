@@ -13,6 +13,7 @@ use crate::mechanism::Mechanism;
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::Leg;
 use nalgebra::{Isometry3, Unit, Vector3};
+use std::borrow::Cow;
 
 /// The set in which the platform moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,18 +119,21 @@ pub(super) fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decompos
         }
         subspace => return Err(WholeMiss::NoCoordinates { subspace }),
     };
+    let deviation = |leg: &Leg| {
+        let span = MotionSubspace::span(frame, &leg.screws());
+        class.screws().iter().map(|screw| span.distance(screw)).fold(0.0, f64::max)
+    };
     let motions = motions(&class, frame.length);
-    let legs: Result<Vec<LegSplit>, WholeMiss> = (mechanism.legs.iter())
-        .map(|leg| {
-            let (joints, actuated): (Vec<LegJoint>, Vec<bool>) = joints(leg).unzip();
-            let whole =
-                WholeLeg::new(&joints, &actuated, &motions, frame.length).map_err(|reason| {
+    let legs: Result<Vec<LegSplit>, WholeMiss> =
+        (mechanism.legs.iter())
+            .map(|leg| {
+                let whole = solved(leg, &motions, frame.length).map_err(|reason| {
                     WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
                 })?;
-            let lower = Freedom::of_leg(leg);
-            Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
-        })
-        .collect();
+                let lower = Freedom::of_leg(leg);
+                Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
+            })
+            .collect();
     Ok(Decomposition {
         lambda: report.lambda,
         mobility: report.mobility,
@@ -141,8 +145,36 @@ pub(super) fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decompos
         first_section_motions: report.mobility,
         upper_mobility: 0,
         redundancy: 0,
-        deviation: 0.0,
+        deviation: mechanism.legs.iter().map(deviation).fold(0.0, f64::max),
     })
+}
+
+/// The closed form of a leg for the displacements that `motions` are samples of.
+fn solved(leg: &Leg, motions: &[Isometry3<f64>], length: f64) -> Result<WholeLeg, NoOrder> {
+    let (joints, actuated): (Vec<LegJoint>, Vec<bool>) = joints(leg).unzip();
+    WholeLeg::new(&joints, &actuated, motions, length)
+}
+
+impl Decomposition {
+    /// The closed form of a leg that is solved whole, which may have changed since the mechanism was decomposed; `None` where
+    /// legs are split.
+    pub(crate) fn whole_leg<'a>(
+        &self,
+        leg: &Leg,
+        split: &'a LegSplit,
+        length: f64,
+    ) -> Option<Result<Cow<'a, WholeLeg>, NoOrder>> {
+        let known = split.whole.as_ref()?;
+        let joints: Vec<LegJoint> = joints(leg).map(|(joint, _)| joint).collect();
+        if known.is_of(&joints) {
+            return Some(Ok(Cow::Borrowed(known)));
+        }
+        let class = match self.platform() {
+            PlatformSet::Free => SubspaceClass::Full,
+            PlatformSet::Pair | PlatformSet::Subgroup => self.lower,
+        };
+        Some(solved(leg, &motions(&class, length), length).map(Cow::Owned))
+    }
 }
 
 /// The joints of a leg, each with one freedom or a ball's three, and whether they are actuated.

@@ -84,7 +84,8 @@ impl Manipulator {
             let section = self.legs[leg].section(section);
             section.partial.is_none() && section.offset.is_none() && section.slider.is_none()
         };
-        self.dependent.is_none()
+        !self.is_whole()
+            && self.dependent.is_none()
             && self.task().slope() == 0.0
             && (0..self.legs.len()).all(|leg| {
                 self.legs[leg].lean.is_none()

@@ -9,7 +9,7 @@ use crate::chain::screws::{determinant_scale, screw, screws};
 use crate::chain::shape::Shape;
 use crate::chain::shell::Shell;
 use crate::chain::{Branch, Chain, ChainJoint, ReachDeficit};
-use crate::decomposition::{Freedom, HeightMiss, HeightReason, LegSplit};
+use crate::decomposition::{Decomposition, Freedom, HeightMiss, HeightReason, LegSplit};
 use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, SubspaceKind};
 use crate::mechanism::leg::Leg;
 pub use crate::mechanism::leg::Section;
@@ -52,6 +52,7 @@ pub(crate) struct CompiledLeg {
 #[derive(Clone, Copy)]
 pub(crate) struct CompileContext<'a> {
     pub task: &'a Task,
+    pub decomposition: &'a Decomposition,
     /// Every joint coordinate of the mechanism.
     pub coordinates: &'a [ChainCoordinate],
     /// The characteristic length of the mechanism, metres.
@@ -91,8 +92,8 @@ impl CompiledLeg {
         first: usize,
         context: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
-        if let Some(whole) = &split.whole {
-            return Ok(Self::whole(leg, whole, first, context));
+        if let Some(whole) = context.decomposition.whole_leg(leg, split, context.size) {
+            return Ok(Self::whole(leg, whole?.into_owned(), first, context));
         }
         let task = context.task;
         let separated = lift::separate(leg, split, first, context)?;
@@ -158,7 +159,7 @@ impl CompiledLeg {
         leg: &Leg,
         split: &LegSplit,
         first: usize,
-        CompileContext { task, coordinates: all, size }: CompileContext<'_>,
+        CompileContext { task, coordinates: all, size, .. }: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
         let bridged = task.intersection.is_some();
         // Of an inclined one, the chain of a Schoenflies section has the part in the plane.

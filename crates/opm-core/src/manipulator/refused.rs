@@ -1,6 +1,7 @@
 //! Why a leg has no closed form.
 
 use crate::chain::ChainError;
+use crate::chain::whole::NoOrder;
 use crate::decomposition::HeightMiss;
 use crate::mechanism::leg::Section;
 
@@ -25,6 +26,9 @@ pub enum RefusedLeg {
     /// Not exactly one joint of a Schoenflies section changes the height.
     #[error("{}", .0.of_leg())]
     Height(#[from] HeightMiss),
+    /// It cannot be solved one joint after the other.
+    #[error("it cannot be solved one joint after the other: {0}")]
+    Whole(#[from] NoOrder),
     /// One of the leg's sections has no closed form.
     #[error("its {section} section ({}) has no closed form: {error}", joints.join(", "))]
     Chain {

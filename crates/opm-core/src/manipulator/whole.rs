@@ -6,13 +6,15 @@
 
 use super::leg::{CompileContext, CompiledLeg, LegBranches, LegSolution};
 use super::section::{ChainCoordinate, CompiledSection};
+use super::{Manipulator, Mode};
 use crate::chain::whole::{MOST_FREEDOMS, WholeLeg};
 use crate::chain::{Chain, Part, ReachDeficit};
 use crate::decomposition::Freedom;
 use crate::group::JointDisplacement;
+use crate::group::screw::Screw;
 use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::{Leg, Section};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 /// The number of the place between the sections.
 const BETWEEN: usize = 6;
@@ -26,6 +28,17 @@ pub(crate) struct Whole {
     places: Vec<usize>,
     /// The joint between the sections.
     pub between: Option<ChainCoordinate>,
+    /// Its joints, from base to platform: those of one freedom each, and balls.
+    pub joints: Vec<WholeJoint>,
+}
+
+/// A joint of a whole leg at home, in base coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum WholeJoint {
+    /// One freedom.
+    Screw(Screw),
+    /// A spherical joint: its centre, and its rotation vector at home.
+    Ball(Point3<f64>, Vector3<f64>),
 }
 
 impl Whole {
@@ -64,6 +77,28 @@ impl Whole {
     }
 }
 
+impl Manipulator {
+    /// Whether all legs, which are solved whole, reach a pose within their limits, in one working mode, or (`None`) in any. Legs
+    /// share no choices.
+    pub(crate) fn whole_reaches(&self, pose: &[f64], mode: Option<Mode>) -> bool {
+        let (v, b) = self.task.sections(pose);
+        let rise = self.task.rise(pose);
+        let target = self.task.raised(rise, self.task.isometry(&v, &b));
+        let mut found = LegSolution::HOME;
+        self.legs.iter().enumerate().all(|(number, leg)| {
+            let Some(whole) = &leg.whole else { return false };
+            let mut reaches = |mode: Mode| {
+                let branches = self.modes.branches(mode, number);
+                whole.solve(&target, branches, &mut found).is_ok() && self.admits(leg, &found, rise)
+            };
+            match mode {
+                Some(mode) => reaches(mode),
+                None => self.modes.leg_modes(number).any(reaches),
+            }
+        })
+    }
+}
+
 impl LegSolution {
     fn place_mut(&mut self, place: usize) -> &mut JointDisplacement {
         match place {
@@ -78,7 +113,7 @@ impl CompiledLeg {
     /// Compiles a leg that is solved whole, whose first joint coordinate has the number `first` in the mechanism.
     pub(super) fn whole(
         leg: &Leg,
-        whole: &WholeLeg,
+        whole: WholeLeg,
         first: usize,
         context: CompileContext<'_>,
     ) -> Self {
@@ -126,9 +161,27 @@ impl CompiledLeg {
             unwinds: false,
             lift: None,
             lean: None,
-            whole: Some(Box::new(Whole { leg: whole.clone(), places, between })),
+            whole: Some(Box::new(Whole { leg: whole, places, between, joints: joints(leg) })),
         }
     }
+}
+
+/// The joints of a leg, those of several freedoms but balls one after the other.
+fn joints(leg: &Leg) -> Vec<WholeJoint> {
+    let each = leg.joints.iter().flat_map(|joint| match joint.kind {
+        JointKind::Spherical => {
+            let home = Vector3::from_fn(|i, _| joint.coordinates[i].home);
+            vec![WholeJoint::Ball(joint.point, home)]
+        }
+        JointKind::Revolute
+        | JointKind::Prismatic
+        | JointKind::Helical { .. }
+        | JointKind::Cylindrical
+        | JointKind::Universal { .. } => {
+            joint.screws().into_iter().map(WholeJoint::Screw).collect()
+        }
+    });
+    each.collect()
 }
 
 /// The place of each freedom of a leg, where `balls` says which are those of spherical joints, three each.

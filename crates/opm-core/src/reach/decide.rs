@@ -60,6 +60,10 @@ impl Reach<'_> {
         }
         for lane in (0..rows).filter(|&lane| alone[lane] & 1 == 1) {
             let pose = &poses[lane * width..][..width];
+            if manipulator.is_whole() {
+                reached[lane] = manipulator.whole_reaches(pose, mode);
+                continue;
+            }
             let mut each = |number: usize, value: f64| used(number, [value; 2]);
             reached[lane] = match mode {
                 Some(mode) => {

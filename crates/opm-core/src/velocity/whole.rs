@@ -16,8 +16,7 @@ use super::{
 use crate::chain::whole::MOST_FREEDOMS as MOST;
 use crate::group::screw::Screw;
 use crate::group::{LocalTwist, Subspace};
-use crate::manipulator::{Manipulator, Solution};
-use crate::mechanism::joint::JointKind;
+use crate::manipulator::{Manipulator, Solution, WholeJoint};
 use crate::task::Task;
 use nalgebra::{
     DMatrix, Isometry3, Matrix3, Matrix6, SVector, Translation3, UnitQuaternion, Vector3, Vector6,
@@ -180,41 +179,42 @@ impl DisplacedLeg {
         let (idle, solution) = (whole.leg.idle(), &at.legs[number]);
         let first = manipulator.coordinates_of(number).start;
         let mut g = Isometry3::identity();
-        for joint in &manipulator.mechanism().legs[number].joints {
+        for joint in &whole.joints {
             let start = found.count;
             let displacement = |i: usize| whole.displacement(solution, start + i);
-            if joint.kind == JointKind::Spherical {
-                let own = Vector3::from_fn(|i, _| match rows {
-                    // Full revolutions count.
-                    Rows::All => at.joints[first + start + i] - joint.coordinates[i].home,
-                    Rows::Driven => displacement(i).value(),
-                });
-                let vector = RotationVector::new(own);
-                let inverse = vector.angular_velocity_to_rates().try_inverse();
-                let ball = Ball {
-                    first: start,
-                    vector,
-                    angular: inverse.unwrap_or_else(Matrix3::identity),
-                    below: g,
-                    centre: (g * joint.point).coords,
-                };
-                let line = idle.filter(|(first, _)| *first == ball.first);
-                for i in 0..3 {
-                    found.push(
-                        ball.screw(ball.angular.column(i).into()),
-                        line.map_or(0.0, |(_, direction)| direction[i]),
-                    );
+            match joint {
+                WholeJoint::Ball(point, home) => {
+                    let own = Vector3::from_fn(|i, _| match rows {
+                        // Full revolutions count.
+                        Rows::All => at.joints[first + start + i] - home[i],
+                        Rows::Driven => displacement(i).value(),
+                    });
+                    let vector = RotationVector::new(own);
+                    let inverse = vector.angular_velocity_to_rates().try_inverse();
+                    let ball = Ball {
+                        first: start,
+                        vector,
+                        angular: inverse.unwrap_or_else(Matrix3::identity),
+                        below: g,
+                        centre: (g * point).coords,
+                    };
+                    let line = idle.filter(|(first, _)| *first == ball.first);
+                    for i in 0..3 {
+                        found.push(
+                            ball.screw(ball.angular.column(i).into()),
+                            line.map_or(0.0, |(_, direction)| direction[i]),
+                        );
+                    }
+                    if let Some(free) = found.balls.iter_mut().find(|ball| ball.is_none()) {
+                        *free = Some(ball);
+                    }
+                    let turned = UnitQuaternion::from_scaled_axis(own);
+                    let place = point.coords;
+                    g *= Isometry3::from_parts(Translation3::from(place - turned * place), turned);
                 }
-                if let Some(free) = found.balls.iter_mut().find(|ball| ball.is_none()) {
-                    *free = Some(ball);
-                }
-                let turned = UnitQuaternion::from_scaled_axis(own);
-                let place = joint.point.coords;
-                g *= Isometry3::from_parts(Translation3::from(place - turned * place), turned);
-            } else {
-                for (i, screw) in joint.screws().iter().enumerate() {
+                WholeJoint::Screw(screw) => {
                     found.push(screw.transformed(&g), 0.0);
-                    g *= screw.exp(displacement(i).value());
+                    g *= screw.exp(displacement(0).value());
                 }
             }
         }

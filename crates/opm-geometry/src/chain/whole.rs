@@ -294,6 +294,11 @@ impl WholeLeg {
         self.freedoms
     }
 
+    /// Whether this is the closed form of a leg with these joints.
+    pub fn is_of(&self, joints: &[LegJoint]) -> bool {
+        Element::of(joints).0 == self.elements
+    }
+
     /// Where a strut could spin between two spherical joints: the number of the first one's first freedom, and the direction of the
     /// strut at home, along which its rotation vector has no component. `None` where nothing is idle.
     pub fn idle(&self) -> Option<(usize, Vector3<f64>)> {
