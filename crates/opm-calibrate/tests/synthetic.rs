@@ -216,7 +216,8 @@ fn errors_are_as_large_as_standard_errors_say() {
     let (mut mechanisms, mut all) = (0, Vec::new());
     for example in EXAMPLES {
         let Ok(drawing) = file::read(example.text) else { continue };
-        if Manipulator::new(drawing.mechanism).is_err() {
+        // Linkages are none, and legs that are solved whole hold their subgroup only with exact joints.
+        if parameters_of(&drawing).is_err() {
             continue;
         }
         mechanisms += 1;
@@ -498,7 +499,8 @@ fn exact_tables_of_every_mechanism_end() {
     for (name, drawing) in atlas {
         // Single loops are no manipulators.
         let Ok(real) = Manipulator::new(drawing.mechanism.clone()) else { continue };
-        let off = vec![0.0; parameters_of(&drawing).unwrap().len()];
+        let Ok(parameters) = parameters_of(&drawing) else { continue };
+        let off = vec![0.0; parameters.len()];
         let machine = Machine { drawing, off, real };
         let names = machine.all_columns();
         let columns: Vec<&str> = names.iter().map(String::as_str).collect();
