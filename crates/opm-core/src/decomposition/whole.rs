@@ -37,6 +37,10 @@ impl PlatformSet {
     }
 }
 
+/// The largest distance of a twist of the platform from what a leg can do, as a sine, lengths over the size. Legs close to
+/// within [`CLOSURE`](crate::chain::whole::CLOSURE), to which six joints add up.
+const EXACT: f64 = 1e-10;
+
 /// Why legs are not solved whole.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -55,6 +59,17 @@ pub enum WholeMiss {
     NoCoordinates {
         /// The subgroup.
         subspace: SubspaceClass,
+    },
+    /// Joints are not where a leg contains all that the platform does, but nearly.
+    #[error(
+        "leg {leg} contains the motion of the platform only to within {deviation:.1e} (the sine of an angle, lengths over \
+         the mechanism's size), expected {EXACT:e}: give directions and points with twelve digits"
+    )]
+    Inexact {
+        /// The leg's name.
+        leg: String,
+        /// The largest distance of a twist of the platform from what the leg can do.
+        deviation: f64,
     },
     /// A leg has no closed form.
     #[error("leg {leg} ({chain}) cannot be solved one joint after the other: {reason}")]
@@ -123,6 +138,12 @@ pub(super) fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decompos
         let span = MotionSubspace::span(frame, &leg.screws());
         class.screws().iter().map(|screw| span.distance(screw)).fold(0.0, f64::max)
     };
+    for leg in &mechanism.legs {
+        let deviation = deviation(leg);
+        if deviation > EXACT {
+            return Err(WholeMiss::Inexact { leg: leg.name.clone(), deviation });
+        }
+    }
     let motions = motions(&class, frame.length);
     let legs: Result<Vec<LegSplit>, WholeMiss> =
         (mechanism.legs.iter())
