@@ -8,19 +8,21 @@ use opm_core::mechanism::joint::JointKind;
 use opm_tests::displacement;
 use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
 
-const SHIPPED: [&str; 8] = [
-    "delta",
-    "linear-delta",
-    "orthoglide",
-    "tripteron",
-    "3-upu",
-    "quadrupteron",
-    "stewart",
-    "hexa",
+/// The mechanisms of `data/mechanisms`.
+const MECHANISMS: [(&str, &str); 8] = [
+    ("delta", include_str!("../../data/mechanisms/delta.toml")),
+    ("linear-delta", include_str!("../../data/mechanisms/linear-delta.toml")),
+    ("orthoglide", include_str!("../../data/mechanisms/orthoglide.toml")),
+    ("tripteron", include_str!("../../data/mechanisms/tripteron.toml")),
+    ("3-upu", include_str!("../../data/mechanisms/3-upu.toml")),
+    ("quadrupteron", include_str!("../../data/mechanisms/quadrupteron.toml")),
+    ("stewart", include_str!("../../data/mechanisms/stewart.toml")),
+    ("hexa", include_str!("../../data/mechanisms/hexa.toml")),
 ];
 
 fn example(name: &str) -> Manipulator {
-    Manipulator::example(name).unwrap()
+    let (_, text) = MECHANISMS.iter().find(|(known, _)| *known == name).unwrap();
+    Manipulator::read(text).unwrap()
 }
 
 /// A pose near home: lengths within a share of the size, angles within that many radians.
@@ -83,7 +85,7 @@ fn turned(turn: &UnitQuaternion<f64>, vector: Vector3<f64>) -> Vector3<f64> {
 #[test]
 fn legs_end_where_the_platform_is() {
     let mut rng = Rng::with_seed(1);
-    for name in SHIPPED {
+    for (name, _) in MECHANISMS {
         let m = example(name);
         assert!(m.is_whole(), "{name}");
         let (mut every, mut at) = (m.all_modes(), m.solution());
@@ -114,7 +116,7 @@ fn legs_end_where_the_platform_is() {
 /// Home is home: in the mode at home, every joint has its value there.
 #[test]
 fn home_is_home() {
-    for name in SHIPPED {
+    for (name, _) in MECHANISMS {
         let m = example(name);
         let mut at = m.solution();
         let solution = m.inverse(&m.home_pose(), m.home_mode(), &mut at).unwrap().unwrap();
@@ -210,7 +212,7 @@ fn counts_are_those_of_plain_geometry() {
 #[test]
 fn rates_are_those_of_differences() {
     let mut rng = Rng::with_seed(3);
-    for name in SHIPPED {
+    for (name, _) in MECHANISMS {
         let m = example(name);
         let (mut at, mut other, mut jacobians) = (m.solution(), m.solution(), m.jacobians());
         let (mut motion, mut singular) = (m.joint_motion(), m.singularities());
@@ -271,7 +273,7 @@ fn rates_are_those_of_differences() {
 #[test]
 fn forward_kinematics_near_a_pose() {
     let mut rng = Rng::with_seed(4);
-    for name in SHIPPED {
+    for (name, _) in MECHANISMS {
         let m = example(name);
         let mut at = m.solution();
         let mut found = 0;

@@ -28,6 +28,7 @@ fn the_plano_spherical_manipulator() {
         "name",
         "lambda",
         "mobility",
+        "platform",
         "imaginary_joints",
         "first_section_motions",
         "lower",
@@ -70,6 +71,7 @@ fn the_plano_spherical_manipulator() {
         "lower": ["S1", "phi11", "phi21"],
         "upper": ["theta21", "theta31"],
         "imaginary": "theta11",
+        "solved": "sections",
     });
     assert_eq!(legs[0], prr);
     assert_eq!(legs[3]["lower"], json!(["phi14", "phi24"]));
@@ -321,47 +323,37 @@ fn gough() -> String {
     text
 }
 
-/// A mechanism outside the class gets an answer on standard output; other commands fail.
+/// It has no sections: each leg is solved by itself, and every command takes it.
 #[test]
-fn a_gough_platform_is_outside_the_class() {
+fn a_gough_platform_is_solved_leg_by_leg() {
     let folder = Folder::new();
     let file = folder.write("gough.toml", gough());
     let run = opm(&["decompose", &file]);
     let text = run.text();
     for part in [
-        "6-UPS (Gough-Stewart platform)",
         "lambda = 6, mobility N = 6",
-        "leg6  UPS",
-        "6 freedoms (3T3R): full",
-        "outside the class, because wherever one of its UPS legs is divided",
+        "translations and rotations of space",
+        "Every leg is solved by itself, one joint after the other",
+        "roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll)",
+        "2^12 working modes",
     ] {
         assert!(text.contains(part), "no {part:?} in\n{text}");
     }
     assert_eq!(run.stderr, "");
     let found = decompose(&file);
-    let expected = [
-        "name",
-        "lambda",
-        "mobility",
-        "architecture",
-        "common_name",
-        "platform",
-        "legs",
-        "applies",
-        "because",
-        "warnings",
-        "reference_point",
-        "joints",
-    ];
-    assert_eq!(keys(&found), expected);
-    assert_eq!((&found["applies"], &found["lambda"]), (&json!("outside"), &json!(6)));
+    assert_eq!(found["applies"], json!("every leg"));
+    assert_eq!(found["platform"]["kind"], json!("free"));
+    let names: Vec<_> =
+        found["task_coordinates"].as_array().unwrap().iter().map(|c| &c["name"]).collect();
+    assert_eq!(names, ["x", "y", "z", "roll", "pitch", "yaw"]);
     let leg = &found["legs"][0];
-    assert_eq!(
-        (&leg["chain"], &leg["subspace"], &leg["dimension"]),
-        (&json!("UPS"), &json!("full"), &json!(6))
-    );
-    for command in [&["ik", &file, "--pose", ""][..], &["workspace", &file]] {
-        opm(command).fails_with_one_line(1, &["no partial subspaces", "all six dimensions"]);
+    assert_eq!((&leg["solved"], &leg["upper"]), (&json!("whole"), &json!([])));
+    assert_eq!(leg["kernels"][0]["root"], json!("quadratic"));
+    assert_eq!(leg["kernels"][0]["invariant"], json!("distance"));
+    opm(&["ik", &file, "--pose", "x=1mm"]).text();
+    for command in [&["measure", &file][..], &["generate", "c", &file, "-o", &folder.arg("code")]] {
+        let run = opm(command);
+        assert!(run.stderr.contains("each solved by itself"), "{}", run.stderr);
     }
 }
 

@@ -32,6 +32,8 @@
 //! height: ask [`Reach::raised`]'s manipulator, which is that of the height. And with coordinates that depend on those of a
 //! pose, `v` and `b` are those of a completed pose, or [`Reach::decide_many`] is asked.
 //!
+//! Legs that are solved whole ([`Manipulator::is_whole`]) have no sections: only [`Reach::decide_many`] is asked about them.
+//!
 //! Each section can be examined alone: the upper one by whether every leg that is split there closes at `b`, the lower one
 //! with the displacements τ given. If the workspace factorises ([`Manipulator::workspace_factorises`]), a pose is in reach
 //! exactly where `b` is in reach of the upper section, and `v` with `τ(b)` in reach of the lower one. It does not factorise

@@ -12,8 +12,7 @@ pub struct Example {
 }
 
 /// Every example: first the paper's mechanisms, families before joint lists, then other linkages, then
-/// those designed for this project, then those of one subspace from the literature, then those whose legs are solved
-/// whole.
+/// those designed for this project, then those of one subspace from the literature.
 pub const EXAMPLES: &[Example] = &[
     Example {
         name: "plano-spherical-5dof",
@@ -119,46 +118,6 @@ pub const EXAMPLES: &[Example] = &[
         name: "cartesian-wrist-6dof",
         description: "three cartesian arms below an Agile Eye: three translations, three rotations",
         text: include_str!("../../mechanisms/cartesian-wrist-6dof.toml"),
-    },
-    Example {
-        name: "delta",
-        description: "Delta, 3-RUU with ABB's FlexPicker's dimensions: three translations",
-        text: include_str!("../../mechanisms/delta.toml"),
-    },
-    Example {
-        name: "linear-delta",
-        description: "linear Delta, 3-PUU, as 3D printers have it: three translations",
-        text: include_str!("../../mechanisms/linear-delta.toml"),
-    },
-    Example {
-        name: "orthoglide",
-        description: "Orthoglide, 3-PUU with sliders at right angles: three translations",
-        text: include_str!("../../mechanisms/orthoglide.toml"),
-    },
-    Example {
-        name: "tripteron",
-        description: "Tripteron, 3-PRRR: three translations, one for each slider",
-        text: include_str!("../../mechanisms/tripteron.toml"),
-    },
-    Example {
-        name: "3-upu",
-        description: "3-UPU of Tsai: three translations",
-        text: include_str!("../../mechanisms/3-upu.toml"),
-    },
-    Example {
-        name: "quadrupteron",
-        description: "Quadrupteron, 3-PRRU + PRRR: three translations, one rotation",
-        text: include_str!("../../mechanisms/quadrupteron.toml"),
-    },
-    Example {
-        name: "stewart",
-        description: "Gough-Stewart platform, 6-UPS with INRIA's left hand's dimensions: six freedoms",
-        text: include_str!("../../mechanisms/stewart.toml"),
-    },
-    Example {
-        name: "hexa",
-        description: "Hexa, 6-RUS: six freedoms",
-        text: include_str!("../../mechanisms/hexa.toml"),
     },
 ];
 
