@@ -237,8 +237,9 @@ impl DisplacedLeg {
             let mut own = STILL;
             let ball = self.balls.iter().flatten().find(|ball| ball.first == freedom);
             let together = if ball.is_some() { 3 } else { 1 };
-            for i in freedom..(freedom + together).min(self.count) {
-                own = plus(&own, rates[i], &self.screws[i]);
+            let end = (freedom + together).min(self.count);
+            for (rate, screw) in rates[freedom..end].iter().zip(&self.screws[freedom..end]) {
+                own = plus(&own, *rate, screw);
             }
             if let Some(ball) = ball {
                 let own = Vector3::from_fn(|i, _| rates[freedom + i]);
