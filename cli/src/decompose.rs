@@ -2,6 +2,7 @@
 
 mod answer;
 mod joints;
+mod whole;
 
 use crate::args::{DecomposeArgs, Output};
 use crate::failure::Failure;
@@ -14,14 +15,13 @@ use nalgebra::{Point3, Vector3};
 use opm_core::Quantity;
 use opm_core::decomposition::mobility::Mobility;
 use opm_core::decomposition::{
-    Applies, Decomposition, Freedom, JointMiss, LegSplit, MAX_DECOMPOSITIONS, PlatformSet,
-    check_actuators, slightly_off, survey,
+    Applies, Decomposition, Freedom, JointMiss, MAX_DECOMPOSITIONS, check_actuators, slightly_off,
+    survey,
 };
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{CompileError, Manipulator};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::file::FileUnits;
-use opm_core::mechanism::joint::JointKind;
 use opm_core::mechanism::leg::Leg;
 use opm_core::task::{CoordinateKind, Subspace, Task, TaskCoordinate};
 use serde::Serialize;
@@ -83,7 +83,13 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         )),
         (None, None) => {}
     }
-    let report = Report { loaded: &loaded, mobility: &found.mobility, ways: &ways, manipulator };
+    let report = Report {
+        loaded: &loaded,
+        applies: found.applies.name(),
+        mobility: &found.mobility,
+        ways: &ways,
+        manipulator,
+    };
     output.print(&report.json(&warnings), report.text())?;
     warn(output, &loaded, &warnings);
     if let Some(error) = refused {
@@ -173,6 +179,8 @@ struct Parts<'a> {
 
 struct Report<'a> {
     loaded: &'a Loaded,
+    /// Which part of the crate applies: see [`Applies::name`].
+    applies: &'static str,
     mobility: &'a Mobility,
     ways: &'a [Way<'a>],
     /// `None` if there are no closed forms.
@@ -189,7 +197,7 @@ impl<'a> Way<'a> {
                 upper: joints(leg, &split.upper),
                 imaginary: split.imaginary.then(|| leg.imaginary_name()),
                 solved: if split.whole.is_some() { "whole" } else { "sections" },
-                kernels: kernels(leg, split),
+                kernels: whole::kernels(leg, split),
             })
             .collect();
         let compiled = Manipulator::with_decomposition(mechanism.clone(), decomposition.clone());
@@ -262,29 +270,6 @@ impl<'a> Way<'a> {
         })
     }
 
-    /// The set in which the platform moves.
-    fn platform(&self) -> Value {
-        let d = self.decomposition;
-        let kind = d.platform();
-        let subspace = match kind {
-            PlatformSet::Pair => None,
-            PlatformSet::Subgroup => Some(d.lower.name()),
-            PlatformSet::Free => Some(SubspaceClass::Full.name()),
-        };
-        json!({ "kind": kind.name(), "subspace": subspace, "motion": d.motion() })
-    }
-
-    /// How legs are solved that are not split.
-    fn whole(&self) -> String {
-        let mut legs = Table::new(["leg", "joints", "solved in this order"]);
-        for leg in &self.legs {
-            let steps: Vec<&str> =
-                leg.kernels.iter().filter_map(|step| step["joint"].as_str()).collect();
-            legs.row([leg.name, &leg.lower.join(" "), &steps.join(" ")]);
-        }
-        format!("platform        {}\n\n{legs}", self.decomposition.motion())
-    }
-
     /// The subspaces, and the legs' parts in them.
     fn sections(&self, units: FileUnits) -> String {
         let d = self.decomposition;
@@ -349,12 +334,7 @@ impl Report<'_> {
                 let others = self.ways[1..].iter().map(Way::json).collect();
                 json.insert("alternatives".to_owned(), Value::Array(others));
             }
-            let applies = match first.decomposition.platform() {
-                _ if first.decomposition.is_whole() => "every leg",
-                PlatformSet::Subgroup => "one subspace",
-                PlatformSet::Pair | PlatformSet::Free => "two subspaces",
-            };
-            json.insert("applies".to_owned(), applies.into());
+            json.insert("applies".to_owned(), self.applies.into());
             joints::insert(json, &self.loaded.file.mechanism);
             json.insert("warnings".to_owned(), warnings.into());
             if let Some(snapped) = &self.loaded.snapped {
@@ -382,15 +362,7 @@ impl Report<'_> {
         ));
         line(&way.sections(units));
         if d.is_whole() {
-            let could = match d.platform() {
-                PlatformSet::Free => "each leg lets the platform do everything",
-                PlatformSet::Pair | PlatformSet::Subgroup => {
-                    "each leg lets the platform do that, or more"
-                }
-            };
-            line(&format_args!(
-                "Every leg is solved by itself, one joint after the other: {could}. There is no imaginary joint."
-            ));
+            line(&way.solved_whole());
         } else if way.is_one_subspace() {
             line(
                 &"All legs move in one subspace: there is nothing to split, and no imaginary joint.",
@@ -549,30 +521,6 @@ fn joints<'a>(leg: &'a Leg, part: &[Freedom]) -> Vec<&'a str> {
         }
     }
     names
-}
-
-/// The steps by which a whole leg is solved.
-fn kernels(leg: &Leg, split: &LegSplit) -> Vec<Value> {
-    let Some(whole) = &split.whole else { return Vec::new() };
-    // Universal and cylindrical joints are two of the joints of a whole leg.
-    let names: Vec<&str> = (leg.joints.iter())
-        .flat_map(|joint| match joint.kind {
-            JointKind::Spherical => vec![&*joint.name],
-            JointKind::Revolute
-            | JointKind::Prismatic
-            | JointKind::Helical { .. }
-            | JointKind::Cylindrical
-            | JointKind::Universal { .. } => {
-                joint.coordinates.iter().map(|c| &*c.name).collect::<Vec<_>>()
-            }
-        })
-        .collect();
-    whole
-        .steps()
-        .map(|step| {
-            json!({ "joint": names.get(step.joint), "root": step.root, "invariant": step.invariant })
-        })
-        .collect()
 }
 
 /// The components of a vector. Adding zero turns -0 into 0.

@@ -3,10 +3,14 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use opm_core::Manipulator;
-use opm_core::decomposition::PlatformSet;
+use opm_core::decomposition::{DecomposeError, PlatformSet, WholeMiss, decompose};
+use opm_core::forward::{ForwardError, NoClosedForm};
+use opm_core::mechanism::file;
 use opm_core::mechanism::joint::JointKind;
+use opm_tests::by_inverse::by_inverse;
 use opm_tests::displacement;
-use opm_workspace::{Axis, Grid, Modes, Progress, Sweep};
+use opm_workspace::measure::{Domain, DomainError};
+use opm_workspace::{Axis, Grid, Modes, Progress, Sections, Sweep};
 
 /// The mechanisms of `data/mechanisms`.
 const MECHANISMS: [(&str, &str); 8] = [
@@ -307,4 +311,94 @@ fn a_delta_with_rods_that_are_nearly_level() {
     };
     let found = [-1.06, -0.9, -0.8].map(&mut parallel);
     assert!(found[0] > 0.05 && found.is_sorted_by(|a, b| a > b), "{found:?}");
+}
+
+/// Sweeps, which do not compute joints, decide as inverse kinematics do, at round poses and with limits too.
+#[test]
+fn sweeps_decide_as_inverse_kinematics_do() {
+    for (name, text) in MECHANISMS {
+        // Sliders and cranks that go a little way.
+        let mut mechanism = file::read(text).unwrap().mechanism;
+        let size = example(name).characteristic_length();
+        for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+            let slides = joint.kind == JointKind::Prismatic;
+            for c in joint.coordinates.iter_mut().filter(|_| joint.actuated) {
+                let far = if slides { 0.2 * size } else { 0.3 };
+                c.limits = Some([c.home - far, c.home + far]);
+            }
+        }
+        let limited = Manipulator::new(mechanism).unwrap();
+        for m in [example(name), limited] {
+            let axes = m.task_coordinates().iter().enumerate().map(|(i, c)| {
+                let (far, count) = match c.quantity {
+                    opm_core::Quantity::Length => (0.5 * size, 5),
+                    opm_core::Quantity::Angle => (0.5, 3),
+                };
+                Axis::new(c.name, c.home - far, c.home + far, if i < 3 { count } else { 3 })
+            });
+            let grid = Grid::new(&m, axes.collect()).unwrap();
+            for modes in [Modes::Any, Modes::One(m.home_mode())] {
+                let found = Sweep::new(&m, &grid, modes).count(&Progress::default()).unwrap();
+                let expected = match modes {
+                    Modes::One(_) => by_inverse(&m, &grid, modes).1.reachable,
+                    // Too many modes to list.
+                    Modes::Any => {
+                        let mut all = m.all_modes();
+                        let mut within = |number| {
+                            let found = m.inverse_all(&grid.pose(number), &mut all).unwrap();
+                            found.is_some_and(|all| all.within_limits_in_any(&m, |_, _| {}))
+                        };
+                        (0..grid.poses()).filter(|&number| within(number)).count() as u64
+                    }
+                };
+                assert_eq!(found.reachable, expected, "{name} {modes:?}");
+            }
+        }
+    }
+}
+
+/// A joint that is moved after the mechanism was decomposed counts where it is.
+#[test]
+fn a_changed_joint_counts_where_it_is() {
+    let (_, text) = MECHANISMS.iter().find(|(name, _)| *name == "stewart").unwrap();
+    let mut mechanism = file::read(text).unwrap().mechanism;
+    let before = decompose(&mechanism).unwrap().remove(0);
+    mechanism.legs[2].joints[0].point.x += 0.01;
+    let changed = Manipulator::with_decomposition(mechanism.clone(), before).unwrap();
+    let leg = &mechanism.legs[2];
+    let mut buffer = changed.actuated_joints();
+    let home = changed.home_pose();
+    let found = changed.inverse_actuated(&home, changed.home_mode(), &mut buffer).unwrap();
+    let c = &leg.joints[1].coordinates[0];
+    // Its foot is not in line with its slider any more, so that only the distance tells the slide.
+    let [foot, head] = [leg.joints[0].point, leg.joints[2].point];
+    let at = |slide: f64| (head + leg.joints[1].axis.into_inner() * (slide - c.home) - foot).norm();
+    let length = (head - foot).norm();
+    assert!((at(found.unwrap().actuated()[2]) - length).abs() < 1e-12);
+}
+
+/// Axes in single precision contain no translations of space: that is said, and not found out far from home.
+#[test]
+fn joints_that_nearly_contain_a_subgroup_are_refused() {
+    let (_, text) = MECHANISMS.iter().find(|(name, _)| *name == "delta").unwrap();
+    let mut mechanism = file::read(text).unwrap().mechanism;
+    for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+        joint.axis = nalgebra::Unit::new_normalize(joint.axis.map(|c| f64::from((0.7 * c) as f32)));
+    }
+    let refused = decompose(&mechanism).unwrap_err();
+    let DecomposeError::NoPartialSubspaces { whole: Some(whole), .. } = &refused else {
+        panic!("{refused}")
+    };
+    let WholeMiss::Inexact { deviation, .. } = **whole else { panic!("{whole}") };
+    assert!(deviation > 1e-10 && deviation < 1e-6 && refused.to_string().contains("twelve digits"));
+}
+
+/// What follows from sections is refused by name.
+#[test]
+fn what_whole_legs_do_not_have_is_refused() {
+    let m = example("delta");
+    let values = vec![0.0; 3];
+    assert_eq!(m.forward(&values), Err(ForwardError::NoClosedForm(NoClosedForm::Whole)));
+    assert_eq!(Domain::new(&m, Sections::Whole, &[]), Err(DomainError::Whole));
+    assert!(!m.has_enclosures() && !m.encloses_places() && !m.workspace_factorises());
 }

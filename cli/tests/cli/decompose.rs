@@ -350,6 +350,10 @@ fn a_gough_platform_is_solved_leg_by_leg() {
     assert_eq!((&leg["solved"], &leg["upper"]), (&json!("whole"), &json!([])));
     assert_eq!(leg["kernels"][0]["root"], json!("quadratic"));
     assert_eq!(leg["kernels"][0]["invariant"], json!("distance"));
+    let choices =
+        leg["kernels"].as_array().unwrap().iter().filter(|kernel| kernel["choice"] == true);
+    assert_eq!(choices.count(), 2, "two signs for each leg");
+    assert!(text.contains("p0±"), "{text}");
     opm(&["ik", &file, "--pose", "x=1mm"]).text();
     for command in [&["measure", &file][..], &["generate", "c", &file, "-o", &folder.arg("code")]] {
         let run = opm(command);

@@ -136,22 +136,6 @@ pub struct Decomposition {
     pub deviation: f64,
 }
 
-impl Decomposition {
-    /// The set in which the platform moves.
-    pub fn platform(&self) -> PlatformSet {
-        match (self.is_whole(), self.upper) {
-            (_, SubspaceClass::Identity) => PlatformSet::Subgroup,
-            (true, _) => PlatformSet::Free,
-            (false, _) => PlatformSet::Pair,
-        }
-    }
-
-    /// Whether every leg is solved by itself, whole, and not by sections that all legs share.
-    pub fn is_whole(&self) -> bool {
-        self.legs.iter().any(|leg| leg.whole.is_some())
-    }
-}
-
 /// Why a mechanism cannot be decomposed.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum DecomposeError {
@@ -310,7 +294,7 @@ pub fn decompose(mechanism: &Mechanism) -> Result<Vec<Decomposition>, DecomposeE
     let report = mobility(mechanism)?;
     found_or_near(mechanism, &report, regular_home(&report))?;
     check_actuators(&report)?;
-    found_or_near(mechanism, &report, split_or_whole(mechanism, &report))
+    found_or_near(mechanism, &report, whole::split_or_whole(mechanism, &report))
 }
 
 /// All valid decompositions of a mechanism, as [`decompose`], whatever its actuators: none yet, or too few.
@@ -326,34 +310,13 @@ pub fn search_all(mechanism: &Mechanism) -> Result<Vec<Decomposition>, Decompose
 /// As [`search_all`]. Errors do not say yet whether the mechanism nearly decomposes.
 fn any(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     regular_home(report)?;
-    split_or_whole(mechanism, report)
+    whole::split_or_whole(mechanism, report)
 }
 
 /// The same for splits of the legs alone.
 fn passive(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
     regular_home(report)?;
     ranked(mechanism, report)
-}
-
-/// The decompositions of a mechanism that moves: splits of its legs, the preferred one first, or else the one in which
-/// every leg is solved whole.
-fn split_or_whole(
-    mechanism: &Mechanism,
-    report: &Mobility,
-) -> Result<Vec<Decomposition>, DecomposeError> {
-    let mut error = match ranked(mechanism, report) {
-        Ok(found) => return Ok(found),
-        Err(error) => error,
-    };
-    match whole::whole(mechanism, report) {
-        Ok(found) => Ok(vec![found]),
-        Err(miss) => {
-            if let DecomposeError::NoPartialSubspaces { whole, .. } = &mut error {
-                *whole = Some(Box::new(miss));
-            }
-            Err(error)
-        }
-    }
 }
 
 /// Checks that the mechanism moves and that the screws at home are those of other poses, too. A parallel singularity

@@ -5,7 +5,7 @@
 
 use super::architecture::chain;
 use super::mobility::{Mobility, frame};
-use super::{Decomposition, Freedom, LegSplit};
+use super::{DecomposeError, Decomposition, Freedom, LegSplit, ranked};
 use crate::chain::whole::{LegJoint, NoOrder, WholeLeg};
 use crate::group::SubspaceKind;
 use crate::group::subspace::{MotionSubspace, SubspaceClass};
@@ -106,6 +106,20 @@ fn words(class: &SubspaceClass) -> &'static str {
 }
 
 impl Decomposition {
+    /// The set in which the platform moves.
+    pub fn platform(&self) -> PlatformSet {
+        match (self.is_whole(), self.upper) {
+            (_, SubspaceClass::Identity) => PlatformSet::Subgroup,
+            (true, _) => PlatformSet::Free,
+            (false, _) => PlatformSet::Pair,
+        }
+    }
+
+    /// Whether every leg is solved by itself, whole, and not by sections that all legs share.
+    pub fn is_whole(&self) -> bool {
+        self.legs.iter().any(|leg| leg.whole.is_some())
+    }
+
     /// What the platform does, in words: `translations of space`.
     pub fn motion(&self) -> String {
         match self.platform() {
@@ -116,8 +130,29 @@ impl Decomposition {
     }
 }
 
+/// The decompositions of a mechanism that moves: splits of its legs, the preferred one first, or else the one in which
+/// every leg is solved whole.
+pub(super) fn split_or_whole(
+    mechanism: &Mechanism,
+    report: &Mobility,
+) -> Result<Vec<Decomposition>, DecomposeError> {
+    let mut error = match ranked(mechanism, report) {
+        Ok(found) => return Ok(found),
+        Err(error) => error,
+    };
+    match whole(mechanism, report) {
+        Ok(found) => Ok(vec![found]),
+        Err(miss) => {
+            if let DecomposeError::NoPartialSubspaces { whole, .. } = &mut error {
+                *whole = Some(Box::new(miss));
+            }
+            Err(error)
+        }
+    }
+}
+
 /// The decomposition of a mechanism whose legs are solved whole.
-pub(super) fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {
+fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {
     let frame = frame(mechanism);
     let spans = mechanism.legs.iter().map(|leg| MotionSubspace::span(frame, &leg.screws()));
     let common = spans.reduce(|a, b| a.intersection(&b));

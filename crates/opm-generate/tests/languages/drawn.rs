@@ -2,7 +2,6 @@
 
 use crate::program::Question;
 use fastrand::Rng;
-use opm_core::mechanism::OrientationCoordinates;
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_core::{Manipulator, Quantity};
 use opm_tests::random::{self, Options};
@@ -11,9 +10,7 @@ use std::f64::consts::PI;
 
 /// The shipped mechanisms with closed forms.
 pub fn shipped() -> Vec<Manipulator> {
-    let all = EXAMPLES.iter().filter_map(|example| Manipulator::read(example.text).ok());
-    // No code is written for legs that are solved whole.
-    all.filter(|manipulator| !manipulator.is_whole()).collect()
+    EXAMPLES.iter().filter_map(|example| Manipulator::read(example.text).ok()).collect()
 }
 
 /// A random mechanism of every pair of subspaces, and some of which a leg constrains the platform.
@@ -34,13 +31,9 @@ pub fn random_mechanisms(seed: u64) -> Vec<Manipulator> {
             else {
                 continue;
             };
-            let oriented = m.task().coordinates.iter().any(|c| c.name == "zeta");
-            if oriented {
-                let (_, angles) = OrientationCoordinates::NAMED[all.len() % 3];
-                mechanism.task.coordinates = Some(angles);
-            }
             // An orientation at home other than the identity has closed forms of its own.
-            if oriented && rng.bool() {
+            let oriented = m.task().coordinates.iter().any(|c| c.name == "zeta") && rng.bool();
+            if oriented {
                 let home = [("zeta", 0.3), ("xi", 0.7), ("psi", -0.4)];
                 mechanism.task.home = home.map(|(name, value)| (name.into(), value)).into();
             }

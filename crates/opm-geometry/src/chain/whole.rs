@@ -29,7 +29,7 @@ mod step;
 mod write;
 
 use super::{Branch, ReachDeficit};
-use crate::numbers::{JointDisplacement, Real, Truth};
+use crate::numbers::{JointDisplacement, Real};
 use element::{Element, Kind};
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use nodes::Nodes;
@@ -164,10 +164,9 @@ pub struct WholeAttempt<T: Real = f64> {
     /// The displacement of each freedom, base first; zero for those of spherical joints, which are not found here, and for
     /// those that the leg does not have. They are valid only where `holds` is true.
     pub displacements: [T::Joint; MOST_FREEDOMS],
-    /// Whether the loop is closed.
+    /// Whether the loop is closed. Where it is not, the target may still be in reach: poses on the rim and special ones are
+    /// solved otherwise ([`WholeLeg::solve`]).
     pub holds: T::Truth,
-    /// Whether the target is certainly out of reach. It never is: poses on the rim and special ones are found afterwards.
-    pub beyond: T::Truth,
 }
 
 impl WholeLeg {
@@ -328,7 +327,7 @@ impl WholeLeg {
         self.program.run::<T>((elements, size), g, signs, &mut roots, &mut run);
         let open = roots.doubt + self.program.open::<T>(&run, size);
         let holds = T::constant(CLOSURE * CLOSURE).at_least(open);
-        WholeAttempt { displacements: run.joints, holds, beyond: T::Truth::NO }
+        WholeAttempt { displacements: run.joints, holds }
     }
 
     /// Writes the freedoms' displacements from base to platform that move the platform by `target`; nothing where it is out of

@@ -72,14 +72,24 @@ impl Manipulator {
             return;
         }
         for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
-            if let Some(joint @ ChainCoordinate { actuated: Some(actuated), .. }) = coordinate {
-                match displacement {
-                    JointDisplacement::Value(value) => {
-                        out.actuated[*actuated] = joint.home + value;
-                    }
-                    JointDisplacement::Direction(e) => angles.ask(AngleOf::Joint(joint), e),
-                }
+            if let Some(joint) = coordinate {
+                Self::write_actuated_joint(joint, displacement, out, angles);
             }
+        }
+    }
+
+    /// Writes the value of a joint if it is actuated, or asks for its angle.
+    #[inline(always)]
+    fn write_actuated_joint<'a>(
+        joint: &'a ChainCoordinate,
+        displacement: JointDisplacement,
+        out: &mut ActuatedJoints,
+        angles: &mut Angles<AngleOf<'a>>,
+    ) {
+        let Some(actuated) = joint.actuated else { return };
+        match displacement {
+            JointDisplacement::Value(value) => out.actuated[actuated] = joint.home + value,
+            JointDisplacement::Direction(e) => angles.ask(AngleOf::Joint(joint), e),
         }
     }
 
@@ -137,15 +147,7 @@ impl WithSimd for SolveActuated<'_> {
             Manipulator::write_actuated(&leg.lower, &found.lower, out, &mut angles);
             if let Some(between) = leg.whole.as_ref().and_then(|whole| whole.between.as_ref()) {
                 out.within_limits &= between.limits.admits(found.tau);
-                match (between.actuated, found.tau) {
-                    (None, _) => {}
-                    (Some(actuated), JointDisplacement::Value(value)) => {
-                        out.actuated[actuated] = between.home + value;
-                    }
-                    (Some(_), JointDisplacement::Direction(e)) => {
-                        angles.ask(AngleOf::Joint(between), e);
-                    }
-                }
+                Manipulator::write_actuated_joint(between, found.tau, out, &mut angles);
             }
             if let Some(imaginary) = leg.imaginary {
                 match found.tau {

@@ -65,7 +65,9 @@ impl Manipulator {
         }
         if let Some(whole) = &leg.whole {
             if let Some(between) = &whole.between {
-                Self::write_joint(between, out.legs[number].tau, out, revolutions, angles);
+                let Solution { joints, legs, within_limits, .. } = out;
+                let tau = legs[number].tau;
+                *within_limits &= Self::write_joint(between, tau, joints, revolutions, angles);
             }
             return;
         }
@@ -92,40 +94,26 @@ impl Manipulator {
         }
         for (coordinate, &displacement) in section.coordinates.iter().zip(displacements) {
             let Some(joint) = coordinate else { continue };
-            match displacement {
-                JointDisplacement::Value(value) => joints[joint.number] = joint.home + value,
-                JointDisplacement::Direction(e) => angles.ask(AngleOf::Joint(joint), e),
-            }
-            // The angle nearest to what the buffer holds is tested when it is known.
-            let known = matches!(displacement, JointDisplacement::Value(_));
-            if known || revolutions == Revolutions::NearHome {
-                *within_limits &= joint.limits.admits(displacement);
-            }
+            *within_limits &= Self::write_joint(joint, displacement, joints, revolutions, angles);
         }
     }
 
-    /// Writes the joint between the sections of a whole leg.
+    /// Writes the value of a joint, or asks for its angle. Returns whether it is within its limits, as far as that is known.
+    #[inline(always)]
     fn write_joint<'a>(
         joint: &'a ChainCoordinate,
         displacement: JointDisplacement,
-        out: &mut Solution,
+        joints: &mut [f64],
         revolutions: Revolutions,
         angles: &mut Angles<AngleOf<'a>>,
-    ) {
-        let known = match displacement {
-            JointDisplacement::Value(value) => {
-                out.joints[joint.number] = joint.home + value;
-                true
-            }
-            JointDisplacement::Direction(e) => {
-                angles.ask(AngleOf::Joint(joint), e);
-                false
-            }
-        };
-        // The angle nearest to what the buffer holds is tested when it is known.
-        if known || revolutions == Revolutions::NearHome {
-            out.within_limits &= joint.limits.admits(displacement);
+    ) -> bool {
+        match displacement {
+            JointDisplacement::Value(value) => joints[joint.number] = joint.home + value,
+            JointDisplacement::Direction(e) => angles.ask(AngleOf::Joint(joint), e),
         }
+        // The angle nearest to what the buffer holds is tested when it is known.
+        let known = matches!(displacement, JointDisplacement::Value(_));
+        !(known || revolutions == Revolutions::NearHome) || joint.limits.admits(displacement)
     }
 
     /// Takes an angle that was asked for.

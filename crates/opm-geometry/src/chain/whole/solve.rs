@@ -118,7 +118,8 @@ impl Solved<'_> {
         (self.elements.iter().map(of).collect(), values)
     }
 
-    /// Poses at which a joint is free, at which equations have become one, on the rim of reach, and out of it.
+    /// What the general case does not solve: a joint is free, two equations are one, or the pose is on the rim of reach or beyond
+    /// it.
     #[cold]
     fn special(
         &self,

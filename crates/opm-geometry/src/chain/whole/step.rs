@@ -215,34 +215,18 @@ impl Leg<'_> {
                             )
                         }
                         (
-                            Object::Point { place: i, point: p },
-                            Object::Plane { place: j, normal, base },
+                            Object::Point { place, point },
+                            Object::Plane { place: of, normal, base },
                         ) => {
-                            let moved = go(Point, p, i, 0);
-                            let [n, o] = [go(Direction, normal, j, end), go(Point, base, j, end)];
-                            let point = go(Point, p, i, at);
-                            let [m, q] = [go(Direction, normal, j, at), go(Point, base, j, at)];
-                            let height = Scalar::Height { point, normal: m, base: q };
-                            let height = self.scalar(nodes, height);
-                            (
-                                Equation::Height { moved, normal: n, base: o, height, back: false },
-                                [moved, n, o, point, m, q],
-                            )
+                            let two = [(place, point, 0), (of, normal, end)];
+                            self.height(nodes, seen, two, base, at, false)
                         }
                         (
-                            Object::Plane { place: i, normal, base },
-                            Object::Point { place: j, point: p },
+                            Object::Plane { place: of, normal, base },
+                            Object::Point { place, point },
                         ) => {
-                            let moved = go(Point, p, j, end);
-                            let [n, o] = [go(Direction, normal, i, 0), go(Point, base, i, 0)];
-                            let point = go(Point, p, j, at);
-                            let [m, q] = [go(Direction, normal, i, at), go(Point, base, i, at)];
-                            let height = Scalar::Height { point, normal: m, base: q };
-                            let height = self.scalar(nodes, height);
-                            (
-                                Equation::Height { moved, normal: n, base: o, height, back: true },
-                                [moved, n, o, point, m, q],
-                            )
+                            let two = [(place, point, end), (of, normal, 0)];
+                            self.height(nodes, seen, two, base, at, true)
                         }
                         (
                             Object::Direction { place: i, direction: u },
@@ -281,6 +265,27 @@ impl Leg<'_> {
                 to.extend(best);
             }
         }
+    }
+
+    /// The height of a point over a plane, each with its place and that to which it is carried, and what both need. It is the
+    /// same number at the place `at`. `back` says that the plane moves.
+    fn height(
+        &self,
+        nodes: &mut Nodes<'_>,
+        seen: &Loop,
+        [(place, point, to), (of, normal, end)]: [(usize, Id, usize); 2],
+        base: Id,
+        at: usize,
+        back: bool,
+    ) -> (Equation<Id>, [Id; 6]) {
+        use Vector::{Direction, Point};
+        let mut go = |kind, v, from, to| seen.carry(nodes, kind, v, from, to);
+        let moved = go(Point, point, place, to);
+        let [n, o] = [go(Direction, normal, of, end), go(Point, base, of, end)];
+        let point = go(Point, point, place, at);
+        let [m, q] = [go(Direction, normal, of, at), go(Point, base, of, at)];
+        let height = self.scalar(nodes, Scalar::Height { point, normal: m, base: q });
+        (Equation::Height { moved, normal: n, base: o, height, back }, [moved, n, o, point, m, q])
     }
 
     /// A number, as a constant where it is one.

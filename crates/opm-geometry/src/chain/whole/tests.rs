@@ -353,7 +353,6 @@ fn the_general_case_is_the_solution() {
                 let general = whole.attempt::<f64>(rotation, g.translation.vector, signs);
                 let mut out = [JointDisplacement::Value(0.0); MOST_FREEDOMS];
                 let solved = whole.solve(&g, branches, &mut out);
-                assert!(!general.beyond, "{}", leg.name);
                 if general.holds {
                     held += 1;
                     assert!(solved.is_ok(), "{}", leg.name);
