@@ -17,8 +17,14 @@ impl Way<'_> {
             PlatformSet::Pair => None,
             PlatformSet::Subgroup => Some(d.lower.name()),
             PlatformSet::Free => Some(SubspaceClass::Full.name()),
+            PlatformSet::Stem(_) => None,
         };
-        json!({ "kind": kind.name(), "subspace": subspace, "motion": d.motion() })
+        let stem = match kind {
+            PlatformSet::Stem(leg) => Some(self.legs[leg].name),
+            PlatformSet::Pair | PlatformSet::Subgroup | PlatformSet::Free => None,
+        };
+        let motion = self.motion();
+        json!({ "kind": kind.name(), "subspace": subspace, "stem": stem, "motion": motion })
     }
 
     /// How legs are solved that are not split.
@@ -32,14 +38,23 @@ impl Way<'_> {
             let steps: Vec<String> = leg.kernels.iter().filter_map(step).collect();
             legs.row([leg.name, &leg.lower.join(" "), &steps.join(" ")]);
         }
-        format!("platform        {}\n\n{legs}", self.decomposition.motion())
+        format!("platform        {}\n\n{legs}", self.motion())
+    }
+
+    /// What the platform does, in words.
+    fn motion(&self) -> String {
+        let motion = self.decomposition.motion();
+        match self.decomposition.platform() {
+            PlatformSet::Stem(leg) => format!("{motion}: {}", self.legs[leg].name),
+            PlatformSet::Pair | PlatformSet::Subgroup | PlatformSet::Free => motion,
+        }
     }
 
     /// What is told of legs that are solved whole.
     pub(super) fn solved_whole(&self) -> String {
         let could = match self.decomposition.platform() {
             PlatformSet::Free => "each leg lets the platform do everything",
-            PlatformSet::Pair | PlatformSet::Subgroup => {
+            PlatformSet::Pair | PlatformSet::Subgroup | PlatformSet::Stem(_) => {
                 "each leg lets the platform do that, or more"
             }
         };

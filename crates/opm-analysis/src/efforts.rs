@@ -171,7 +171,7 @@ impl Statics<'_> {
     fn imaginary_effort(&self, imaginary: usize, actuated: &[Option<f64>]) -> Option<f64> {
         let manipulator = self.manipulator();
         let leg = manipulator.imaginary()[imaginary].leg;
-        if manipulator.constraining_legs().any(|section| section == (leg, Section::Lower)) {
+        if manipulator.constraining_legs().any(|section| section == (leg, Some(Section::Lower))) {
             return None;
         }
         let row = self.jacobians.bridged.iter().position(|&bridged| bridged == leg)?;

@@ -73,7 +73,8 @@ impl Alone {
         let split = decomposition.legs[number].clone();
         let alone = Mechanism { legs: vec![mechanism.legs[number].clone()], ..mechanism.clone() };
         let misfit = decomposition.deviation;
-        let decomposition = Decomposition { legs: vec![split.clone()], ..decomposition.clone() };
+        let legs = vec![split.clone()];
+        let decomposition = Decomposition { legs, stem: None, ..decomposition.clone() };
         let cylinder = |class: &SubspaceClass| matches!(class, SubspaceClass::Cylindrical { .. });
         let cylindrical = [cylinder(&decomposition.lower), cylinder(&decomposition.upper)];
         let manipulator = Manipulator::with_decomposition(alone, decomposition)?;

@@ -26,7 +26,7 @@ mod order;
 mod reorder;
 mod search;
 mod survey;
-mod whole;
+pub(crate) mod whole;
 
 #[cfg(test)]
 pub(crate) mod samples;
@@ -117,6 +117,8 @@ pub struct Decomposition {
     /// identity where they share nothing else. Its axis points in the positive direction: to the side that the mechanism's
     /// [`TaskHints`](crate::mechanism::TaskHints) give, or else up.
     pub intersection: SubspaceClass,
+    /// The number of the leg whose motion is that of the platform: [`PlatformSet::Stem`].
+    pub stem: Option<usize>,
     /// The split of each leg, in the order of the mechanism's legs.
     pub legs: Vec<LegSplit>,
     /// The mobility of the upper section with its imaginary joints, `J`, at most `mobility`; zero where
@@ -457,6 +459,7 @@ fn one_subspace(mechanism: &Mechanism, report: &Mobility) -> Option<Decompositio
         lower: class,
         upper: SubspaceClass::Identity,
         intersection: SubspaceClass::Identity,
+        stem: None,
         legs: mechanism.legs.iter().map(whole).collect(),
         imaginary_joints: 0,
         first_section_motions: report.mobility,
@@ -585,6 +588,7 @@ impl<'a> Sections<'a> {
             lower: self.lower.class.restored(frame),
             upper: self.upper.class.restored(frame),
             intersection,
+            stem: None,
             legs: self.legs.iter().enumerate().map(split).collect(),
             imaginary_joints,
             first_section_motions: mobility - upper_motions,

@@ -264,7 +264,8 @@ impl Manipulator {
     }
 
     /// The numbers of the legs, and of their sections, whose constraints tie task coordinates together.
-    pub fn constraining_legs(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
+    /// A leg that is solved whole constrains as a whole, without a section.
+    pub fn constraining_legs(&self) -> impl Iterator<Item = (usize, Option<Section>)> + '_ {
         self.dependent.iter().flat_map(|d| d.constraining().chain(d.checked()))
     }
 
@@ -507,6 +508,7 @@ impl Compiled {
         let mut first = 0;
         for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
             let context = CompileContext {
+                mechanism,
                 task: &task,
                 decomposition,
                 coordinates: &chain_coordinates,
@@ -522,7 +524,10 @@ impl Compiled {
             legs.push(compiled);
         }
         let names: Vec<&str> = mechanism.legs.iter().map(|leg| leg.name.as_str()).collect();
-        let mut dependent = Dependent::new(&task, &legs, &names, decomposition.mobility, length)?;
+        let mut dependent = match decomposition.stem {
+            Some(stem) => Some(Dependent::of_stem(&task, mechanism, stem, length)?),
+            None => Dependent::new(&task, &legs, &names, decomposition.mobility, length)?,
+        };
         let choices: Vec<usize> = dependent.iter().flat_map(Dependent::choosing_legs).collect();
         let modes = ModeLayout::new(&legs, &choices);
         if let Some(dependent) = &mut dependent {

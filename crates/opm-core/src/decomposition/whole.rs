@@ -1,18 +1,21 @@
 //! Legs that are solved whole: the platform moves in a subgroup of what each leg can do, or in all of SE(3).
 //!
 //! Nothing has to be shared by the legs but the motion of the platform. It is found from the twists that all legs allow
-//! at home, and certified by finite displacements: every leg is solved at each of them (see [`crate::chain::whole`]).
+//! at home, and certified by finite displacements: every leg is solved at each of them (see [`crate::chain::whole`]). Where these
+//! twists are no group, but those of one leg, that leg is the *stem*: the platform moves as it lets it. Its motion is described
+//! by the coordinates of a group around it, of which some depend on the others.
 
 use super::architecture::chain;
 use super::mobility::{Mobility, frame};
 use super::{DecomposeError, Decomposition, Freedom, LegSplit, ranked};
 use crate::chain::whole::{LegJoint, NoOrder, WholeLeg};
 use crate::group::SubspaceKind;
+use crate::group::screw::Screw;
 use crate::group::subspace::{MotionSubspace, SubspaceClass};
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::mechanism::leg::Leg;
-use nalgebra::{Isometry3, Unit, Vector3};
+use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use std::borrow::Cow;
 
 /// The set in which the platform moves.
@@ -24,15 +27,18 @@ pub enum PlatformSet {
     Subgroup,
     /// All displacements.
     Free,
+    /// The displacements that the leg with this number allows, which are no group.
+    Stem(usize),
 }
 
 impl PlatformSet {
-    /// A short name: `pair`, `subgroup` or `free`.
+    /// A short name: `pair`, `subgroup`, `free` or `stem`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pair => "pair",
             Self::Subgroup => "subgroup",
             Self::Free => "free",
+            Self::Stem(_) => "stem",
         }
     }
 }
@@ -45,10 +51,10 @@ const EXACT: f64 = 1e-10;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WholeMiss {
-    /// What all legs allow is not a group: several legs constrain the platform together, or it moves as one leg does.
+    /// What all legs allow is not a group, nor what one leg allows: several legs constrain the platform together.
     #[error(
-        "the platform has {dimension} freedoms that are not those of a subgroup of SE(3), so that its legs cannot be \
-         solved by themselves"
+        "the platform has {dimension} freedoms that are neither those of a subgroup of SE(3) nor those of one leg, so that its \
+         legs cannot be solved by themselves"
     )]
     NoGroup {
         /// The number of independent twists of the platform.
@@ -109,6 +115,7 @@ impl Decomposition {
     /// The set in which the platform moves.
     pub fn platform(&self) -> PlatformSet {
         match (self.is_whole(), self.upper) {
+            _ if self.stem.is_some() => PlatformSet::Stem(self.stem.unwrap_or(0)),
             (_, SubspaceClass::Identity) => PlatformSet::Subgroup,
             (true, _) => PlatformSet::Free,
             (false, _) => PlatformSet::Pair,
@@ -126,6 +133,11 @@ impl Decomposition {
             PlatformSet::Pair => format!("{}, then {}", words(&self.lower), words(&self.upper)),
             PlatformSet::Subgroup => words(&self.lower).to_owned(),
             PlatformSet::Free => words(&SubspaceClass::Full).to_owned(),
+            PlatformSet::Stem(_) => match self.lower {
+                SubspaceClass::Spherical { .. } => "rotations about a centre that one leg allows",
+                _ => "what one leg allows, with fewer freedoms than space",
+            }
+            .to_owned(),
         }
     }
 }
@@ -157,51 +169,165 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
     let spans = mechanism.legs.iter().map(|leg| MotionSubspace::span(frame, &leg.screws()));
     let common = spans.reduce(|a, b| a.intersection(&b));
     let dimension = report.mobility.saturating_sub(report.idle);
-    let class = common.filter(|common| common.dimension() == dimension).and_then(|c| c.class());
-    let Some(class) = class else { return Err(WholeMiss::NoGroup { dimension }) };
-    let (lower, upper) = match class {
-        SubspaceClass::Full => (
-            SubspaceClass::TranslationalSpace,
-            SubspaceClass::Spherical { centre: mechanism.platform },
-        ),
-        class if SubspaceKind::of(&class).is_some() && dimension > 0 => {
-            (class, SubspaceClass::Identity)
-        }
-        subspace => return Err(WholeMiss::NoCoordinates { subspace }),
+    let no_group = WholeMiss::NoGroup { dimension };
+    let Some(common) = common.filter(|common| common.dimension() == dimension && dimension > 0)
+    else {
+        return Err(no_group);
     };
-    let deviation = |leg: &Leg| {
-        let span = MotionSubspace::span(frame, &leg.screws());
-        class.screws().iter().map(|screw| span.distance(screw)).fold(0.0, f64::max)
-    };
-    for leg in &mechanism.legs {
-        let deviation = deviation(leg);
-        if deviation > EXACT {
-            return Err(WholeMiss::Inexact { leg: leg.name.clone(), deviation });
+    let miss = match common.class() {
+        Some(SubspaceClass::Full) => {
+            let found = Found {
+                lower: SubspaceClass::TranslationalSpace,
+                upper: SubspaceClass::Spherical { centre: mechanism.platform },
+                stem: None,
+                twists: SubspaceClass::Full.screws(),
+                motions: motions(&SubspaceClass::Full, frame.length),
+            };
+            return found.solved(mechanism, report);
         }
+        Some(class) if SubspaceKind::of(&class).is_some() => {
+            let found = Found {
+                lower: class,
+                upper: SubspaceClass::Identity,
+                stem: None,
+                twists: class.screws(),
+                motions: motions(&class, frame.length),
+            };
+            match found.solved(mechanism, report) {
+                Ok(found) => return Ok(found),
+                Err(miss) => miss,
+            }
+        }
+        Some(subspace) => WholeMiss::NoCoordinates { subspace },
+        None => no_group,
+    };
+    let is_stem = |leg: &Leg| Freedom::of_leg(leg).len() == dimension;
+    match mechanism.legs.iter().position(is_stem) {
+        Some(stem) => Found::of_stem(mechanism, stem, frame.length).solved(mechanism, report),
+        None => Err(miss),
     }
-    let motions = motions(&class, frame.length);
-    let legs: Result<Vec<LegSplit>, WholeMiss> =
-        (mechanism.legs.iter())
-            .map(|leg| {
-                let whole = solved(leg, &motions, frame.length).map_err(|reason| {
-                    WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
-                })?;
-                let lower = Freedom::of_leg(leg);
-                Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
-            })
-            .collect();
-    Ok(Decomposition {
-        lambda: report.lambda,
-        mobility: report.mobility,
-        lower,
-        upper,
-        intersection: SubspaceClass::Identity,
-        legs: legs?,
-        imaginary_joints: 0,
-        first_section_motions: report.mobility,
-        upper_mobility: 0,
-        redundancy: 0,
-        deviation: mechanism.legs.iter().map(deviation).fold(0.0, f64::max),
+}
+
+/// What a platform does whose legs are solved whole.
+struct Found {
+    lower: SubspaceClass,
+    upper: SubspaceClass,
+    stem: Option<usize>,
+    /// Its twists at home.
+    twists: Vec<Screw>,
+    /// Some of its displacements, at random.
+    motions: Vec<Isometry3<f64>>,
+}
+
+impl Found {
+    /// The motion of a leg.
+    fn of_stem(mechanism: &Mechanism, stem: usize, length: f64) -> Self {
+        let leg = &mechanism.legs[stem];
+        let centre = centre(leg, length);
+        let (lower, upper) = match centre {
+            Some(centre) => (SubspaceClass::Spherical { centre }, SubspaceClass::Identity),
+            None => (
+                SubspaceClass::TranslationalSpace,
+                SubspaceClass::Spherical { centre: mechanism.platform },
+            ),
+        };
+        let displaced = |values: Vec<f64>| {
+            let each = joints(leg).scan(0, |first, (joint, _)| {
+                let own = *first;
+                *first += joint.freedoms();
+                Some(joint.exp(&values[own..*first]))
+            });
+            each.fold(Isometry3::identity(), |all, joint| all * joint)
+        };
+        let motions = configurations(leg, length).map(displaced).collect();
+        Self { lower, upper, stem: Some(stem), twists: leg.screws(), motions }
+    }
+
+    fn solved(self, mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {
+        let Self { lower, upper, stem, twists, motions } = self;
+        let frame = frame(mechanism);
+        let deviation = |leg: &Leg| {
+            let span = MotionSubspace::span(frame, &leg.screws());
+            twists.iter().map(|screw| span.distance(screw)).fold(0.0, f64::max)
+        };
+        for leg in &mechanism.legs {
+            let deviation = deviation(leg);
+            if deviation > EXACT {
+                return Err(WholeMiss::Inexact { leg: leg.name.clone(), deviation });
+            }
+        }
+        let legs: Result<Vec<LegSplit>, WholeMiss> =
+            (mechanism.legs.iter())
+                .map(|leg| {
+                    let whole = solved(leg, &motions, frame.length).map_err(|reason| {
+                        WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
+                    })?;
+                    let lower = Freedom::of_leg(leg);
+                    Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
+                })
+                .collect();
+        Ok(Decomposition {
+            lambda: report.lambda,
+            mobility: report.mobility,
+            lower,
+            upper,
+            intersection: SubspaceClass::Identity,
+            stem,
+            legs: legs?,
+            imaginary_joints: 0,
+            first_section_motions: report.mobility,
+            upper_mobility: 0,
+            redundancy: 0,
+            deviation: mechanism.legs.iter().map(deviation).fold(0.0, f64::max),
+        })
+    }
+}
+
+/// The point that a leg only rotates about: all axes pass through it.
+fn centre(leg: &Leg, length: f64) -> Option<Point3<f64>> {
+    /// A line passes through a point, and two of them meet, to within this share of the size and this sine.
+    const MEETS: f64 = 1e-9;
+    let turns = |joint: &Joint| {
+        matches!(
+            joint.kind,
+            JointKind::Revolute | JointKind::Universal { .. } | JointKind::Spherical
+        )
+    };
+    if !leg.joints.iter().all(turns) {
+        return None;
+    }
+    let screws = leg.screws();
+    let with_point = leg.joints.iter().find(|joint| joint.kind != JointKind::Revolute);
+    let centre = match with_point {
+        Some(joint) => joint.point,
+        None => {
+            let [first, second] = [leg.joints.first()?, leg.joints.get(1)?];
+            let (u, v) = (first.axis, second.axis);
+            let normal = u.cross(&v);
+            if normal.norm() < MEETS {
+                return None;
+            }
+            let apart = second.point - first.point;
+            first.point + u.scale(apart.cross(&v).dot(&normal) / normal.norm_squared())
+        }
+    };
+    let passes = |screw: &Screw| {
+        (screw.linear + screw.angular.cross(&centre.coords)).norm() <= MEETS * length
+    };
+    screws.iter().all(passes).then_some(centre)
+}
+
+/// Values of a leg's freedoms near home, without a pattern: see [`motions`].
+pub(crate) fn configurations(leg: &Leg, length: f64) -> impl Iterator<Item = Vec<f64>> {
+    let units: Vec<f64> = (joints(leg))
+        .flat_map(|(joint, _)| {
+            let unit = if matches!(joint, LegJoint::Slide { .. }) { length } else { 1.0 };
+            std::iter::repeat_n(unit, joint.freedoms())
+        })
+        .collect();
+    SIZES.into_iter().enumerate().map(move |(sample, size)| {
+        let value = |(i, unit): (usize, &f64)| 2.0 * share(1 + i + sample * units.len()) * size * unit;
+        units.iter().enumerate().map(value).collect()
     })
 }
 
@@ -216,6 +342,7 @@ impl Decomposition {
     /// legs are split.
     pub(crate) fn whole_leg<'a>(
         &self,
+        mechanism: &Mechanism,
         leg: &Leg,
         split: &'a LegSplit,
         length: f64,
@@ -225,16 +352,19 @@ impl Decomposition {
         if known.is_of(&joints) {
             return Some(Ok(Cow::Borrowed(known)));
         }
-        let class = match self.platform() {
-            PlatformSet::Free => SubspaceClass::Full,
-            PlatformSet::Pair | PlatformSet::Subgroup => self.lower,
+        let motions = match self.platform() {
+            PlatformSet::Free => motions(&SubspaceClass::Full, length),
+            PlatformSet::Pair | PlatformSet::Subgroup => motions(&self.lower, length),
+            PlatformSet::Stem(stem) => {
+                Found::of_stem(mechanism, stem, length).motions
+            }
         };
-        Some(solved(leg, &motions(&class, length), length).map(Cow::Owned))
+        Some(solved(leg, &motions, length).map(Cow::Owned))
     }
 }
 
 /// The joints of a leg, each with one freedom or a ball's three, and whether they are actuated.
-fn joints(leg: &Leg) -> impl Iterator<Item = (LegJoint, bool)> {
+pub(crate) fn joints(leg: &Leg) -> impl Iterator<Item = (LegJoint, bool)> {
     leg.joints.iter().flat_map(|joint| {
         let actuated = joint.actuated;
         elementary(joint).into_iter().flatten().map(move |joint| (joint, actuated))
@@ -255,19 +385,23 @@ fn elementary(joint: &Joint) -> [Option<LegJoint>; 2] {
     }
 }
 
-/// Displacements of a subgroup near home, without a pattern: coefficients of its screws are multiples of the golden ratio
-/// modulo one. Lengths are shares of `length`.
-fn motions(class: &SubspaceClass, length: f64) -> Vec<Isometry3<f64>> {
-    /// How many there are, and how large they are: radians, and shares of the size.
-    const SIZES: [f64; 12] = [0.3, 0.3, 0.3, 0.2, 0.2, 0.2, 0.1, 0.1, 0.1, 0.05, 0.05, 0.05];
+/// How many samples there are, and how large they are: radians, and shares of the size.
+const SIZES: [f64; 12] = [0.3, 0.3, 0.3, 0.2, 0.2, 0.2, 0.1, 0.1, 0.1, 0.05, 0.05, 0.05];
+
+/// Numbers between -1/2 and 1/2 without a pattern: multiples of the golden ratio modulo one.
+fn share(number: usize) -> f64 {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    (number as f64 * golden).fract() - 0.5
+}
+
+/// Displacements of a subgroup near home, without a pattern. Lengths are shares of `length`.
+fn motions(class: &SubspaceClass, length: f64) -> Vec<Isometry3<f64>> {
     let screws = class.screws();
     let count = screws.len();
     let of_sample = |(sample, size): (usize, f64)| {
         screws.iter().enumerate().fold(Isometry3::identity(), |g, (i, screw)| {
-            let share = ((1 + i + sample * count) as f64 * golden).fract() - 0.5;
             let unit = if screw.angular.norm() > 0.0 { 1.0 } else { length };
-            g * screw.exp(2.0 * share * size * unit)
+            g * screw.exp(2.0 * share(1 + i + sample * count) * size * unit)
         })
     };
     SIZES.into_iter().enumerate().map(of_sample).collect()

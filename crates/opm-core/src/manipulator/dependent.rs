@@ -14,6 +14,8 @@
 //! it rises (the plus branch) and falls (minus), or one. A section with one joint that moves has a one-parameter
 //! motion: one of its coordinates tells the joint, and the joint the others ([`one_joint`]).
 //!
+//! Where every leg is solved whole and one is the [`stem`], all dependent coordinates follow from it at once.
+//!
 //! Further legs may impose constraints that the platform obeys already. They are only checked.
 
 mod complete;
@@ -21,17 +23,21 @@ pub(crate) mod constraint;
 pub(super) mod form;
 mod many;
 pub(crate) mod one_joint;
+mod stem;
 pub(crate) mod zeros;
 
 use super::Mode;
 use super::leg::{CompiledLeg, Section};
 use super::mode::{Choices, ModeLayout};
+use crate::chain::whole::NoOrder;
 use crate::group::{JointDisplacement, SubspaceKind};
+use crate::mechanism::Mechanism;
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task};
 use constraint::{Constraint, constraints, follows, order, target_of};
 pub(super) use many::Complete;
 use one_joint::OneJoint;
+use stem::Stem;
 use zeros::Function;
 
 /// The coordinate that follows from a condition is the first, in the order of preference, in which the
@@ -59,6 +65,25 @@ pub enum ConstraintError {
         /// The section that is constrained.
         section: Section,
     },
+    /// No coordinates of the platform determine the motion of the stem at home.
+    #[error(
+        "leg {leg} carries the platform, but at home no task coordinates determine its joints, expected another choice of \
+         `coordinates`, regular there"
+    )]
+    Poles {
+        /// The leg's name.
+        leg: String,
+    },
+    /// The motion of the stem has no closed form in the platform's coordinates.
+    #[error(
+        "leg {leg} carries the platform, but its joints do not follow from coordinates of the platform one by one: {reason}"
+    )]
+    Stem {
+        /// The leg's name.
+        leg: String,
+        /// Why not.
+        reason: NoOrder,
+    },
     /// The constraints of several legs differ, or those of one have no closed form in this order.
     #[error(
         "legs {} constrain the platform in more ways than closed-form inverse kinematics covers: the mobility is \
@@ -80,7 +105,7 @@ impl ConstraintError {
     /// The name of the first leg that it is about.
     pub fn leg(&self) -> Option<&str> {
         match self {
-            Self::Singular { leg, .. } => Some(leg),
+            Self::Singular { leg, .. } | Self::Stem { leg, .. } | Self::Poles { leg } => Some(leg),
             Self::Several { legs, .. } => legs.first().map(String::as_str),
         }
     }
@@ -93,6 +118,8 @@ pub(crate) struct Dependent {
     pub independent: Vec<usize>,
     /// The numbers of the dependent ones.
     pub coordinates: Vec<usize>,
+    /// How they follow where one leg is the stem; then there are no steps.
+    stem: Option<Stem>,
     steps: Vec<Step>,
     /// Constraints that are not used by a step.
     checks: Vec<Constraint>,
@@ -168,7 +195,30 @@ impl Dependent {
             let legs = legs.collect();
             return Err(ConstraintError::Several { legs, mobility, determined });
         }
-        Ok(Some(Self { independent, coordinates, steps, checks, bits: Vec::new(), size }))
+        let (stem, bits) = (None, Vec::new());
+        Ok(Some(Self { independent, coordinates, stem, steps, checks, bits, size }))
+    }
+
+    /// The dependent coordinates of a mechanism whose platform moves as the leg with this number lets it.
+    ///
+    /// # Errors
+    /// If no coordinates determine that motion in closed form.
+    pub fn of_stem(
+        task: &Task,
+        mechanism: &Mechanism,
+        leg: usize,
+        size: f64,
+    ) -> Result<Self, ConstraintError> {
+        let name = || mechanism.legs[leg].name.clone();
+        let (independent, stem) =
+            Stem::new(task, mechanism, leg, size).map_err(|reason| match reason {
+                Some(reason) => ConstraintError::Stem { leg: name(), reason },
+                None => ConstraintError::Poles { leg: name() },
+            })?;
+        let all = 0..task.coordinates.len();
+        let coordinates = all.filter(|i| !independent.contains(i)).collect();
+        let (steps, checks, bits) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { independent, coordinates, stem: Some(stem), steps, checks, bits, size })
     }
 
     /// The steps, in their order.
@@ -178,7 +228,9 @@ impl Dependent {
 
     /// For each two-valued choice of the steps, the leg that it belongs to.
     pub fn choosing_legs(&self) -> impl Iterator<Item = usize> + '_ {
-        self.steps.iter().filter(|step| step.solution.has_choice()).map(|step| step.solution.leg())
+        let of_stem = self.stem.iter().flat_map(|stem| std::iter::repeat_n(stem.leg, stem.choices()));
+        let choosing = self.steps.iter().filter(|step| step.solution.has_choice());
+        choosing.map(|step| step.solution.leg()).chain(of_stem)
     }
 
     /// Takes the bits of the choices from a layout that was made for them.
@@ -191,7 +243,11 @@ impl Dependent {
                 given[leg] += 1;
             }
         }
-        let mut bits: Vec<u32> = self.steps.iter().filter_map(|step| step.bit).collect();
+        if let Some(stem) = &mut self.stem {
+            let given = layout.pose_bits(stem.leg);
+            stem.bits.iter_mut().zip(given).for_each(|(to, bit)| *to = Some(bit));
+        }
+        let mut bits: Vec<u32> = self.own_bits().collect();
         let used = self.steps.iter().map(|step| (step.solution.leg(), step.solution.section()));
         let checked = self.checks.iter().map(|check| (check.leg, check.section));
         for (leg, section) in used.chain(checked) {
@@ -202,6 +258,12 @@ impl Dependent {
         bits.sort_unstable();
         bits.dedup();
         self.bits = bits;
+    }
+
+    /// The bits of the choices with which the dependent coordinates follow.
+    fn own_bits(&self) -> impl Iterator<Item = u32> {
+        let of_stem = self.stem.iter().flat_map(|stem| stem.bits);
+        self.steps.iter().map(|step| step.bit).chain(of_stem).flatten()
     }
 
     /// The number of combinations of choices on which the dependent coordinates depend.
@@ -228,7 +290,7 @@ impl Dependent {
 
     /// The modes with every combination of the steps' own choices, and plus for all others.
     pub fn step_modes(&self) -> impl Iterator<Item = Mode> + '_ {
-        let bits: Vec<u32> = self.steps.iter().filter_map(|step| step.bit).collect();
+        let bits: Vec<u32> = self.own_bits().collect();
         (0..1u64 << bits.len()).map(move |combination| {
             let bits = bits.iter().enumerate();
             Mode(bits.fold(0, |mode, (i, bit)| mode | (combination >> i & 1) << bit))
@@ -237,18 +299,26 @@ impl Dependent {
 
     /// Whether two modes differ in no other choices than the steps' own.
     pub fn differ_in_steps(&self, one: Mode, other: Mode) -> bool {
-        let own = self.steps.iter().filter_map(|step| step.bit).fold(0, |own, bit| own | 1 << bit);
+        let own = self.own_bits().fold(0, |own, bit| own | 1 << bit);
         (one.0 ^ other.0) & !own == 0
     }
 
     /// The constraints that only repeat others, as the legs and sections that they belong to.
-    pub fn checked(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
-        self.checks.iter().map(|check| (check.leg, check.section))
+    pub fn checked(&self) -> impl Iterator<Item = (usize, Option<Section>)> + '_ {
+        self.checks.iter().map(|check| (check.leg, Some(check.section)))
+    }
+
+    /// The number of the leg that is the stem.
+    pub fn stem(&self) -> Option<usize> {
+        self.stem.as_ref().map(|stem| stem.leg)
     }
 
     /// The legs and sections whose constraints determine the dependent coordinates.
-    pub fn constraining(&self) -> impl Iterator<Item = (usize, Section)> + '_ {
-        self.steps.iter().map(|step| (step.solution.leg(), step.solution.section()))
+    /// A stem constrains as a whole.
+    pub fn constraining(&self) -> impl Iterator<Item = (usize, Option<Section>)> + '_ {
+        let of_stem = self.stem.iter().map(|stem| (stem.leg, None));
+        let of_step = |step: &Step| (step.solution.leg(), Some(step.solution.section()));
+        self.steps.iter().map(of_step).chain(of_stem)
     }
 
     /// The leg, the section and the numbers of the locked joints of each step, which are as many as it has
@@ -257,7 +327,8 @@ impl Dependent {
         &'a self,
         legs: &'a [CompiledLeg],
     ) -> impl Iterator<Item = (usize, Section, usize)> + 'a {
-        self.constraining().flat_map(|(leg, section)| {
+        let sections = self.constraining().filter_map(|(leg, section)| Some((leg, section?)));
+        sections.flat_map(|(leg, section)| {
             let partial = legs[leg].section(section).partial;
             let joints = partial.into_iter().flat_map(|partial| partial.locked_joints());
             joints.map(move |joint| (leg, section, joint))

@@ -11,6 +11,7 @@ use crate::chain::shell::Shell;
 use crate::chain::{Branch, Chain, ChainJoint, ReachDeficit};
 use crate::decomposition::{Decomposition, Freedom, HeightMiss, HeightReason, LegSplit};
 use crate::group::{Displacement, JointDisplacement, MotionType, Subspace, SubspaceKind};
+use crate::mechanism::Mechanism;
 use crate::mechanism::leg::Leg;
 pub use crate::mechanism::leg::Section;
 use crate::task::Task;
@@ -51,6 +52,7 @@ pub(crate) struct CompiledLeg {
 /// What compiling a leg needs to know of the manipulator.
 #[derive(Clone, Copy)]
 pub(crate) struct CompileContext<'a> {
+    pub mechanism: &'a Mechanism,
     pub task: &'a Task,
     pub decomposition: &'a Decomposition,
     /// Every joint coordinate of the mechanism.
@@ -92,7 +94,8 @@ impl CompiledLeg {
         first: usize,
         context: CompileContext<'_>,
     ) -> Result<Self, RefusedLeg> {
-        if let Some(whole) = context.decomposition.whole_leg(leg, split, context.size) {
+        let CompileContext { mechanism, decomposition, size, .. } = context;
+        if let Some(whole) = decomposition.whole_leg(mechanism, leg, split, size) {
             return Ok(Self::whole(leg, whole?.into_owned(), first, context));
         }
         let task = context.task;

@@ -81,6 +81,20 @@ impl Manipulator {
     /// Whether all legs, which are solved whole, reach a pose within their limits, in one working mode, or (`None`) in any. Legs
     /// share no choices.
     pub(crate) fn whole_reaches(&self, pose: &[f64], mode: Option<Mode>) -> bool {
+        let Some(dependent) = &self.dependent else { return self.legs_reach(pose, mode) };
+        let mut all = self.home.clone();
+        let mut reaches = |steps: Mode| {
+            dependent.complete_from_home(self, steps, pose, &mut all).is_ok()
+                && self.legs_reach(&all, mode)
+        };
+        match mode {
+            Some(mode) => reaches(mode),
+            None => dependent.step_modes().any(reaches),
+        }
+    }
+
+    /// The same for all coordinates of a pose.
+    fn legs_reach(&self, pose: &[f64], mode: Option<Mode>) -> bool {
         let (v, b) = self.task.sections(pose);
         let rise = self.task.rise(pose);
         let target = self.task.raised(rise, self.task.isometry(&v, &b));

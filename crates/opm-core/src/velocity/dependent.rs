@@ -74,6 +74,9 @@ impl Manipulator {
     fn locked_motion(&self, dependent: &Dependent, at: &Solution, given: [&[f64]; 2]) -> AllRates {
         let mut found = [[0.0; MOST]; 2];
         let twists = self.section_twists(&at.solved.pose, given[0], given[1]);
+        if let Some(stem) = dependent.stem() {
+            return self.stem_motion(at, stem, &twists);
+        }
         for (row, (leg, section, joint)) in dependent.locked(&self.legs).enumerate().take(MOST) {
             let differential = self.leg_differential(at, leg);
             let motion = self.leg_motion(at, leg, &differential, &twists);
@@ -91,7 +94,7 @@ impl Manipulator {
         singular.clear();
         singular.extend(self.legs.iter().enumerate().map(|(leg, compiled)| SingularLeg {
             leg,
-            section: Some(compiled.split_section),
+            section: compiled.named(compiled.split_section),
             cause: SingularCause::Serial,
         }));
     }

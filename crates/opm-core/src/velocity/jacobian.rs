@@ -303,7 +303,9 @@ impl Manipulator {
         out.v = at.solved.v;
         if self.is_whole() {
             self.platform_columns(at, out);
-            return self.whole_rows(at, rows, out);
+            let regular = self.whole_rows(at, rows, out);
+            self.stem_rows(at, out);
+            return regular;
         }
         let task = self.task();
         let along = at.solved.v.adjoint(&task.lower_intersection.unit_twist());

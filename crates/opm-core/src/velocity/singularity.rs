@@ -23,7 +23,7 @@
 use super::Jacobians;
 use super::closure::{along_unit, inputs, row_unit, section_rows, twist_unit, volume};
 use crate::group::LocalTwist;
-use crate::manipulator::{CompiledLeg, Manipulator, Section};
+use crate::manipulator::{CompiledLeg, Dependent, Manipulator, Section};
 use crate::numeric::svd::Svd;
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -185,6 +185,10 @@ impl Layout {
             let own = manipulator.coordinates_of(leg);
             let driven = manipulator.actuated().iter().filter(|number| own.contains(number));
             rows.extend(driven.map(|_| Cause { leg, section: Section::Lower }));
+        }
+        if let Some(leg) = manipulator.dependent.as_ref().and_then(Dependent::stem) {
+            let held = manipulator.dependent_coordinates();
+            rows.extend(held.iter().map(|_| Cause { leg, section: Section::Lower }));
         }
         Self {
             along: vec![None; manipulator.legs.len()],

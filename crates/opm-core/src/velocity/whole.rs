@@ -15,7 +15,7 @@ use super::{
 };
 use crate::chain::whole::MOST_FREEDOMS as MOST;
 use crate::group::screw::Screw;
-use crate::group::{LocalTwist, Subspace};
+use crate::group::{LocalTwist, Subspace, SubspaceKind};
 use crate::manipulator::{Manipulator, Solution, WholeJoint};
 use crate::task::Task;
 use nalgebra::{
@@ -368,8 +368,99 @@ impl Manipulator {
         out.singular.is_empty()
     }
 
-    /// Fills the closure with the actuated joints locked: a row for each of them, a column for each component of the section
-    /// twist, in units of one radian or the size.
+    /// The wrenches by which a stem holds the platform: unit rows that its joints do no work on, as many as there are dependent
+    /// coordinates, among the twists that all coordinates together describe. `point` is the platform's reference point.
+    fn stem_wrenches(
+        &self,
+        stem: &WholeDifferential,
+        point: &Vector3<f64>,
+    ) -> impl Iterator<Item = Vector6<f64>> + use<> {
+        let (task, size) = (self.task(), self.characteristic_length());
+        let (mut basis, mut known) = ([Row::zeros(); 2 * MOST], 0);
+        for column in &stem.columns[..stem.count] {
+            let rest = without(*column, &basis[..known]);
+            if rest.norm() > SINGULAR * column.norm() {
+                basis[known] = rest.normalize();
+                known += 1;
+            }
+        }
+        let about_centre = task.upper.kind == SubspaceKind::Identity;
+        let described: [Row; 6] = std::array::from_fn(|i| {
+            let mut twist = Row::zeros();
+            twist[i] = 1.0;
+            if about_centre {
+                let turn = Vector3::ith(i % 3, 1.0);
+                let linear = turn.cross(&(point - task.lower.origin.coords)) / size;
+                twist.fixed_rows_mut::<3>(3).copy_from(&linear);
+            }
+            twist
+        });
+        let described = if about_centre { &described[..3] } else { &described[..] };
+        let start = known;
+        for _ in 0..self.dependent_coordinates().len() {
+            let rests = described.iter().map(|twist| without(*twist, &basis[..known]));
+            let Some(longest) = rests.max_by(|a, b| a.norm().total_cmp(&b.norm())) else { break };
+            basis[known] = longest.normalize();
+            known += 1;
+        }
+        // Measures change their sign at singularities alone: joints and wrenches together have the same orientation everywhere.
+        let columns = stem.columns[..stem.count].iter().chain(&basis[start..known]);
+        let columns: Vec<&Row> = columns.collect();
+        if columns.len() == described.len() && known > start {
+            let mut together = Matrix6::identity();
+            for (i, twist) in described.iter().enumerate() {
+                for (j, column) in columns.iter().enumerate() {
+                    together[(i, j)] = twist.dot(column);
+                }
+            }
+            if together.determinant() < 0.0 {
+                basis[known - 1] = -basis[known - 1];
+            }
+        }
+        basis.into_iter().take(known).skip(start).map(|row| row.fixed_rows::<6>(0).into_owned())
+    }
+
+    /// The rates and accelerations of the platform along the wrenches of the stem, which are zero where it moves as the stem lets
+    /// it.
+    pub(super) fn stem_motion(
+        &self,
+        at: &Solution,
+        stem: usize,
+        twists: &SectionTwists,
+    ) -> [[f64; 6]; 2] {
+        let (point, size) = (self.reference(at), self.characteristic_length());
+        let leg = DisplacedLeg::new(self, at, stem, Rows::All);
+        let differential = self.whole_differential(&leg, &point);
+        let [twist, derivative] = twists.of_platform(self.task(), &at.solved.v);
+        let moved = about(&twist, &point, size);
+        let rates: [f64; MOST] = std::array::from_fn(|i| differential.rate(i, &moved));
+        let change = about(&plus(&derivative, -1.0, &leg.bias(&rates)), &point, size);
+        let mut found = [[0.0; 6]; 2];
+        for (row, wrench) in self.stem_wrenches(&differential, &point).enumerate().take(6) {
+            (found[0][row], found[1][row]) = (wrench.dot(&moved), wrench.dot(&change));
+        }
+        found
+    }
+
+    /// Computes the rates along the wrenches of the stem for each component of the section twist, whose columns are known.
+    pub(super) fn stem_rows(&self, at: &Solution, out: &mut Jacobians) {
+        let Some(stem) = self.dependent.as_ref().and_then(|dependent| dependent.stem()) else {
+            return;
+        };
+        let (point, size) = (self.reference(at), self.characteristic_length());
+        let lower = self.task().lower.isometry(&at.solved.v).rotation;
+        for (row, wrench) in self.stem_wrenches(&out.whole[stem], &point).enumerate() {
+            for (column, twist) in out.platform.column_iter().enumerate() {
+                let angular: Vector3<f64> = lower * twist.fixed_rows::<3>(0);
+                let linear: Vector3<f64> = lower * twist.fixed_rows::<3>(3);
+                out.locked[(row, column)] = wrench.fixed_rows::<3>(0).dot(&angular)
+                    + wrench.fixed_rows::<3>(3).dot(&linear) / size;
+            }
+        }
+    }
+
+    /// Fills the closure with the actuated joints locked: a row for each of them, and for each wrench of a stem, a column for each
+    /// component of the section twist, in units of one radian or the size.
     pub(super) fn fill_whole_closure(&self, jacobians: &Jacobians, closure: &mut DMatrix<f64>) {
         let size = self.characteristic_length();
         let lower = self.task().lower.isometry(&jacobians.v).rotation;
@@ -391,6 +482,13 @@ impl Manipulator {
                 }
                 row += 1;
             }
+        }
+        for held in jacobians.locked.row_iter() {
+            for (column, twist) in jacobians.platform.column_iter().enumerate() {
+                let turns = twist.fixed_rows::<3>(0).iter().any(|part| *part != 0.0);
+                closure[(row, column)] = held[column] * if turns { 1.0 } else { size };
+            }
+            row += 1;
         }
     }
 }

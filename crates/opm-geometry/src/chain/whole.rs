@@ -35,14 +35,20 @@ use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use nodes::Nodes;
 use objects::Leg;
 use order::Search;
-use program::{Program, Run};
+use program::{JOINTS, Program, Run, SIGNS};
 use roots::General;
 use samples::Sample;
-use solve::Solved;
+use solve::{MOST_GIVEN, Solved, VALUES};
 use step::Candidate;
 
 /// The most freedoms that a leg can have.
 pub const MOST_FREEDOMS: usize = 7;
+
+/// The most choices of a leg.
+const MOST_CHOICES: usize = 2;
+
+/// The most choices of a leg of which joints are given.
+pub const MOST_GIVEN_CHOICES: usize = 3;
 
 /// A loop that is open by no more than this is closed: radians, and lengths as a share of the size. A closed form leaves about
 /// 1e-14, and within 1e-7 of a pose at which two branches meet up to 1e-10. A mechanism's file gives directions to some ten
@@ -80,6 +86,22 @@ pub enum LegJoint {
     },
 }
 
+impl LegJoint {
+    /// The number of its freedoms.
+    pub fn freedoms(&self) -> usize {
+        match self {
+            Self::Screw { .. } | Self::Slide { .. } => 1,
+            Self::Ball { .. } => 3,
+        }
+    }
+
+    /// Its displacement by the values of its freedoms, radians and metres; a ball's are its rotation vector.
+    pub fn exp(&self, values: &[f64]) -> Isometry3<f64> {
+        let (elements, _) = Element::of(&[*self], &[]);
+        elements.iter().fold(Isometry3::identity(), |_, element| element.exp(values))
+    }
+}
+
 /// A step of an order: for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -106,10 +128,15 @@ pub enum NoOrder {
         /// The joints that are left.
         joints: Vec<usize>,
     },
-    /// Each order has more than two choices.
-    #[error("an order would have more than two choices with two solutions each, at joints {}", List(.joints))]
+    /// Each order has more choices than are named.
+    #[error(
+        "an order would have more than {most} choices with two solutions each, and joints {} would still be left",
+        List(.joints)
+    )]
     Choices {
-        /// The joints that are left after two choices.
+        /// The most choices.
+        most: usize,
+        /// The joints that are left after them.
         joints: Vec<usize>,
     },
     /// More freedoms than the leg can fix.
@@ -182,26 +209,67 @@ impl WholeLeg {
         motions: &[Isometry3<f64>],
         size: f64,
     ) -> Result<Self, NoOrder> {
-        let (elements, freedoms) = Element::of(joints);
+        let (elements, freedoms) = Element::of(joints, &[]);
+        let most = MOST_CHOICES;
+        Self::ordered(elements, freedoms, (actuated, most), size, |elements, centre| {
+            let reached =
+                motions.iter().filter_map(|motion| Sample::at(elements, motion, centre, size));
+            let reached: Vec<Sample> = reached.take(MOST_SAMPLES).collect();
+            match reached.is_empty() && freedoms > 0 {
+                true => Err(NoOrder::Unreached { given: motions.len() }),
+                false => Ok(reached),
+            }
+        })
+    }
+
+    /// The closed form of a leg of which some joints, three at most and no balls, are `given`: [`WholeLeg::solve_given`] takes
+    /// their displacements. It is valid for targets and displacements like those of `configurations`: for each of these, at
+    /// random, the values of all freedoms in the order of the joints, a ball's as a rotation vector.
+    ///
+    /// # Errors
+    /// Where there is no order.
+    pub fn with_given(
+        joints: &[LegJoint],
+        given: &[bool],
+        configurations: &[Vec<f64>],
+        size: f64,
+    ) -> Result<Self, NoOrder> {
+        let (elements, freedoms) = Element::of(joints, given);
+        Self::ordered(elements, freedoms, (&[], MOST_GIVEN_CHOICES), size, |elements, _| {
+            let of_values = |values: &Vec<f64>| {
+                let (mut all, mut next) = (vec![0.0; VALUES], values.iter());
+                for element in elements {
+                    let own = &mut all[element.slot..element.slot + element.freedoms()];
+                    own.iter_mut().zip(&mut next).for_each(|(to, value)| *to = *value);
+                }
+                Sample::with(elements, all)
+            };
+            Ok(configurations.iter().take(MOST_SAMPLES).map(of_values).collect())
+        })
+    }
+
+    fn ordered(
+        elements: Vec<Element>,
+        freedoms: usize,
+        (actuated, most): (&[bool], usize),
+        size: f64,
+        sampled: impl FnOnce(&[Element], &Vector3<f64>) -> Result<Vec<Sample>, NoOrder>,
+    ) -> Result<Self, NoOrder> {
         let balls = elements.iter().filter(|one| one.kind == Kind::Ball).count();
-        if freedoms > MOST_FREEDOMS || balls > 2 {
+        let given = elements.iter().filter(|one| one.is_given()).count();
+        let full = given > MOST_GIVEN || elements.len() > JOINTS;
+        if freedoms > MOST_FREEDOMS || balls > 2 || full {
             return Err(NoOrder::Freedoms { found: freedoms });
         }
         let placed: Vec<Vector3<f64>> =
             elements.iter().filter(|one| one.kind != Kind::Slide).map(|one| one.point).collect();
         let count = placed.len().max(1);
         let centre = placed.iter().sum::<Vector3<f64>>() * (1.0 / count as f64);
-        let reached = motions
-            .iter()
-            .filter_map(|motion| Sample::at(&elements, freedoms, motion, &centre, size));
-        let mut samples = vec![Sample::home(&elements, freedoms)];
-        samples.extend(reached.take(MOST_SAMPLES));
-        if samples.len() == 1 && freedoms > 0 {
-            return Err(NoOrder::Unreached { given: motions.len() });
-        }
+        let mut samples = vec![Sample::home(&elements)];
+        samples.extend(sampled(&elements, &centre)?);
         let leg = Leg { elements: &elements, samples: &samples, centre, size };
         let mut nodes = Nodes::new(&elements, &samples, size);
-        let mut search = Search::new(leg, &mut nodes, actuated);
+        let mut search = Search::new(leg, &mut nodes, actuated, most);
         let mut test = |nodes: &mut Nodes<'_>, steps: &[Candidate]| {
             let program = write::write(leg, nodes, steps)?;
             let whole = Self::of(&elements, freedoms, steps, program, centre, size);
@@ -214,9 +282,10 @@ impl WholeLeg {
             return Err(NoOrder::Untrue);
         }
         let stuck = search.stuck;
-        let left = (0..elements.len()).filter(|&joint| stuck & (1 << joint) != 0).collect();
+        let open = |&joint: &usize| stuck & (1 << joint) != 0 && !elements[joint].is_given();
+        let left = (0..elements.len()).filter(open).collect();
         Err(if search.full {
-            NoOrder::Choices { joints: left }
+            NoOrder::Choices { most, joints: left }
         } else {
             NoOrder::Coupled { joints: left }
         })
@@ -251,9 +320,11 @@ impl WholeLeg {
     fn finds(&self, samples: &[Sample]) -> bool {
         let found = |sample: &Sample| {
             let mut out = [JointDisplacement::Value(0.0); MOST_FREEDOMS];
+            let given = self.elements.iter().filter(|element| element.is_given());
+            let given: Vec<f64> = given.map(|element| sample.values[element.slot]).collect();
             self.branches().any(|branches| {
-                self.solve(&sample.target, branches, &mut out).is_ok()
-                    && self.elements.iter().all(|element| {
+                self.solve_given(&sample.target, &given, branches, &mut out).is_ok()
+                    && self.elements.iter().filter(|element| !element.is_given()).all(|element| {
                         let (value, found) = (sample.values[element.slot], out[element.slot]);
                         match element.kind {
                             Kind::Slide => (found.value() - value).abs() <= SAME * self.size,
@@ -269,16 +340,14 @@ impl WholeLeg {
         samples.first().is_some_and(found) && lost as f64 <= MOST_LOST * (samples.len() - 1) as f64
     }
 
-    /// All branches: one for each pair of signs of its choices.
-    fn branches(&self) -> impl Iterator<Item = [Branch; 2]> + use<> {
-        let choices = self.choices();
-        let each = move |choice: usize| {
-            if choice < choices { &Branch::BOTH[..] } else { &Branch::BOTH[..1] }
-        };
-        each(0).iter().flat_map(move |&one| each(1).iter().map(move |&two| [one, two]))
+    /// All branches: one for each combination of the signs of its choices.
+    fn branches(&self) -> impl Iterator<Item = [Branch; SIGNS]> + use<> {
+        (0..1_usize << self.choices()).map(|number| {
+            std::array::from_fn(|choice| Branch::BOTH[number >> choice & 1])
+        })
     }
 
-    /// The number of choices with two solutions, at most two.
+    /// The number of choices with two solutions: at most two, or [`MOST_GIVEN_CHOICES`] where joints are given.
     pub fn choices(&self) -> usize {
         self.choosing.len()
     }
@@ -295,7 +364,7 @@ impl WholeLeg {
 
     /// Whether this is the closed form of a leg with these joints.
     pub fn is_of(&self, joints: &[LegJoint]) -> bool {
-        Element::of(joints).0 == self.elements
+        Element::of(joints, &[]).0 == self.elements
     }
 
     /// Where a strut could spin between two spherical joints: the number of the first one's first freedom, and the direction of the
@@ -318,8 +387,9 @@ impl WholeLeg {
         &self,
         rotation: T::Rotation,
         translation: T::Space,
-        signs: [T::Sign; 2],
+        [first, second]: [T::Sign; 2],
     ) -> WholeAttempt<T> {
+        let signs = [first, second, first, second];
         let (elements, size) = (&self.elements, self.size);
         let mut roots = General { doubt: T::constant(0.0), size };
         let g = (rotation, translation);
@@ -340,11 +410,26 @@ impl WholeLeg {
     pub fn solve(
         &self,
         target: &Isometry3<f64>,
-        branches: [Branch; 2],
+        [first, second]: [Branch; 2],
+        out: &mut [JointDisplacement; MOST_FREEDOMS],
+    ) -> Result<(), ReachDeficit> {
+        self.solve_given(target, &[], [first, second, Branch::Plus, Branch::Plus], out)
+    }
+
+    /// The same for a leg of which joints are given, with their displacements in the order of the joints.
+    ///
+    /// # Errors
+    /// As [`WholeLeg::solve`].
+    #[inline(always)]
+    pub fn solve_given(
+        &self,
+        target: &Isometry3<f64>,
+        given: &[f64],
+        branches: [Branch; 4],
         out: &mut [JointDisplacement; MOST_FREEDOMS],
     ) -> Result<(), ReachDeficit> {
         let Self { elements, program, centre, size, .. } = self;
-        Solved { elements, program, centre, size: *size }.joints(target, branches, out)
+        Solved { elements, program, centre, size: *size, given }.joints(target, branches, out)
     }
 }
 

@@ -64,7 +64,7 @@ impl<'a> Levels<'a> {
         let limited = limited.collect();
         let mut constrains = vec![[false; 2]; manipulator.mechanism().legs.len()];
         for (leg, section) in manipulator.constraining_legs() {
-            constrains[leg][usize::from(section == Section::Upper)] = true;
+            constrains[leg][usize::from(section == Some(Section::Upper))] = true;
         }
         Self { manipulator, mode, solution, jacobians, measured, parallel, constrains, limited }
     }

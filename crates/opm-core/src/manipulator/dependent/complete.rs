@@ -42,6 +42,10 @@ impl Dependent {
         mode: Mode,
         pose: &mut [f64],
     ) -> Result<(), Unreachable> {
+        if let Some(stem) = &self.stem {
+            let missed = |deficit| Unreachable { leg: stem.leg, section: None, deficit };
+            return stem.complete(manipulator.task(), mode, pose).map_err(missed);
+        }
         for step in &self.steps {
             let sign = step.sign(mode);
             let (leg, section) = (step.solution.leg(), step.solution.section());

@@ -1,8 +1,9 @@
 //! The joints of a leg, as elements that move vectors over any numbers.
 
-use super::LegJoint;
+use super::{LegJoint, MOST_FREEDOMS};
 use crate::chain::kernel::Axis;
 use crate::numbers::{Plane, Real, Space};
+use crate::numeric::angle::unit;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// What a joint does.
@@ -26,7 +27,8 @@ pub(super) struct Element {
     pub point: Vector3<f64>,
     /// The unit direction; of no meaning for a ball.
     pub direction: Vector3<f64>,
-    /// The first of its freedoms among those of the leg.
+    /// The first of its freedoms among those of the leg; that of a joint whose displacement is given comes after all
+    /// freedoms.
     pub slot: usize,
 }
 
@@ -62,10 +64,11 @@ pub(super) fn constant<T: Real>(v: &Vector3<f64>) -> T::Space {
 }
 
 impl Element {
-    /// The elements of joints, and the number of their freedoms.
-    pub fn of(joints: &[LegJoint]) -> (Vec<Self>, usize) {
-        let mut slot = 0;
-        let elements = joints.iter().map(|joint| {
+    /// The elements of joints, and the number of their freedoms. The displacements of some, which are no balls, are given.
+    pub fn of(joints: &[LegJoint], given: &[bool]) -> (Vec<Self>, usize) {
+        let (mut freedom, mut known) = (0, MOST_FREEDOMS);
+        let elements = joints.iter().enumerate().map(|(number, joint)| {
+            let slot = if given.get(number) == Some(&true) { &mut known } else { &mut freedom };
             let zero = Vector3::zeros();
             let (kind, point, direction, freedoms) = match *joint {
                 LegJoint::Screw { axis, point, pitch } => {
@@ -75,12 +78,28 @@ impl Element {
                 LegJoint::Slide { axis } => (Kind::Slide, zero, axis.into_inner(), 1),
                 LegJoint::Ball { point } => (Kind::Ball, point.coords, zero, 3),
             };
-            let element = Self { kind, point, direction, slot };
-            slot += freedoms;
+            let element = Self { kind, point, direction, slot: *slot };
+            *slot += freedoms;
             element
         });
         let elements = elements.collect();
-        (elements, slot)
+        (elements, freedom)
+    }
+
+    /// Whether its displacement is given.
+    #[inline(always)]
+    pub fn is_given(&self) -> bool {
+        self.slot >= MOST_FREEDOMS
+    }
+
+    /// The displacement of a joint, which is no ball, by a value.
+    pub fn moved(&self, value: f64) -> Moved<f64> {
+        match self.kind {
+            Kind::Turn => Moved { unit: unit(value), shift: 0.0 },
+            Kind::Helix(pitch) => Moved { unit: unit(value), shift: pitch * value },
+            Kind::Slide => Moved { unit: unit(0.0), shift: value },
+            Kind::Ball => Moved::home(),
+        }
     }
 
     /// The axis.

@@ -8,9 +8,6 @@ use std::collections::{HashMap, HashSet};
 
 /// So many orders are tested, at most.
 const MOST_TESTED: usize = 40;
-/// So many choices has an order, at most.
-const MOST_CHOICES: usize = 2;
-
 /// The search.
 pub(super) struct Search<'l, 'n, 'a> {
     pub leg: Leg<'l>,
@@ -19,6 +16,8 @@ pub(super) struct Search<'l, 'n, 'a> {
     found: HashMap<u32, Vec<Candidate>>,
     dead: HashSet<(u32, usize)>,
     tested: usize,
+    /// So many choices has an order, at most.
+    most_choices: usize,
     /// The fewest joints that were left over, as bits.
     pub stuck: u32,
     /// Whether an order was cut off by the number of its choices.
@@ -26,7 +25,12 @@ pub(super) struct Search<'l, 'n, 'a> {
 }
 
 impl<'l, 'n, 'a> Search<'l, 'n, 'a> {
-    pub fn new(leg: Leg<'l>, nodes: &'n mut Nodes<'a>, actuated: &'l [bool]) -> Self {
+    pub fn new(
+        leg: Leg<'l>,
+        nodes: &'n mut Nodes<'a>,
+        actuated: &'l [bool],
+        most_choices: usize,
+    ) -> Self {
         Self {
             leg,
             nodes,
@@ -34,6 +38,7 @@ impl<'l, 'n, 'a> Search<'l, 'n, 'a> {
             found: HashMap::new(),
             dead: HashSet::new(),
             tested: 0,
+            most_choices,
             stuck: u32::MAX,
             full: false,
         }
@@ -44,7 +49,9 @@ impl<'l, 'n, 'a> Search<'l, 'n, 'a> {
         &mut self,
         test: &mut impl FnMut(&mut Nodes<'a>, &[Candidate]) -> Option<P>,
     ) -> Option<P> {
-        let all = (1 << self.leg.elements.len()) - 1;
+        let elements = self.leg.elements.iter().enumerate();
+        let all = (elements.filter(|(_, element)| !element.is_given()))
+            .fold(0, |all, (joint, _)| all | 1 << joint);
         self.deeper(all, &mut Vec::new(), test)
     }
 
@@ -109,7 +116,7 @@ impl<'l, 'n, 'a> Search<'l, 'n, 'a> {
         }
         ranked.sort_by_key(|(rank, _)| *rank);
         for (_, one) in ranked {
-            if one.kernel.chooses() && choices == MOST_CHOICES {
+            if one.kernel.chooses() && choices == self.most_choices {
                 self.full = true;
                 continue;
             }

@@ -61,8 +61,10 @@ pub(super) struct Program {
     pub balls: Balls,
 }
 
+/// Room for the signs of choices. It is a power of two, too.
+pub(super) const SIGNS: usize = 4;
 /// Room for the joints. It is a power of two: to stay within costs nothing.
-const JOINTS: usize = 8;
+pub(super) const JOINTS: usize = 8;
 
 /// What the operations give.
 pub(super) struct Run<T: Real> {
@@ -83,6 +85,11 @@ impl<T: Real> Run<T> {
             joints: [T::Joint::value(zero); MOST_FREEDOMS],
             registers: [T::Space::new(zero, zero, zero); REGISTERS],
         }
+    }
+
+    /// Takes the displacement of a joint that is given.
+    pub fn give(&mut self, joint: usize, by: Moved<T>) {
+        self.moved[joint % JOINTS] = by;
     }
 
     /// The displacement of a joint that is no ball.
@@ -113,7 +120,7 @@ impl Program {
         &self,
         leg: (&[Element], f64),
         (rotation, translation): (T::Rotation, T::Space),
-        signs: [T::Sign; 2],
+        signs: [T::Sign; SIGNS],
         roots: &mut impl Roots<T>,
         run: &mut Run<T>,
     ) {
@@ -151,7 +158,7 @@ impl Program {
                 &Operation::Cross { two: [a, b], to } => (at(a).crossed(at(b)), to),
                 Operation::Solve { joint, kernel, choice } => {
                     let joint = usize::from(*joint);
-                    let (element, sign) = (&elements[joint], signs[usize::from(*choice) % 2]);
+                    let (element, sign) = (&elements[joint], signs[usize::from(*choice) % SIGNS]);
                     let (by, displacement) = kernel.solve(element, size, sign, at, roots);
                     moved[joint % JOINTS] = by;
                     joints[element.slot] = displacement;

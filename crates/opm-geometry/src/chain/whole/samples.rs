@@ -1,6 +1,7 @@
 //! Assembled configurations of a leg, by which its structure is recognised and an order is tested.
 
-use super::CLOSURE;
+use super::solve::VALUES;
+use super::{CLOSURE, MOST_FREEDOMS};
 use super::element::{Element, Kind};
 use nalgebra::{Isometry3, SMatrix, SVector, UnitQuaternion, Vector3};
 
@@ -11,7 +12,7 @@ pub(super) struct Sample {
     pub target: Isometry3<f64>,
     /// That of each joint.
     pub joints: Vec<Isometry3<f64>>,
-    /// The freedoms' values; those of a ball are not kept.
+    /// The freedoms' values, and those of joints that are given; those of a ball are not kept.
     pub values: Vec<f64>,
     /// The axis of each joint where it is: its point and direction.
     pub axes: Vec<(Vector3<f64>, Vector3<f64>)>,
@@ -55,14 +56,14 @@ pub(super) fn step(
     let rest = misfit(joints, target, centre, size);
     let end = joints.iter().fold(Isometry3::identity(), |all, one| all * one);
     let at = (end * nalgebra::Point3::from(*centre)).coords;
-    let mut columns = SMatrix::<f64, 6, 7>::zeros();
+    let mut columns = SMatrix::<f64, 6, MOST_FREEDOMS>::zeros();
     let mut inner = Isometry3::identity();
     for (element, joint) in elements.iter().zip(joints.iter()) {
         let point = (inner * nalgebra::Point3::from(element.point)).coords;
         let direction = inner.rotation * element.direction;
         let mut write = |slot: usize, angular: Vector3<f64>, linear: Vector3<f64>| {
             let linear = (linear + angular.cross(&(at - point))) / size;
-            if slot < 7 {
+            if slot < MOST_FREEDOMS {
                 columns.fixed_view_mut::<3, 1>(0, slot).copy_from(&angular);
                 columns.fixed_view_mut::<3, 1>(3, slot).copy_from(&linear);
             }
@@ -80,7 +81,7 @@ pub(super) fn step(
         }
         inner *= joint;
     }
-    let square = columns.transpose() * columns + SMatrix::<f64, 7, 7>::identity() * damping;
+    let square = columns.transpose() * columns + SMatrix::<f64, MOST_FREEDOMS, MOST_FREEDOMS>::identity() * damping;
     let Some(cholesky) = square.cholesky() else { return rest.norm() };
     let mut by = cholesky.solve(&(columns.transpose() * rest));
     let longest = by.amax();
@@ -90,6 +91,7 @@ pub(super) fn step(
     for (element, joint) in elements.iter().zip(joints.iter_mut()) {
         let slot = element.slot;
         match element.kind {
+            _ if element.is_given() => {}
             Kind::Turn | Kind::Helix(_) => {
                 values[slot] += by[slot];
                 *joint = element.exp(&values[slot..]);
@@ -111,9 +113,16 @@ pub(super) fn step(
 
 impl Sample {
     /// The leg at home.
-    pub fn home(elements: &[Element], freedoms: usize) -> Self {
-        let joints = vec![Isometry3::identity(); elements.len()];
-        Self::new(elements, Isometry3::identity(), joints, vec![0.0; freedoms])
+    pub fn home(elements: &[Element]) -> Self {
+        Self::with(elements, vec![0.0; VALUES])
+    }
+
+    /// The leg with its freedoms at these values, those of joints that are given last.
+    pub fn with(elements: &[Element], values: Vec<f64>) -> Self {
+        let joints: Vec<Isometry3<f64>> =
+            elements.iter().map(|element| element.exp(&values[element.slot..])).collect();
+        let target = joints.iter().fold(Isometry3::identity(), |all, joint| all * joint);
+        Self::new(elements, target, joints, values)
     }
 
     fn new(
@@ -135,7 +144,6 @@ impl Sample {
     /// A configuration with the platform at the target; `None` where none is found.
     pub fn at(
         elements: &[Element],
-        freedoms: usize,
         target: &Isometry3<f64>,
         centre: &Vector3<f64>,
         size: f64,
@@ -147,7 +155,7 @@ impl Sample {
             f64::from(state >> 8) / f64::from(1_u32 << 23) - 1.0
         };
         for start in 0..STARTS {
-            let mut values = vec![0.0; freedoms];
+            let mut values = vec![0.0; VALUES];
             let mut joints = vec![Isometry3::identity(); elements.len()];
             for (element, joint) in elements.iter().zip(&mut joints) {
                 for value in &mut values[element.slot..element.slot + element.freedoms()] {

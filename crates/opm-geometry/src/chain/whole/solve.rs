@@ -1,13 +1,18 @@
 //! The joints at one pose: the general case, and what is rare.
 
 use super::element::{Element, Kind};
-use super::program::{Balls, Program, Run};
+use super::program::{Balls, Program, Run, SIGNS};
 use super::roots::{Careful, General};
 use super::{CLOSURE, MOST_FREEDOMS, samples};
 use crate::chain::{Branch, ReachDeficit};
 use crate::numbers::{JointDisplacement, Space};
 use crate::numeric::angle;
 use nalgebra::{Isometry3, Matrix3, Vector3};
+
+/// So many joints can be given.
+pub(super) const MOST_GIVEN: usize = 3;
+/// Room for the values of all freedoms, and of joints that are given.
+pub(super) const VALUES: usize = MOST_FREEDOMS + MOST_GIVEN;
 
 /// A leg as it is solved.
 #[derive(Clone, Copy)]
@@ -16,6 +21,8 @@ pub(super) struct Solved<'a> {
     pub program: &'a Program,
     pub centre: &'a Vector3<f64>,
     pub size: f64,
+    /// The displacements of the joints that are given, in their order.
+    pub given: &'a [f64],
 }
 
 /// The target as numbers.
@@ -30,18 +37,35 @@ const MENDED: f64 = 1e-4;
 const MOST_MENDS: usize = 4;
 
 impl Solved<'_> {
+    /// What is given.
+    #[inline(always)]
+    fn begin(&self) -> Run<f64> {
+        let mut run = Run::new();
+        if !self.given.is_empty() {
+            self.give(&mut run);
+        }
+        run
+    }
+
+    fn give(&self, run: &mut Run<f64>) {
+        let given = self.elements.iter().enumerate().filter(|(_, element)| element.is_given());
+        for ((joint, element), value) in given.zip(self.given) {
+            run.give(joint, element.moved(*value));
+        }
+    }
+
     /// The joints, as [`super::WholeLeg::solve`] gives them.
     #[inline(always)]
     pub fn joints(
         &self,
         target: &Isometry3<f64>,
-        branches: [Branch; 2],
+        branches: [Branch; SIGNS],
         out: &mut [JointDisplacement; MOST_FREEDOMS],
     ) -> Result<(), ReachDeficit> {
         let (Self { elements, program, size, .. }, g) = (*self, numbers(target));
         let signs = branches.map(Branch::sign);
         let mut roots = General { doubt: 0.0, size };
-        let mut run = Run::new();
+        let mut run = self.begin();
         program.run::<f64>((elements, size), g, signs, &mut roots, &mut run);
         let open = program.open::<f64>(&run, size);
         let closed = roots.doubt + open <= CLOSURE * CLOSURE;
@@ -111,6 +135,7 @@ impl Solved<'_> {
         target: &Isometry3<f64>,
     ) -> (Vec<Isometry3<f64>>, Vec<f64>) {
         let mut values: Vec<f64> = run.joints.iter().map(|joint| joint.value()).collect();
+        values.extend(self.given);
         self.balls(run, target, |slot, vector| {
             values[slot..slot + 3].copy_from_slice(vector.as_slice());
         });
@@ -124,15 +149,15 @@ impl Solved<'_> {
     fn special(
         &self,
         target: &Isometry3<f64>,
-        signs: [f64; 2],
+        signs: [f64; SIGNS],
         out: &mut [JointDisplacement; MOST_FREEDOMS],
     ) -> Result<(), ReachDeficit> {
-        let Self { elements, program, centre, size } = *self;
+        let Self { elements, program, centre, size, .. } = *self;
         let mut least = ReachDeficit::length(f64::INFINITY);
         let mut picks = 0;
         loop {
             let mut roots = Careful { size, picks, picked: 0, deficit: None };
-            let mut run = Run::new();
+            let mut run = self.begin();
             let g = numbers(target);
             program.run::<f64>((elements, size), g, signs, &mut roots, &mut run);
             if let Some(deficit) = roots.deficit
@@ -155,7 +180,8 @@ impl Solved<'_> {
                 }
                 rest = samples::misfit(&joints, target, centre, size);
                 if rest.norm() <= CLOSURE {
-                    for (element, joint) in elements.iter().zip(&joints) {
+                    let all = elements.iter().zip(&joints);
+                    for (element, joint) in all.filter(|(element, _)| !element.is_given()) {
                         let value = values[element.slot];
                         out[element.slot] = match element.kind {
                             Kind::Turn => JointDisplacement::Direction(angle::unit(value)),

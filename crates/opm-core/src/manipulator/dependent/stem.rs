@@ -1,0 +1,399 @@
+//! Dependent coordinates of a platform that moves as one leg, the stem, lets it.
+//!
+//! The stem and the coordinates make a loop: `E(q) = T(x y z) · R(angles)` about the platform's reference point, or
+//! `E(q) = R(angles)` where the stem only rotates about a centre. The independent coordinates are known joints of that loop, the dependent
+//! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
+
+use crate::chain::ReachDeficit;
+use crate::chain::whole::{LegJoint, MOST_FREEDOMS, NoOrder, WholeLeg};
+use crate::chain::Branch;
+use crate::decomposition::whole::{configurations, joints};
+use crate::group::{JointDisplacement, SubspaceKind};
+use crate::manipulator::Mode;
+use crate::mechanism::Mechanism;
+use crate::mechanism::leg::Section;
+use crate::numeric::Quantity;
+use crate::numeric::angle::near;
+use crate::numeric::svd::singular_values;
+use crate::task::Task;
+use nalgebra::{
+    DMatrix, Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3,
+};
+
+/// Coordinates are independent, in the order of preference, if with them the stem's motion at home is determined at
+/// least this well, compared to the best ones.
+const DETERMINED: f64 = 0.3;
+/// Below this they do not determine it.
+const LEVEL: f64 = 1e-6;
+
+/// How coordinates follow from the others.
+#[derive(Clone, Debug)]
+pub(crate) struct Stem {
+    /// The number of the leg.
+    pub leg: usize,
+    closure: WholeLeg,
+    /// The bits of its choices in a [`Mode`].
+    pub bits: [Option<u32>; 4],
+    /// Whether all angles are known: then they are part of the target.
+    turned: bool,
+    /// The rotations that are known, by their numbers among the three factors of the orientation, in the order of the loop.
+    given: Vec<usize>,
+    /// What is found: dependent lengths and factors of the orientation, with their places among what the closure gives.
+    found: Vec<(Part, usize)>,
+    /// The dependent coordinates.
+    coordinates: Vec<usize>,
+    /// The number of the first angle.
+    first_angle: usize,
+    /// What rotations are about.
+    centre: Point3<f64>,
+}
+
+/// A part of the displacement that follows.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    /// The length with this number among the coordinates.
+    Length(usize),
+    /// The factor of the orientation.
+    Factor(usize),
+    /// The whole orientation, as a rotation vector back to home.
+    Orientation,
+}
+
+/// The rotations of a task at home: their axes in base directions, and the point that they are about.
+struct Rotations {
+    axes: [Vector3<f64>; 3],
+    centre: Point3<f64>,
+    /// The number of the first angle.
+    first: usize,
+}
+
+impl Rotations {
+    fn new(task: &Task, reference: Point3<f64>) -> Self {
+        let home = task.home();
+        // At a reference point that is the centre of a sphere above translations.
+        let (subspace, screws, first, centre) = match task.oriented_section() {
+            Some(Section::Lower) => {
+                (&task.lower, task.lower_screws(&home), 0, task.lower.origin)
+            }
+            Some(Section::Upper) | None => {
+                (&task.upper, task.upper_screws(&home), task.lower_count, reference)
+            }
+        };
+        Self { axes: screws.moved.map(|axis| subspace.axes * axis), centre, first }
+    }
+}
+
+impl Stem {
+    /// The independent coordinates, and how the others follow from them: for the leg with this number.
+    ///
+    /// # Errors
+    /// Where no choice of coordinates has a closed form: why the last one has none, or `None` where no coordinates
+    /// determine the motion.
+    pub fn new(
+        task: &Task,
+        mechanism: &Mechanism,
+        leg: usize,
+        size: f64,
+    ) -> Result<(Vec<usize>, Self), Option<NoOrder>> {
+        let rotations = Rotations::new(task, mechanism.platform);
+        let rates = rates(task, mechanism, leg, &rotations, size);
+        let (count, freedoms) = (task.coordinates.len(), rates.ncols());
+        let mut choices: Vec<(f64, Vec<usize>)> = subsets(count, freedoms)
+            .filter(|independent| separable(task, &rotations, independent))
+            .map(|independent| {
+                let rows = DMatrix::from_fn(freedoms, freedoms, |i, j| rates[(independent[i], j)]);
+                (singular_values(rows).into_iter().fold(f64::INFINITY, f64::min), independent)
+            })
+            .filter(|(determined, _)| *determined > LEVEL)
+            .collect();
+        let best = choices.iter().map(|(determined, _)| *determined).fold(0.0, f64::max);
+        // Sorting is stable: among those that are well determined, positions come first.
+        choices.sort_by_key(|(determined, _)| *determined < DETERMINED * best);
+        let mut reason = None;
+        for (_, independent) in choices {
+            match Self::of(task, mechanism, leg, &independent, &rotations, size) {
+                Ok(stem) => return Ok((independent, stem)),
+                Err(error) => reason = Some(error),
+            }
+        }
+        Err(reason)
+    }
+
+    fn of(
+        task: &Task,
+        mechanism: &Mechanism,
+        leg: usize,
+        independent: &[usize],
+        rotations: &Rotations,
+        size: f64,
+    ) -> Result<Self, NoOrder> {
+        let all = 0..task.coordinates.len();
+        let coordinates: Vec<usize> = all.filter(|i| !independent.contains(i)).collect();
+        let dependent_factors = factors(task, rotations, &coordinates);
+        let lengths: Vec<usize> = (coordinates.iter().copied())
+            .filter(|&i| task.coordinates[i].quantity == Quantity::Length)
+            .collect();
+        let own: Vec<LegJoint> = joints(&mechanism.legs[leg]).map(|(joint, _)| joint).collect();
+        let turned = dependent_factors == [false; 3];
+        // Axes point back: the values of the joints are those of the coordinates.
+        let back = |axis: Vector3<f64>| Unit::new_normalize(-axis);
+        let slides = lengths.iter().map(|&i| {
+            (Part::Length(i), LegJoint::Slide { axis: back(task.lower.axes.column(i).into()) })
+        });
+        let ball = (Part::Orientation, LegJoint::Ball { point: rotations.centre });
+        let turns: Vec<(Part, LegJoint)> = match dependent_factors {
+            [false, false, false] => vec![],
+            [true, true, true] => vec![ball],
+            _ => [2, 1, 0]
+                .map(|factor| {
+                    let axis = back(rotations.axes[factor]);
+                    let point = rotations.centre;
+                    (Part::Factor(factor), LegJoint::Screw { axis, point, pitch: 0.0 })
+                })
+                .to_vec(),
+        };
+        let [before, after]: [Vec<(Part, LegJoint)>; 2] = match turned {
+            true => [slides.collect(), vec![]],
+            false => [vec![], turns.into_iter().chain(slides).collect()],
+        };
+        let is_given = |part: &Part| match part {
+            Part::Factor(factor) => !dependent_factors[*factor],
+            Part::Length(_) | Part::Orientation => false,
+        };
+        let joints: Vec<LegJoint> = (before.iter().map(|(_, joint)| *joint))
+            .chain(own.iter().copied())
+            .chain(after.iter().map(|(_, joint)| *joint))
+            .collect();
+        let given: Vec<bool> = (before.iter().map(|(part, _)| is_given(part)))
+            .chain(own.iter().map(|_| false))
+            .chain(after.iter().map(|(part, _)| is_given(part)))
+            .collect();
+        let configurations: Vec<Vec<f64>> = configurations(&mechanism.legs[leg], size)
+            .map(|values| {
+                let (mut g, mut rest) = (Isometry3::identity(), &values[..]);
+                for joint in &own {
+                    let (these, others) = rest.split_at(joint.freedoms());
+                    g *= joint.exp(these);
+                    rest = others;
+                }
+                let parts = |parts: &[(Part, LegJoint)]| -> Vec<f64> {
+                    parts.iter().flat_map(|(part, _)| part.value(task, &g, rotations)).collect()
+                };
+                [parts(&before), values, parts(&after)].concat()
+            })
+            .collect();
+        let closure = WholeLeg::with_given(&joints, &given, &configurations, size)?;
+        // What the closure gives is in the order of the joints that are not given.
+        let (mut place, mut found) = (0, Vec::new());
+        let stem_freedoms: usize = own.iter().map(LegJoint::freedoms).sum();
+        for (part, joint) in &before {
+            found.push((*part, place));
+            place += joint.freedoms();
+        }
+        place += stem_freedoms;
+        for (part, joint) in after.iter().filter(|(part, _)| !is_given(part)) {
+            found.push((*part, place));
+            place += joint.freedoms();
+        }
+        let given = after.iter().filter_map(|(part, _)| match part {
+            Part::Factor(factor) if is_given(part) => Some(*factor),
+            Part::Factor(_) | Part::Length(_) | Part::Orientation => None,
+        });
+        Ok(Self {
+            leg,
+            closure,
+            bits: [None; 4],
+            turned,
+            given: given.collect(),
+            found,
+            coordinates,
+            first_angle: rotations.first,
+            centre: rotations.centre,
+        })
+    }
+
+    /// The number of its two-valued choices.
+    pub fn choices(&self) -> usize {
+        self.closure.choices()
+    }
+
+    /// Writes the dependent coordinates of a pose in a mode. Angles are those nearest to what `pose` holds.
+    ///
+    /// # Errors
+    /// By how much the stem misses the pose.
+    pub fn complete(&self, task: &Task, mode: Mode, pose: &mut [f64]) -> Result<(), ReachDeficit> {
+        let held: Vec<f64> = self.coordinates.iter().map(|&i| pose[i]).collect();
+        for &i in &self.coordinates {
+            pose[i] = task.coordinates[i].home;
+        }
+        let target = match self.turned {
+            true => task.displacement(pose),
+            false => task.lower_translation(pose),
+        };
+        let home = |i: usize| task.coordinates[i].home;
+        let angles = [0, 1, 2].map(|i| self.first_angle + i);
+        let mut factors = task.angles.to_factors(angles.map(|i| pose[i]));
+        let factors_home = task.angles.to_factors(angles.map(home));
+        let mut given = [0.0; 3];
+        for (value, &factor) in given.iter_mut().zip(&self.given) {
+            *value = factors[factor] - factors_home[factor];
+        }
+        let branch = |bit: Option<u32>| match bit {
+            Some(bit) if mode.0 >> bit & 1 == 1 => Branch::Minus,
+            Some(_) | None => Branch::Plus,
+        };
+        let mut out = [JointDisplacement::Value(0.0); MOST_FREEDOMS];
+        let given = &given[..self.given.len()];
+        self.closure.solve_given(&target, given, self.bits.map(branch), &mut out)?;
+        let mut turned = None;
+        for &(part, place) in &self.found {
+            match part {
+                Part::Length(i) => pose[i] = home(i) + out[place].value(),
+                Part::Factor(factor) => {
+                    factors[factor] = factors_home[factor] + out[place].value();
+                }
+                Part::Orientation => {
+                    let vector = Vector3::from_fn(|i, _| -out[place + i].value());
+                    turned = Some(UnitQuaternion::from_scaled_axis(vector));
+                }
+            }
+        }
+        let found = match turned {
+            None => task.angles.of_factors(factors),
+            Some(rotation) => {
+                let at = self.centre.coords;
+                let g = Isometry3::from_parts(Translation3::from(at - rotation * at), rotation);
+                let ([v, b], rise) = task.factors(&g);
+                let all = task.pose(&v, &b, rise);
+                angles.map(|i| all[i])
+            }
+        };
+        for (i, value) in angles.into_iter().zip(found) {
+            if self.coordinates.contains(&i) {
+                pose[i] = value;
+            }
+        }
+        for (&i, held) in self.coordinates.iter().zip(held) {
+            if task.coordinates[i].quantity == Quantity::Angle {
+                pose[i] = near(pose[i], held);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Part {
+    /// The value of its joint where the platform is displaced by `g`.
+    fn value(self, task: &Task, g: &Isometry3<f64>, rotations: &Rotations) -> Vec<f64> {
+        let ([v, b], rise) = task.factors(g);
+        let all = task.pose(&v, &b, rise);
+        let home = |i: usize| task.coordinates[i].home;
+        match self {
+            Self::Length(i) => vec![all[i] - home(i)],
+            Self::Factor(factor) => {
+                let angles = [0, 1, 2].map(|i| rotations.first + i);
+                let at = task.angles.to_factors(angles.map(|i| all[i]));
+                let at_home = task.angles.to_factors(angles.map(home));
+                vec![at[factor] - at_home[factor]]
+            }
+            Self::Orientation => {
+                let vector = g.rotation.inverse().scaled_axis();
+                vec![vector.x, vector.y, vector.z]
+            }
+        }
+    }
+}
+
+/// Which factors of the orientation are not known where these coordinates are not.
+fn factors(task: &Task, rotations: &Rotations, coordinates: &[usize]) -> [bool; 3] {
+    let depends = |i: usize| coordinates.contains(&(rotations.first + i));
+    task.angles.to_factors([0, 1, 2].map(|i| Known(!depends(i)))).map(|known| !known.0)
+}
+
+/// Whether a number is known; the difference of two is if both are.
+#[derive(Clone, Copy)]
+struct Known(bool);
+
+impl std::ops::Sub for Known {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 && other.0)
+    }
+}
+
+/// Whether the known coordinates are as many as what is known of the displacement: of tilt and torsion, a known torsion says
+/// nothing of the factors while the azimuth is not known.
+fn separable(task: &Task, rotations: &Rotations, independent: &[usize]) -> bool {
+    let all = 0..task.coordinates.len();
+    let coordinates: Vec<usize> = all.filter(|i| !independent.contains(i)).collect();
+    let unknown = factors(task, rotations, &coordinates).into_iter().filter(|unknown| *unknown);
+    let angles = coordinates.iter().filter(|&&i| task.coordinates[i].quantity == Quantity::Angle);
+    unknown.count() == angles.count()
+}
+
+/// The subsets of the first `count` numbers with so many of them, in alphabetical order.
+fn subsets(count: usize, of: usize) -> impl Iterator<Item = Vec<usize>> {
+    let mut next = (of <= count).then(|| (0..of).collect::<Vec<usize>>());
+    std::iter::from_fn(move || {
+        let now = next.take()?;
+        let mut following = now.clone();
+        if let Some(place) = (0..of).rev().find(|&i| now[i] < count - of + i) {
+            following[place] += 1;
+            for i in place + 1..of {
+                following[i] = following[i - 1] + 1;
+            }
+            next = Some(following);
+        }
+        Some(now)
+    })
+}
+
+/// The rates of all coordinates at home, lengths over the size, for orthonormal twists of the stem. Those of angles are zeros
+/// where home is a pole of the angles.
+fn rates(
+    task: &Task,
+    mechanism: &Mechanism,
+    leg: usize,
+    rotations: &Rotations,
+    size: f64,
+) -> DMatrix<f64> {
+    let at = rotations.centre.coords;
+    let screws = mechanism.legs[leg].screws();
+    let mut twists = DMatrix::zeros(6, screws.len());
+    for (mut column, screw) in twists.column_iter_mut().zip(&screws) {
+        let linear = (screw.linear + screw.angular.cross(&at)) / size;
+        column.fixed_rows_mut::<3>(0).copy_from(&screw.angular);
+        column.fixed_rows_mut::<3>(3).copy_from(&linear);
+        // A slider counts as much as a rotation.
+        let length = column.norm();
+        column /= length;
+    }
+    let twists = twists.qr().q();
+    let axes = Matrix3::from_columns(&rotations.axes);
+    let by_axes = axes.try_inverse().filter(|_| axes.determinant().abs() > DETERMINED * LEVEL);
+    DMatrix::from_fn(task.coordinates.len(), twists.ncols(), |i, j| {
+        let twist = twists.column(j);
+        if task.coordinates[i].quantity == Quantity::Length {
+            let linear: Vector3<f64> = twist.fixed_rows::<3>(3).into();
+            return task.lower.axes.column(i).dot(&linear);
+        }
+        let angular: Vector3<f64> = twist.fixed_rows::<3>(0).into();
+        let by_factors = by_axes.map_or_else(Vector3::zeros, |by_axes| by_axes * angular);
+        task.angles.of_factors(by_factors.into())[i - rotations.first]
+    })
+}
+
+impl Task {
+    /// The translation of the lower section where all is translated; the identity for a sphere.
+    fn lower_translation(&self, pose: &[f64]) -> Isometry3<f64> {
+        match self.lower.kind {
+            SubspaceKind::TranslationalSpace => self.lower.isometry(&self.lower(pose)),
+            SubspaceKind::Identity
+            | SubspaceKind::Planar
+            | SubspaceKind::Spherical
+            | SubspaceKind::Cylindrical
+            | SubspaceKind::TranslationalPlane => Isometry3::identity(),
+        }
+    }
+}
