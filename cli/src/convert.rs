@@ -9,7 +9,7 @@ use opm_core::mechanism::file::{self, Digits};
 use std::io::Write;
 
 pub fn run(args: &ConvertArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.mechanism, output)?;
+    let loaded = load::open_as_it_is(&args.mechanism, output)?;
     let text = match args.joints {
         true => file::write(&loaded.file.mechanism, loaded.file.units, Digits::All),
         false => loaded.text.clone(),

@@ -36,7 +36,7 @@ const ROUNDING: f64 = 1e-7;
 const LISTED: usize = 6;
 
 pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::read(&args.mechanism, output)?;
+    let loaded = load::read(&args.mechanism, output)?.rerooted(output);
     if let Some(vary) = &args.vary {
         return table(&loaded, vary, output);
     }

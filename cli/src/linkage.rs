@@ -14,7 +14,7 @@ use opm_core::linkage::{Input, Linkage};
 use report::Run;
 
 pub fn run(args: &LinkageArgs, output: &Output) -> Result<(), Failure> {
-    let loaded = load::open(&args.mechanism, output)?;
+    let loaded = load::open_as_it_is(&args.mechanism, output)?;
     if let Some(vary) = &args.vary {
         return table(args, &loaded, vary, output);
     }

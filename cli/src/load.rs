@@ -16,6 +16,7 @@ use opm_core::decomposition::{
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::linkage::Linkage;
 use opm_core::manipulator::{CompileError, Manipulator, Mode};
+use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::mechanism::file::{self, Digits, MechanismFile};
@@ -44,8 +45,13 @@ pub struct Loaded {
     pub snapped: Option<Vec<JointMiss>>,
 }
 
-/// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped or is off.
+/// Reads a mechanism, snaps it if it has a tolerance, and notes what was snapped or is off, and which link is the platform.
 pub fn open(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
+    Ok(open_as_it_is(given, output)?.rerooted(output))
+}
+
+/// The same with the platform that the file has.
+pub fn open_as_it_is(given: &MechanismArgs, output: &Output) -> Result<Loaded, Failure> {
     let loaded = read(given, output)?;
     loaded.note_snapped(output);
     loaded.warn_of_home(output);
@@ -185,6 +191,16 @@ impl Loaded {
         }
     }
 
+    /// The mechanism with the platform that it is solved with: another link of the loop where that of the file has no closed
+    /// form. A note says which.
+    pub fn rerooted(mut self, output: &Output) -> Self {
+        if let Some(mechanism) = rerooted(&self.file.mechanism) {
+            output.note(format_args!("{}: {}", self.label, moved_platform(&mechanism)));
+            self.file.mechanism = mechanism;
+        }
+        self
+    }
+
     /// Warns where the home pose is a parallel singularity.
     pub fn warn_of_home(&self, output: &Output) {
         if let Some(text) = mobility(&self.file.mechanism).ok().and_then(|m| m.parallel_home()) {
@@ -285,6 +301,25 @@ impl Loaded {
         let inputs = self.path.as_deref().into_iter().chain(others.iter().copied());
         refuse_inputs("--output", output, inputs)
     }
+}
+
+/// A loop with another link as the platform, if only so it has a closed form.
+fn rerooted(mechanism: &Mechanism) -> Option<Mechanism> {
+    if mechanism.legs.len() != 2 || Manipulator::as_it_is(mechanism).is_ok() {
+        return None;
+    }
+    let manipulator = Manipulator::new(mechanism.clone()).ok()?;
+    Some(manipulator.mechanism().clone())
+}
+
+/// Which link of a loop is the platform now.
+fn moved_platform(mechanism: &Mechanism) -> String {
+    let stem = mechanism.legs.iter().min_by_key(|leg| leg.joints.len());
+    let joint = stem.and_then(|leg| leg.joints.last()).map_or("", |joint| &*joint.name);
+    format!(
+        "the platform has no closed form as a link between both legs of the loop: the link behind {joint} is taken as the \
+         platform"
+    )
 }
 
 /// A positive number, rounded up to two significant digits, for a flag.

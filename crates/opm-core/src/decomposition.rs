@@ -26,6 +26,7 @@ mod order;
 mod reorder;
 mod search;
 mod survey;
+mod reroot;
 pub(crate) mod whole;
 
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub(crate) mod samples;
 pub use height::{HeightMiss, HeightReason};
 pub use near::{JointMiss, NearMiss, Snapped, nearly, slightly_off, snap};
 pub use reorder::{OrderChange, Reordered};
+pub use reroot::rerooted;
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
 pub use whole::{PlatformSet, WholeMiss};
 

@@ -54,7 +54,7 @@ pub use solution::{ActuatedJoints, Solution, Unreachable, part_of};
 
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
-use crate::decomposition::{DecomposeError, Decomposition, decompose};
+use crate::decomposition::{DecomposeError, Decomposition, decompose, rerooted};
 use crate::group::{JointDisplacement, MotionType, SubspaceKind};
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
@@ -168,16 +168,28 @@ pub struct Manipulator {
 }
 
 impl Manipulator {
-    /// Decomposes a mechanism and compiles the first of its decompositions that closed forms cover.
+    /// Decomposes a mechanism and compiles the first of its decompositions that closed forms cover. Where there is none and
+    /// the mechanism is a loop of two legs, another link of it is taken as the platform: see [`rerooted`].
     ///
     /// # Errors
     /// The mechanism does not decompose, or none of its decompositions has closed forms; then the error is
     /// that of the first one.
     pub fn new(mechanism: Mechanism) -> Result<Self, CompileError> {
+        Self::as_it_is(&mechanism).or_else(|error| {
+            let mut others = rerooted(&mechanism).into_iter();
+            others.find_map(|other| Self::as_it_is(&other).ok()).ok_or(error)
+        })
+    }
+
+    /// The same with the platform that the mechanism has.
+    ///
+    /// # Errors
+    /// As [`Manipulator::new`].
+    pub fn as_it_is(mechanism: &Mechanism) -> Result<Self, CompileError> {
         let mut refused = None;
-        for decomposition in decompose(&mechanism)? {
-            match Compiled::new(&mechanism, &decomposition) {
-                Ok(compiled) => return Ok(compiled.complete(mechanism, decomposition)),
+        for decomposition in decompose(mechanism)? {
+            match Compiled::new(mechanism, &decomposition) {
+                Ok(compiled) => return Ok(compiled.complete(mechanism.clone(), decomposition)),
                 Err(error) => refused = refused.or(Some(error)),
             }
         }

@@ -133,11 +133,16 @@ impl Decomposition {
             PlatformSet::Pair => format!("{}, then {}", words(&self.lower), words(&self.upper)),
             PlatformSet::Subgroup => words(&self.lower).to_owned(),
             PlatformSet::Free => words(&SubspaceClass::Full).to_owned(),
-            PlatformSet::Stem(_) => match self.lower {
-                SubspaceClass::Spherical { .. } => "rotations about a centre that one leg allows",
-                _ => "what one leg allows, with fewer freedoms than space",
-            }
-            .to_owned(),
+            PlatformSet::Stem(stem) => match (self.upper, self.lower) {
+                (_, SubspaceClass::Planar { normal: axis }) if self.legs[stem].lower.len() == 1 => {
+                    words(&SubspaceClass::Rotation { axis, point: Point3::origin() }).to_owned()
+                }
+                (_, SubspaceClass::TranslationalSpace) if self.legs[stem].lower.len() == 1 => {
+                    "translations along a line".to_owned()
+                }
+                (SubspaceClass::Identity, _) => format!("{} that one leg allows", words(&self.lower)),
+                _ => "what one leg allows, with fewer freedoms than space".to_owned(),
+            },
         }
     }
 }
@@ -223,9 +228,8 @@ impl Found {
     /// The motion of a leg.
     fn of_stem(mechanism: &Mechanism, stem: usize, length: f64) -> Self {
         let leg = &mechanism.legs[stem];
-        let centre = centre(leg, length);
-        let (lower, upper) = match centre {
-            Some(centre) => (SubspaceClass::Spherical { centre }, SubspaceClass::Identity),
+        let (lower, upper) = match group_around(leg, length) {
+            Some(group) => (group, SubspaceClass::Identity),
             None => (
                 SubspaceClass::TranslationalSpace,
                 SubspaceClass::Spherical { centre: mechanism.platform },
@@ -283,10 +287,25 @@ impl Found {
     }
 }
 
+/// A line passes through a point, and lines are parallel or meet, to within this share of the size and this sine.
+const MEETS: f64 = 1e-9;
+
+/// A group in which a leg moves, smaller than all displacements.
+fn group_around(leg: &Leg, length: f64) -> Option<SubspaceClass> {
+    let screws = leg.screws();
+    let turns = || screws.iter().filter(|screw| screw.angular.norm() > 0.0);
+    let Some(first) = turns().next() else { return Some(SubspaceClass::TranslationalSpace) };
+    let axis = Unit::new_normalize(first.angular);
+    let across = |screw: &Screw| screw.linear.dot(&axis).abs() <= MEETS * screw.linear.norm();
+    let flat = turns().all(|screw| screw.angular.cross(&axis).norm() <= MEETS);
+    if flat && screws.iter().all(across) {
+        return Some(SubspaceClass::Planar { normal: axis });
+    }
+    centre(leg, length).map(|centre| SubspaceClass::Spherical { centre })
+}
+
 /// The point that a leg only rotates about: all axes pass through it.
 fn centre(leg: &Leg, length: f64) -> Option<Point3<f64>> {
-    /// A line passes through a point, and two of them meet, to within this share of the size and this sine.
-    const MEETS: f64 = 1e-9;
     let turns = |joint: &Joint| {
         matches!(
             joint.kind,

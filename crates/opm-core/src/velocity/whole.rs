@@ -384,18 +384,24 @@ impl Manipulator {
                 known += 1;
             }
         }
-        let about_centre = task.upper.kind == SubspaceKind::Identity;
+        let own = task.lower.kind.basis();
+        let count = if task.upper.kind == SubspaceKind::Identity { own.len() } else { 6 };
         let described: [Row; 6] = std::array::from_fn(|i| {
             let mut twist = Row::zeros();
-            twist[i] = 1.0;
-            if about_centre {
-                let turn = Vector3::ith(i % 3, 1.0);
-                let linear = turn.cross(&(point - task.lower.origin.coords)) / size;
-                twist.fixed_rows_mut::<3>(3).copy_from(&linear);
+            match own.get(i).filter(|_| count < 6) {
+                // Twists of a group stay twists of the group as the platform moves.
+                Some(basis) => {
+                    let [angular, linear] = task.lower.embedded(basis);
+                    let arm = point - task.lower.origin.coords;
+                    twist.fixed_rows_mut::<3>(0).copy_from(&angular);
+                    let linear = linear + angular.cross(&arm);
+                    twist.fixed_rows_mut::<3>(3).copy_from(&(linear / size));
+                }
+                None => twist[i] = 1.0,
             }
             twist
         });
-        let described = if about_centre { &described[..3] } else { &described[..] };
+        let described = &described[..count];
         let start = known;
         for _ in 0..self.dependent_coordinates().len() {
             let rests = described.iter().map(|twist| without(*twist, &basis[..known]));

@@ -1,7 +1,7 @@
 //! Dependent coordinates of a platform that moves as one leg, the stem, lets it.
 //!
-//! The stem and the coordinates make a loop: `E(q) = T(x y z) · R(angles)` about the platform's reference point, or
-//! `E(q) = R(angles)` where the stem only rotates about a centre. The independent coordinates are known joints of that loop, the dependent
+//! The stem and the coordinates make a loop: `E(q) = T(x y z) · R(angles)` about the platform's reference point. Where the stem
+//! moves in a plane that is `T(x y) · R(theta)`, and where it only rotates about a centre, `R(angles)`. The independent coordinates are known joints of that loop, the dependent
 //! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
 
 use crate::chain::ReachDeficit;
@@ -11,11 +11,10 @@ use crate::decomposition::whole::{configurations, joints};
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::manipulator::Mode;
 use crate::mechanism::Mechanism;
-use crate::mechanism::leg::Section;
 use crate::numeric::Quantity;
 use crate::numeric::angle::near;
 use crate::numeric::svd::singular_values;
-use crate::task::Task;
+use crate::task::{Task, TaskCoordinate};
 use nalgebra::{
     DMatrix, Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3,
 };
@@ -42,8 +41,7 @@ pub(crate) struct Stem {
     found: Vec<(Part, usize)>,
     /// The dependent coordinates.
     coordinates: Vec<usize>,
-    /// The number of the first angle.
-    first_angle: usize,
+    angles: Angles,
     /// What rotations are about.
     centre: Point3<f64>,
 }
@@ -61,25 +59,51 @@ enum Part {
 
 /// The rotations of a task at home: their axes in base directions, and the point that they are about.
 struct Rotations {
+    angles: Angles,
     axes: [Vector3<f64>; 3],
     centre: Point3<f64>,
-    /// The number of the first angle.
+}
+
+/// The angles among the coordinates.
+#[derive(Clone, Copy, Debug)]
+struct Angles {
+    /// How many there are: three of a sphere, one of a plane, or none.
+    count: usize,
+    /// The number of the first one.
     first: usize,
 }
 
 impl Rotations {
     fn new(task: &Task, reference: Point3<f64>) -> Self {
         let home = task.home();
-        // At a reference point that is the centre of a sphere above translations.
-        let (subspace, screws, first, centre) = match task.oriented_section() {
-            Some(Section::Lower) => {
-                (&task.lower, task.lower_screws(&home), 0, task.lower.origin)
-            }
-            Some(Section::Upper) | None => {
-                (&task.upper, task.upper_screws(&home), task.lower_count, reference)
-            }
+        let angle = |c: &TaskCoordinate| c.quantity == Quantity::Angle;
+        let first = task.coordinates.iter().position(angle).unwrap_or(home.len());
+        let count = task.coordinates.iter().filter(|c| angle(c)).count();
+        let (subspace, screws, centre) = match task.upper.kind {
+            SubspaceKind::Identity => (&task.lower, task.lower_screws(&home), task.lower.origin),
+            // A sphere above translations has its centre at the reference point.
+            _ => (&task.upper, task.upper_screws(&home), reference),
         };
-        Self { axes: screws.moved.map(|axis| subspace.axes * axis), centre, first }
+        let axes = match count {
+            3 => screws.moved.map(|axis| subspace.axes * axis),
+            _ => [subspace.axes.column(2).into(); 3],
+        };
+        Self { angles: Angles { count, first }, axes, centre }
+    }
+}
+
+impl Angles {
+    /// The angles of the rotations of a pose; zeros for those that there are not.
+    fn factors(self, task: &Task, pose: &[f64]) -> [f64; 3] {
+        match self.count {
+            3 => task.angles.to_factors([0, 1, 2].map(|i| pose[self.first + i])),
+            _ => std::array::from_fn(|i| if i < self.count { pose[self.first + i] } else { 0.0 }),
+        }
+    }
+
+    /// The angles among the coordinates for those of the rotations.
+    fn of_factors(self, task: &Task, factors: [f64; 3]) -> [f64; 3] {
+        if self.count == 3 { task.angles.of_factors(factors) } else { factors }
     }
 }
 
@@ -107,8 +131,14 @@ impl Stem {
             .filter(|(determined, _)| *determined > LEVEL)
             .collect();
         let best = choices.iter().map(|(determined, _)| *determined).fold(0.0, f64::max);
-        // Sorting is stable: among those that are well determined, positions come first.
-        choices.sort_by_key(|(determined, _)| *determined < DETERMINED * best);
+        // Sorting is stable: among those that are well determined, positions come first; of a crank, its angle does.
+        let Angles { count: turns, first } = rotations.angles;
+        let by_place = |independent: &[usize]| {
+            freedoms == 1 && turns == 1 && !independent.contains(&first)
+        };
+        choices.sort_by_key(|(determined, independent)| {
+            (*determined < DETERMINED * best, by_place(independent))
+        });
         let mut reason = None;
         for (_, independent) in choices {
             match Self::of(task, mechanism, leg, &independent, &rotations, size) {
@@ -141,16 +171,14 @@ impl Stem {
             (Part::Length(i), LegJoint::Slide { axis: back(task.lower.axes.column(i).into()) })
         });
         let ball = (Part::Orientation, LegJoint::Ball { point: rotations.centre });
+        let turn = |factor: usize| {
+            let (axis, point) = (back(rotations.axes[factor]), rotations.centre);
+            (Part::Factor(factor), LegJoint::Screw { axis, point, pitch: 0.0 })
+        };
         let turns: Vec<(Part, LegJoint)> = match dependent_factors {
             [false, false, false] => vec![],
             [true, true, true] => vec![ball],
-            _ => [2, 1, 0]
-                .map(|factor| {
-                    let axis = back(rotations.axes[factor]);
-                    let point = rotations.centre;
-                    (Part::Factor(factor), LegJoint::Screw { axis, point, pitch: 0.0 })
-                })
-                .to_vec(),
+            _ => (0..rotations.angles.count).rev().map(turn).collect(),
         };
         let [before, after]: [Vec<(Part, LegJoint)>; 2] = match turned {
             true => [slides.collect(), vec![]],
@@ -207,7 +235,7 @@ impl Stem {
             given: given.collect(),
             found,
             coordinates,
-            first_angle: rotations.first,
+            angles: rotations.angles,
             centre: rotations.centre,
         })
     }
@@ -223,17 +251,20 @@ impl Stem {
     /// By how much the stem misses the pose.
     pub fn complete(&self, task: &Task, mode: Mode, pose: &mut [f64]) -> Result<(), ReachDeficit> {
         let held: Vec<f64> = self.coordinates.iter().map(|&i| pose[i]).collect();
+        let given_angles: Vec<f64> = pose[self.angles.first..][..self.angles.count].to_vec();
         for &i in &self.coordinates {
             pose[i] = task.coordinates[i].home;
         }
-        let target = match self.turned {
-            true => task.displacement(pose),
-            false => task.lower_translation(pose),
-        };
+        let Angles { count, first } = self.angles;
         let home = |i: usize| task.coordinates[i].home;
-        let angles = [0, 1, 2].map(|i| self.first_angle + i);
-        let mut factors = task.angles.to_factors(angles.map(|i| pose[i]));
-        let factors_home = task.angles.to_factors(angles.map(home));
+        let homes = task.home();
+        let factors_home = self.angles.factors(task, &homes);
+        let mut factors = self.angles.factors(task, pose);
+        if !self.turned {
+            // What is known of the rotation is in the loop, not in the target.
+            pose[first..first + count].copy_from_slice(&homes[first..first + count]);
+        }
+        let target = task.displacement(pose);
         let mut given = [0.0; 3];
         for (value, &factor) in given.iter_mut().zip(&self.given) {
             *value = factors[factor] - factors_home[factor];
@@ -259,19 +290,17 @@ impl Stem {
             }
         }
         let found = match turned {
-            None => task.angles.of_factors(factors),
+            None => self.angles.of_factors(task, factors),
             Some(rotation) => {
                 let at = self.centre.coords;
                 let g = Isometry3::from_parts(Translation3::from(at - rotation * at), rotation);
                 let ([v, b], rise) = task.factors(&g);
                 let all = task.pose(&v, &b, rise);
-                angles.map(|i| all[i])
+                [0, 1, 2].map(|i| all[first + i])
             }
         };
-        for (i, value) in angles.into_iter().zip(found) {
-            if self.coordinates.contains(&i) {
-                pose[i] = value;
-            }
+        for (i, value) in (first..first + count).zip(found) {
+            pose[i] = if self.coordinates.contains(&i) { value } else { given_angles[i - first] };
         }
         for (&i, held) in self.coordinates.iter().zip(held) {
             if task.coordinates[i].quantity == Quantity::Angle {
@@ -287,14 +316,12 @@ impl Part {
     fn value(self, task: &Task, g: &Isometry3<f64>, rotations: &Rotations) -> Vec<f64> {
         let ([v, b], rise) = task.factors(g);
         let all = task.pose(&v, &b, rise);
-        let home = |i: usize| task.coordinates[i].home;
+        let home = task.home();
         match self {
-            Self::Length(i) => vec![all[i] - home(i)],
+            Self::Length(i) => vec![all[i] - home[i]],
             Self::Factor(factor) => {
-                let angles = [0, 1, 2].map(|i| rotations.first + i);
-                let at = task.angles.to_factors(angles.map(|i| all[i]));
-                let at_home = task.angles.to_factors(angles.map(home));
-                vec![at[factor] - at_home[factor]]
+                let of = |pose: &[f64]| rotations.angles.factors(task, pose)[factor];
+                vec![of(&all) - of(&home)]
             }
             Self::Orientation => {
                 let vector = g.rotation.inverse().scaled_axis();
@@ -306,8 +333,10 @@ impl Part {
 
 /// Which factors of the orientation are not known where these coordinates are not.
 fn factors(task: &Task, rotations: &Rotations, coordinates: &[usize]) -> [bool; 3] {
-    let depends = |i: usize| coordinates.contains(&(rotations.first + i));
-    task.angles.to_factors([0, 1, 2].map(|i| Known(!depends(i)))).map(|known| !known.0)
+    let Angles { count, first } = rotations.angles;
+    let known = [0, 1, 2].map(|i| Known(i >= count || !coordinates.contains(&(first + i))));
+    let known = if count == 3 { task.angles.to_factors(known) } else { known };
+    known.map(|known| !known.0)
 }
 
 /// Whether a number is known; the difference of two is if both are.
@@ -370,8 +399,10 @@ fn rates(
         column /= length;
     }
     let twists = twists.qr().q();
+    let Angles { count, first } = rotations.angles;
     let axes = Matrix3::from_columns(&rotations.axes);
-    let by_axes = axes.try_inverse().filter(|_| axes.determinant().abs() > DETERMINED * LEVEL);
+    let regular = axes.determinant().abs() > LEVEL;
+    let by_axes = if regular { axes.try_inverse() } else { None };
     DMatrix::from_fn(task.coordinates.len(), twists.ncols(), |i, j| {
         let twist = twists.column(j);
         if task.coordinates[i].quantity == Quantity::Length {
@@ -379,21 +410,10 @@ fn rates(
             return task.lower.axes.column(i).dot(&linear);
         }
         let angular: Vector3<f64> = twist.fixed_rows::<3>(0).into();
-        let by_factors = by_axes.map_or_else(Vector3::zeros, |by_axes| by_axes * angular);
-        task.angles.of_factors(by_factors.into())[i - rotations.first]
+        let by_factors = match count {
+            3 => by_axes.map_or_else(Vector3::zeros, |by_axes| by_axes * angular),
+            _ => Vector3::new(rotations.axes[0].dot(&angular), 0.0, 0.0),
+        };
+        rotations.angles.of_factors(task, by_factors.into())[i - first]
     })
-}
-
-impl Task {
-    /// The translation of the lower section where all is translated; the identity for a sphere.
-    fn lower_translation(&self, pose: &[f64]) -> Isometry3<f64> {
-        match self.lower.kind {
-            SubspaceKind::TranslationalSpace => self.lower.isometry(&self.lower(pose)),
-            SubspaceKind::Identity
-            | SubspaceKind::Planar
-            | SubspaceKind::Spherical
-            | SubspaceKind::Cylindrical
-            | SubspaceKind::TranslationalPlane => Isometry3::identity(),
-        }
-    }
 }
