@@ -78,10 +78,17 @@ pub fn closures(
     Some(found)
 }
 
-/// Whether a pose of one manipulator is one of the other, with nothing that follows from it.
-fn same_coordinates(one: &Manipulator, other: &Manipulator) -> bool {
+/// The coordinates of a pose for a leg alone, which has no dependent ones; `None` where the pose is out of reach, or where
+/// the leg has coordinates of its own.
+fn pose_of_leg(alone: &Manipulator, manipulator: &Manipulator, pose: &[f64]) -> Option<Vec<f64>> {
     let free = |m: &Manipulator| m.dependent_coordinates().is_empty();
-    free(one) && free(other) && one.task_coordinates().len() == other.task_coordinates().len()
+    if manipulator.is_whole() && !free(manipulator) {
+        // A leg that is solved whole has all coordinates.
+        let displacement = manipulator.displacement(pose).ok()?;
+        return alone.locate(&displacement).ok();
+    }
+    let same = alone.task_coordinates().len() == manipulator.task_coordinates().len();
+    (free(alone) && free(manipulator) && same).then(|| pose.to_vec())
 }
 
 /// The branches of every leg, counted by a numeric solver.
@@ -105,15 +112,14 @@ pub fn branches(
         let pose = pose(&mut rng, manipulator);
         for (number, alone) in &legs {
             let name = &mechanism.legs[*number].name;
-            let alone = match alone {
-                Ok(alone) if same_coordinates(alone.manipulator(), manipulator) => alone,
-                // A leg that constrains the platform has coordinates of its own.
-                _ => {
-                    found.leave_out("a leg that constrains the platform");
-                    continue;
-                }
+            let of_leg = alone.as_ref().ok().and_then(|alone| {
+                Some((alone, pose_of_leg(alone.manipulator(), manipulator, &pose)?))
+            });
+            let Some((alone, own)) = of_leg else {
+                found.leave_out("a leg that constrains the platform");
+                continue;
             };
-            match alone.compare(&pose, &mut rng) {
+            match alone.compare(&own, &mut rng) {
                 Ok(Branches::Same(_)) => found.compared += 1,
                 Ok(Branches::Fold) => found.leave_out("two solutions nearly meet"),
                 Ok(Branches::Different { branches, distinct, solutions, either }) => {
