@@ -40,6 +40,14 @@ def draw():
         "cartesian-wrist-6dof", "gallery-cartesian-wrist.png", panels="slices", x="0", y="0", z="400mm",
         zeta="-180deg:180deg:361", xi="0:80deg:161", psi="-150deg:150deg:6",
     )  # fmt: skip
+    workspace(
+        "delta", "gallery-delta.png", panels="slices",
+        x="-1200mm:1200mm:241", y="-1200mm:1200mm:241", z="-1600mm:-500mm:6",
+    )  # fmt: skip
+    workspace(
+        "tricept", "gallery-tricept.png", panels="slices",
+        x="-1200mm:1200mm:241", y="-1200mm:1200mm:241", z="400mm:1300mm:6",
+    )  # fmt: skip
 
 
 def mechanism(name, pose, picture):

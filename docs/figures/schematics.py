@@ -37,6 +37,16 @@ DRAWN = (
     ("schoenflies-column-4dof", "schoenflies-column", (32, -60), {}),
     ("cartesian-wrist-6dof", "cartesian-wrist", (24, -35), {"leg1": 48, "leg2": 60, "leg3": 72}),
     ("orbita", "orbita", (18, -60), {"leg1": 60, "leg2": 60, "leg3": 60}),
+    ("delta", "delta", (16, -55), {}),
+    ("linear-delta", "linear-delta", (18, -55), {}),
+    ("orthoglide", "orthoglide", (24, -50), {}),
+    ("tripteron", "tripteron", (24, -55), {}),
+    ("3-upu", "3-upu", (18, -60), {}),
+    ("quadrupteron", "quadrupteron", (24, -55), {}),
+    ("stewart", "stewart", (20, -60), {}),
+    ("hexa", "hexa", (20, -60), {}),
+    ("tricept", "tricept", (18, -60), {}),
+    ("ankle", "ankle", (18, -60), {}),
 )
 
 

@@ -29,6 +29,7 @@ mod roll_pitch_yaw;
 mod rows;
 mod shards;
 mod singularity;
+mod stems;
 mod structured;
 mod sweep;
 mod task;

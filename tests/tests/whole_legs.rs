@@ -5,6 +5,7 @@ use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vecto
 use opm_core::Manipulator;
 use opm_core::decomposition::{DecomposeError, PlatformSet, WholeMiss, decompose};
 use opm_core::forward::{ForwardError, NoClosedForm};
+use opm_core::mechanism::examples::{EXAMPLES, Example, SPLIT, find};
 use opm_core::mechanism::file;
 use opm_core::mechanism::joint::JointKind;
 use opm_tests::by_inverse::by_inverse;
@@ -12,21 +13,13 @@ use opm_tests::displacement;
 use opm_workspace::measure::{Domain, DomainError};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sections, Sweep};
 
-/// The mechanisms of `data/mechanisms`.
-const MECHANISMS: [(&str, &str); 8] = [
-    ("delta", include_str!("../../data/mechanisms/delta.toml")),
-    ("linear-delta", include_str!("../../data/mechanisms/linear-delta.toml")),
-    ("orthoglide", include_str!("../../data/mechanisms/orthoglide.toml")),
-    ("tripteron", include_str!("../../data/mechanisms/tripteron.toml")),
-    ("3-upu", include_str!("../../data/mechanisms/3-upu.toml")),
-    ("quadrupteron", include_str!("../../data/mechanisms/quadrupteron.toml")),
-    ("stewart", include_str!("../../data/mechanisms/stewart.toml")),
-    ("hexa", include_str!("../../data/mechanisms/hexa.toml")),
-];
+/// The shipped mechanisms whose legs are solved whole.
+fn shipped() -> impl Iterator<Item = &'static Example> {
+    EXAMPLES.iter().skip(SPLIT.len())
+}
 
 fn example(name: &str) -> Manipulator {
-    let (_, text) = MECHANISMS.iter().find(|(known, _)| *known == name).unwrap();
-    Manipulator::read(text).unwrap()
+    Manipulator::example(name).unwrap()
 }
 
 /// A pose near home: lengths within a share of the size, angles within that many radians.
@@ -89,7 +82,7 @@ fn turned(turn: &UnitQuaternion<f64>, vector: Vector3<f64>) -> Vector3<f64> {
 #[test]
 fn legs_end_where_the_platform_is() {
     let mut rng = Rng::with_seed(1);
-    for (name, _) in MECHANISMS {
+    for Example { name, .. } in shipped() {
         let m = example(name);
         assert!(m.is_whole(), "{name}");
         let (mut every, mut at) = (m.all_modes(), m.solution());
@@ -97,13 +90,13 @@ fn legs_end_where_the_platform_is() {
         for trial in 0..60 {
             let share = [0.05, 0.2, 0.5][trial % 3];
             let pose = near(&m, share, &mut rng);
-            let target = displacement(&m, &pose, m.home_mode());
             let Some(found) = m.inverse_all(&pose, &mut every).unwrap() else { continue };
             poses += 1;
             let modes: Vec<_> = found.modes(&m).take(64).collect();
             for mode in modes {
                 let joints = m.solution_in_mode(&every, mode, &mut at).unwrap().joints();
                 solutions += 1;
+                let target = displacement(&m, &pose, mode);
                 for end in by_exponentials(&m, joints) {
                     let off =
                         (end * m.mechanism().platform - target * m.mechanism().platform).norm();
@@ -120,7 +113,7 @@ fn legs_end_where_the_platform_is() {
 /// Home is home: in the mode at home, every joint has its value there.
 #[test]
 fn home_is_home() {
-    for (name, _) in MECHANISMS {
+    for Example { name, .. } in shipped() {
         let m = example(name);
         let mut at = m.solution();
         let solution = m.inverse(&m.home_pose(), m.home_mode(), &mut at).unwrap().unwrap();
@@ -216,7 +209,7 @@ fn counts_are_those_of_plain_geometry() {
 #[test]
 fn rates_are_those_of_differences() {
     let mut rng = Rng::with_seed(3);
-    for (name, _) in MECHANISMS {
+    for Example { name, .. } in shipped() {
         let m = example(name);
         let (mut at, mut other, mut jacobians) = (m.solution(), m.solution(), m.jacobians());
         let (mut motion, mut singular) = (m.joint_motion(), m.singularities());
@@ -277,7 +270,7 @@ fn rates_are_those_of_differences() {
 #[test]
 fn forward_kinematics_near_a_pose() {
     let mut rng = Rng::with_seed(4);
-    for (name, _) in MECHANISMS {
+    for Example { name, .. } in shipped() {
         let m = example(name);
         let mut at = m.solution();
         let mut found = 0;
@@ -316,7 +309,7 @@ fn a_delta_with_rods_that_are_nearly_level() {
 /// Sweeps, which do not compute joints, decide as inverse kinematics do, at round poses and with limits too.
 #[test]
 fn sweeps_decide_as_inverse_kinematics_do() {
-    for (name, text) in MECHANISMS {
+    for Example { name, text, .. } in shipped() {
         // Sliders and cranks that go a little way.
         let mut mechanism = file::read(text).unwrap().mechanism;
         let size = example(name).characteristic_length();
@@ -360,7 +353,7 @@ fn sweeps_decide_as_inverse_kinematics_do() {
 /// A joint that is moved after the mechanism was decomposed counts where it is.
 #[test]
 fn a_changed_joint_counts_where_it_is() {
-    let (_, text) = MECHANISMS.iter().find(|(name, _)| *name == "stewart").unwrap();
+    let text = find("stewart").unwrap().text;
     let mut mechanism = file::read(text).unwrap().mechanism;
     let before = decompose(&mechanism).unwrap().remove(0);
     mechanism.legs[2].joints[0].point.x += 0.01;
@@ -380,7 +373,7 @@ fn a_changed_joint_counts_where_it_is() {
 /// Axes in single precision contain no translations of space: that is said, and not found out far from home.
 #[test]
 fn joints_that_nearly_contain_a_subgroup_are_refused() {
-    let (_, text) = MECHANISMS.iter().find(|(name, _)| *name == "delta").unwrap();
+    let text = find("delta").unwrap().text;
     let mut mechanism = file::read(text).unwrap().mechanism;
     for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
         joint.axis = nalgebra::Unit::new_normalize(joint.axis.map(|c| f64::from((0.7 * c) as f32)));

@@ -3,20 +3,14 @@
 use nalgebra::Vector3;
 use opm_analysis::{Gravity, Index, Indices, Load, Setup, Wrench};
 use opm_core::Manipulator;
-use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::mechanism::examples::{EXAMPLES, Example};
 use opm_core::mechanism::file;
 use opm_core::skeleton::Density;
 
 #[test]
 fn indices_of_a_pose_allocate_nothing() {
     let mut compared = 0;
-    let shipped = EXAMPLES.iter().map(|example| (example.name, example.text));
-    // Legs that are solved whole.
-    let whole = [
-        ("delta", include_str!("../../../data/mechanisms/delta.toml")),
-        ("stewart", include_str!("../../../data/mechanisms/stewart.toml")),
-    ];
-    for (name, text) in shipped.chain(whole) {
+    for Example { name, text, .. } in EXAMPLES {
         let Ok(manipulator) = Manipulator::read(text) else { continue };
         // With largest efforts, so that there is a payload.
         let text = file::write(manipulator.mechanism(), file::FileUnits::SI, file::Digits::All);

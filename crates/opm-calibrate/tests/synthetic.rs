@@ -9,7 +9,7 @@ use opm_calibrate::{
 };
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
-use opm_core::mechanism::examples::{EXAMPLES, find};
+use opm_core::mechanism::examples::{SPLIT, find};
 use opm_core::mechanism::file::{self, MechanismFile};
 
 const SIGMA: Sigma = Sigma { length: 20e-6, angle: 20e-6 };
@@ -214,7 +214,7 @@ fn what_can_be_told_of_ten_mechanisms_is_within_three_standard_errors() {
 #[test]
 fn errors_are_as_large_as_standard_errors_say() {
     let (mut mechanisms, mut all) = (0, Vec::new());
-    for example in EXAMPLES {
+    for example in SPLIT {
         let Ok(drawing) = file::read(example.text) else { continue };
         if Manipulator::new(drawing.mechanism).is_err() {
             continue;
@@ -491,7 +491,7 @@ fn poses_near_the_boundary_of_reach_are_fitted() {
 #[test]
 fn exact_tables_of_every_mechanism_end() {
     let mut atlas: Vec<(String, MechanismFile)> =
-        EXAMPLES.iter().map(|example| (example.name.to_owned(), read(example.name))).collect();
+        SPLIT.iter().map(|example| (example.name.to_owned(), read(example.name))).collect();
     // A spherical five-bar in its symmetric pose.
     atlas.push(("five-bar of right angles".to_owned(), file::read(RIGHT_ANGLES).unwrap()));
     let mut solved = 0;
@@ -565,9 +565,9 @@ joints = [
 /// A platform that legs hold in a subgroup only with the joints of the file has no parameters; a hexapod's legs have them.
 #[test]
 fn parameters_of_legs_that_are_solved_whole() {
-    let delta = file::read(include_str!("../../../data/mechanisms/delta.toml")).unwrap();
+    let delta = file::read(find("delta").unwrap().text).unwrap();
     let refused = parameters_of(&delta).unwrap_err().to_string();
     assert!(refused.contains("each solved by itself"), "{refused}");
-    let stewart = file::read(include_str!("../../../data/mechanisms/stewart.toml")).unwrap();
+    let stewart = file::read(find("stewart").unwrap().text).unwrap();
     assert!(parameters_of(&stewart).unwrap().len() > 6);
 }

@@ -60,7 +60,8 @@ pub fn forward(
             manipulator.measure_singularities(&jacobians, &mut measured);
         }
         let near = |measure: f64| measure.abs() < SINGULAR;
-        if !regular || near(measured.whole.serial) || measured.whole.parallel.is_none_or(near) {
+        let stuck = measured.legs.iter().flatten().any(|measure| near(*measure));
+        if !regular || stuck || measured.whole.parallel.is_none_or(near) {
             found.leave_out("out of reach, or near a singularity");
             continue;
         }

@@ -57,7 +57,7 @@ fn rounded_joints_hold_within_their_misfit() {
     let single = |c: f64| f64::from(c as f32);
     let six_digits = |c: f64| format!("{c:.5e}").parse().unwrap();
     let (mut mechanisms, mut branches) = (0, 0);
-    for example in examples::EXAMPLES {
+    for example in examples::SPLIT {
         let exact = file::read(example.text).unwrap().mechanism;
         if Manipulator::new(exact.clone()).is_err() {
             continue;

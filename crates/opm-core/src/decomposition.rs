@@ -24,9 +24,9 @@ mod nearby;
 mod odd;
 mod order;
 mod reorder;
+mod reroot;
 mod search;
 mod survey;
-mod reroot;
 pub(crate) mod whole;
 
 #[cfg(test)]

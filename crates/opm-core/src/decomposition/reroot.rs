@@ -17,9 +17,8 @@ pub fn rerooted(mechanism: &Mechanism) -> Vec<Mechanism> {
     if decompose(mechanism).is_ok_and(|ways| ways.iter().any(|way| way.imaginary_joints > 0)) {
         return Vec::new();
     }
-    let links = (0..2).flat_map(|stem| {
-        (1..mechanism.legs[stem].joints.len()).map(move |count| (stem, count))
-    });
+    let links = (0..2)
+        .flat_map(|stem| (1..mechanism.legs[stem].joints.len()).map(move |count| (stem, count)));
     let mut found: Vec<(bool, Mechanism)> = links
         .filter_map(|(stem, count)| {
             let other = cut(mechanism, stem, count);

@@ -140,7 +140,9 @@ impl Decomposition {
                 (_, SubspaceClass::TranslationalSpace) if self.legs[stem].lower.len() == 1 => {
                     "translations along a line".to_owned()
                 }
-                (SubspaceClass::Identity, _) => format!("{} that one leg allows", words(&self.lower)),
+                (SubspaceClass::Identity, _) => {
+                    format!("{} that one leg allows", words(&self.lower))
+                }
                 _ => "what one leg allows, with fewer freedoms than space".to_owned(),
             },
         }
@@ -260,16 +262,15 @@ impl Found {
                 return Err(WholeMiss::Inexact { leg: leg.name.clone(), deviation });
             }
         }
-        let legs: Result<Vec<LegSplit>, WholeMiss> =
-            (mechanism.legs.iter())
-                .map(|leg| {
-                    let whole = solved(leg, &motions, frame.length).map_err(|reason| {
-                        WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
-                    })?;
-                    let lower = Freedom::of_leg(leg);
-                    Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
-                })
-                .collect();
+        let legs: Result<Vec<LegSplit>, WholeMiss> = (mechanism.legs.iter())
+            .map(|leg| {
+                let whole = solved(leg, &motions, frame.length).map_err(|reason| {
+                    WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
+                })?;
+                let lower = Freedom::of_leg(leg);
+                Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
+            })
+            .collect();
         Ok(Decomposition {
             lambda: report.lambda,
             mobility: report.mobility,
@@ -345,7 +346,8 @@ pub(crate) fn configurations(leg: &Leg, length: f64) -> impl Iterator<Item = Vec
         })
         .collect();
     SIZES.into_iter().enumerate().map(move |(sample, size)| {
-        let value = |(i, unit): (usize, &f64)| 2.0 * share(1 + i + sample * units.len()) * size * unit;
+        let value =
+            |(i, unit): (usize, &f64)| 2.0 * share(1 + i + sample * units.len()) * size * unit;
         units.iter().enumerate().map(value).collect()
     })
 }
@@ -374,9 +376,7 @@ impl Decomposition {
         let motions = match self.platform() {
             PlatformSet::Free => motions(&SubspaceClass::Full, length),
             PlatformSet::Pair | PlatformSet::Subgroup => motions(&self.lower, length),
-            PlatformSet::Stem(stem) => {
-                Found::of_stem(mechanism, stem, length).motions
-            }
+            PlatformSet::Stem(stem) => Found::of_stem(mechanism, stem, length).motions,
         };
         Some(solved(leg, &motions, length).map(Cow::Owned))
     }

@@ -228,7 +228,8 @@ impl Dependent {
 
     /// For each two-valued choice of the steps, the leg that it belongs to.
     pub fn choosing_legs(&self) -> impl Iterator<Item = usize> + '_ {
-        let of_stem = self.stem.iter().flat_map(|stem| std::iter::repeat_n(stem.leg, stem.choices()));
+        let of_stem =
+            self.stem.iter().flat_map(|stem| std::iter::repeat_n(stem.leg, stem.choices()));
         let choosing = self.steps.iter().filter(|step| step.solution.has_choice());
         choosing.map(|step| step.solution.leg()).chain(of_stem)
     }

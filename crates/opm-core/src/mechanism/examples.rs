@@ -12,7 +12,7 @@ pub struct Example {
 }
 
 /// Every example: first the paper's mechanisms, families before joint lists, then other linkages, then
-/// those designed for this project, then those of one subspace from the literature.
+/// those designed for this project, then those of one subspace from the literature, and those with legs that are solved whole.
 pub const EXAMPLES: &[Example] = &[
     Example {
         name: "plano-spherical-5dof",
@@ -119,7 +119,63 @@ pub const EXAMPLES: &[Example] = &[
         description: "three cartesian arms below an Agile Eye: three translations, three rotations",
         text: include_str!("../../mechanisms/cartesian-wrist-6dof.toml"),
     },
+    Example {
+        name: "delta",
+        description: "Delta, 3-RUU (Clavel), as ABB's FlexPicker: three translations",
+        text: include_str!("../../mechanisms/delta.toml"),
+    },
+    Example {
+        name: "linear-delta",
+        description: "linear Delta, 3-PUU with upright rails: three translations",
+        text: include_str!("../../mechanisms/linear-delta.toml"),
+    },
+    Example {
+        name: "orthoglide",
+        description: "Orthoglide, 3-PUU with orthogonal rails (Wenger and Chablat): three translations",
+        text: include_str!("../../mechanisms/orthoglide.toml"),
+    },
+    Example {
+        name: "tripteron",
+        description: "Tripteron, 3-PRRR (Gosselin and Kong), orthogonal: three translations",
+        text: include_str!("../../mechanisms/tripteron.toml"),
+    },
+    Example {
+        name: "3-upu",
+        description: "3-UPU (Tsai): three translations",
+        text: include_str!("../../mechanisms/3-upu.toml"),
+    },
+    Example {
+        name: "quadrupteron",
+        description: "Quadrupteron, 3-PRRU + PRRR (Gosselin): three translations, one rotation",
+        text: include_str!("../../mechanisms/quadrupteron.toml"),
+    },
+    Example {
+        name: "stewart",
+        description: "Gough-Stewart platform, 6-UPS: six freedoms",
+        text: include_str!("../../mechanisms/stewart.toml"),
+    },
+    Example {
+        name: "hexa",
+        description: "Hexa, 6-RUS (Pierrot): six freedoms",
+        text: include_str!("../../mechanisms/hexa.toml"),
+    },
+    Example {
+        name: "tricept",
+        description: "Tricept, 3-UPS + UP (Neumann): a position, and angles that follow",
+        text: include_str!("../../mechanisms/tricept.toml"),
+    },
+    Example {
+        name: "ankle",
+        description: "a humanoid's ankle, 2-RSS + U: two rotations",
+        text: include_str!("../../mechanisms/ankle.toml"),
+    },
 ];
+
+/// Those whose legs are split into two sections, or move in one subspace.
+pub const SPLIT: &[Example] = EXAMPLES.split_at(EXAMPLES.len() - WHOLE).0;
+
+/// The number of those whose legs are solved whole, which come last.
+const WHOLE: usize = 10;
 
 /// The example with this name, if there is one.
 pub fn find(name: &str) -> Option<&'static Example> {

@@ -193,7 +193,7 @@ impl Task {
     }
 
     /// The angles of a displacement of a sphere from home, those nearest to the values at home.
-    fn angles(&self, r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn angles(&self, r: &Matrix3<f64>, home: [f64; 3]) -> [f64; 3] {
         let orientation = self.orientation(r);
         angles_of(self.angles, &orientation, home)
     }

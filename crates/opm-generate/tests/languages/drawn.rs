@@ -2,7 +2,7 @@
 
 use crate::program::Question;
 use fastrand::Rng;
-use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::mechanism::examples::SPLIT;
 use opm_core::{Manipulator, Quantity};
 use opm_tests::random::{self, Options};
 use std::collections::HashSet;
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 /// The shipped mechanisms with closed forms.
 pub fn shipped() -> Vec<Manipulator> {
-    EXAMPLES.iter().filter_map(|example| Manipulator::read(example.text).ok()).collect()
+    SPLIT.iter().filter_map(|example| Manipulator::read(example.text).ok()).collect()
 }
 
 /// A random mechanism of every pair of subspaces, and some of which a leg constrains the platform.

@@ -342,9 +342,8 @@ impl WholeLeg {
 
     /// All branches: one for each combination of the signs of its choices.
     fn branches(&self) -> impl Iterator<Item = [Branch; SIGNS]> + use<> {
-        (0..1_usize << self.choices()).map(|number| {
-            std::array::from_fn(|choice| Branch::BOTH[number >> choice & 1])
-        })
+        (0..1_usize << self.choices())
+            .map(|number| std::array::from_fn(|choice| Branch::BOTH[number >> choice & 1]))
     }
 
     /// The number of choices with two solutions: at most two, or [`MOST_GIVEN_CHOICES`] where joints are given.

@@ -2,7 +2,7 @@ use super::*;
 use crate::Manipulator;
 use crate::decomposition::samples::{Numbers, displaced, gough};
 use crate::group::subspace::Frame;
-use crate::mechanism::examples::EXAMPLES;
+use crate::mechanism::examples::SPLIT;
 use crate::mechanism::file::{self, AngleUnit, FileUnits, LengthUnit};
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::numeric::Quantity;
@@ -20,7 +20,7 @@ const CLOSED: f64 = 1e-10;
 /// The shipped mechanisms that are lists of joints.
 fn shipped() -> Vec<Mechanism> {
     let read = |text| file::read(text).expect("a shipped mechanism");
-    let files = EXAMPLES.iter().map(|example| read(example.text));
+    let files = SPLIT.iter().map(|example| read(example.text));
     let lists: Vec<_> = files.filter(|f| f.family.is_none()).map(|f| f.mechanism).collect();
     assert!(lists.len() >= 9);
     lists

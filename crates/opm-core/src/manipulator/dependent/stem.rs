@@ -4,9 +4,9 @@
 //! moves in a plane that is `T(x y) · R(theta)`, and where it only rotates about a centre, `R(angles)`. The independent coordinates are known joints of that loop, the dependent
 //! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
 
+use crate::chain::Branch;
 use crate::chain::ReachDeficit;
 use crate::chain::whole::{LegJoint, MOST_FREEDOMS, NoOrder, WholeLeg};
-use crate::chain::Branch;
 use crate::decomposition::whole::{configurations, joints};
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::manipulator::Mode;
@@ -15,13 +15,13 @@ use crate::numeric::Quantity;
 use crate::numeric::angle::near;
 use crate::numeric::svd::singular_values;
 use crate::task::{Task, TaskCoordinate};
-use nalgebra::{
-    DMatrix, Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3,
-};
+use nalgebra::{DMatrix, Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// Coordinates are independent, in the order of preference, if with them the stem's motion at home is determined at
 /// least this well, compared to the best ones.
 const DETERMINED: f64 = 0.3;
+/// The most coordinates.
+const MOST: usize = 6;
 /// Below this they do not determine it.
 const LEVEL: f64 = 1e-6;
 
@@ -133,9 +133,8 @@ impl Stem {
         let best = choices.iter().map(|(determined, _)| *determined).fold(0.0, f64::max);
         // Sorting is stable: among those that are well determined, positions come first; of a crank, its angle does.
         let Angles { count: turns, first } = rotations.angles;
-        let by_place = |independent: &[usize]| {
-            freedoms == 1 && turns == 1 && !independent.contains(&first)
-        };
+        let by_place =
+            |independent: &[usize]| freedoms == 1 && turns == 1 && !independent.contains(&first);
         choices.sort_by_key(|(determined, independent)| {
             (*determined < DETERMINED * best, by_place(independent))
         });
@@ -250,14 +249,15 @@ impl Stem {
     /// # Errors
     /// By how much the stem misses the pose.
     pub fn complete(&self, task: &Task, mode: Mode, pose: &mut [f64]) -> Result<(), ReachDeficit> {
-        let held: Vec<f64> = self.coordinates.iter().map(|&i| pose[i]).collect();
-        let given_angles: Vec<f64> = pose[self.angles.first..][..self.angles.count].to_vec();
-        for &i in &self.coordinates {
-            pose[i] = task.coordinates[i].home;
-        }
         let Angles { count, first } = self.angles;
         let home = |i: usize| task.coordinates[i].home;
-        let homes = task.home();
+        let mut held = [0.0; MOST];
+        held[..pose.len()].copy_from_slice(pose);
+        for &i in &self.coordinates {
+            pose[i] = home(i);
+        }
+        let mut homes = [0.0; MOST];
+        homes.iter_mut().zip(&task.coordinates).for_each(|(to, c)| *to = c.home);
         let factors_home = self.angles.factors(task, &homes);
         let mut factors = self.angles.factors(task, pose);
         if !self.turned {
@@ -294,18 +294,14 @@ impl Stem {
             Some(rotation) => {
                 let at = self.centre.coords;
                 let g = Isometry3::from_parts(Translation3::from(at - rotation * at), rotation);
-                let ([v, b], rise) = task.factors(&g);
-                let all = task.pose(&v, &b, rise);
-                [0, 1, 2].map(|i| all[first + i])
+                let ([v, b], _) = task.factors(&g);
+                let section = if first < task.lower_count { v } else { b };
+                task.angles(section.spherical(), [0, 1, 2].map(|i| homes[first + i]))
             }
         };
         for (i, value) in (first..first + count).zip(found) {
-            pose[i] = if self.coordinates.contains(&i) { value } else { given_angles[i - first] };
-        }
-        for (&i, held) in self.coordinates.iter().zip(held) {
-            if task.coordinates[i].quantity == Quantity::Angle {
-                pose[i] = near(pose[i], held);
-            }
+            let follows = self.coordinates.contains(&i);
+            pose[i] = if follows { near(value, held[i]) } else { held[i] };
         }
         Ok(())
     }

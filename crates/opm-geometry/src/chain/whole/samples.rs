@@ -1,8 +1,8 @@
 //! Assembled configurations of a leg, by which its structure is recognised and an order is tested.
 
+use super::element::{Element, Kind};
 use super::solve::VALUES;
 use super::{CLOSURE, MOST_FREEDOMS};
-use super::element::{Element, Kind};
 use nalgebra::{Isometry3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 /// A configuration of the leg.
@@ -81,7 +81,8 @@ pub(super) fn step(
         }
         inner *= joint;
     }
-    let square = columns.transpose() * columns + SMatrix::<f64, MOST_FREEDOMS, MOST_FREEDOMS>::identity() * damping;
+    let square = columns.transpose() * columns
+        + SMatrix::<f64, MOST_FREEDOMS, MOST_FREEDOMS>::identity() * damping;
     let Some(cholesky) = square.cholesky() else { return rest.norm() };
     let mut by = cholesky.solve(&(columns.transpose() * rest));
     let longest = by.amax();

@@ -177,7 +177,7 @@ fn solved(leg: &Type, whole: &WholeLeg, g: &Isometry3<f64>) -> Vec<(Vec<f64>, f6
     let mut out = [JointDisplacement::Value(0.0); MOST_FREEDOMS];
     let mut all = Vec::new();
     for branches in whole.branches() {
-        if whole.solve(g, branches, &mut out).is_ok() {
+        if whole.solve(g, [branches[0], branches[1]], &mut out).is_ok() {
             let found: Vec<f64> =
                 out[..whole.freedoms()].iter().map(|joint| joint.value()).collect();
             let off = forward(&leg.joints, &found).to_homogeneous() - g.to_homogeneous();
@@ -266,9 +266,9 @@ fn congruent_legs_have_the_same_order() {
             let g = forward(&leg.joints, &q);
             for branches in whole.branches() {
                 let mut outs = [[JointDisplacement::Value(0.0); MOST_FREEDOMS]; 2];
-                let one = whole.solve(&g, branches, &mut outs[0]);
+                let one = whole.solve(&g, [branches[0], branches[1]], &mut outs[0]);
                 let there = place * g * place.inverse();
-                let two = elsewhere.solve(&there, branches, &mut outs[1]);
+                let two = elsewhere.solve(&there, [branches[0], branches[1]], &mut outs[1]);
                 if let (Ok(()), Ok(())) = (one, two) {
                     let [one, two] = outs.map(|out| out.map(JointDisplacement::value));
                     if regularity(&leg, &one[..whole.freedoms()]) > REGULAR {
@@ -350,9 +350,10 @@ fn the_general_case_is_the_solution() {
             let rotation = g.rotation.to_rotation_matrix().into_inner();
             for branches in whole.branches() {
                 let signs = branches.map(Branch::sign);
-                let general = whole.attempt::<f64>(rotation, g.translation.vector, signs);
+                let general =
+                    whole.attempt::<f64>(rotation, g.translation.vector, [signs[0], signs[1]]);
                 let mut out = [JointDisplacement::Value(0.0); MOST_FREEDOMS];
-                let solved = whole.solve(&g, branches, &mut out);
+                let solved = whole.solve(&g, [branches[0], branches[1]], &mut out);
                 if general.holds {
                     held += 1;
                     assert!(solved.is_ok(), "{}", leg.name);

@@ -1,0 +1,233 @@
+//! Platforms that move as one leg does, and loops with another link as the platform, against plain geometry.
+
+use fastrand::Rng;
+use nalgebra::{Rotation3, Vector3};
+use opm_core::Manipulator;
+use opm_core::decomposition::{PlatformSet, rerooted};
+use opm_core::manipulator::{CompileError, ConstraintError};
+use opm_core::mechanism::file;
+
+/// The place of a joint coordinate among the joints.
+fn number(m: &Manipulator, name: &str) -> usize {
+    m.coordinates().iter().position(|c| c.name == name).unwrap()
+}
+
+/// A Tricept's stem points from the origin to the platform's point, and its struts are as long as they are.
+#[test]
+fn a_tricept_by_geometry() {
+    let m = Manipulator::example("tricept").unwrap();
+    assert_eq!(m.decomposition().platform(), PlatformSet::Stem(3));
+    let names =
+        |list: &[opm_core::task::TaskCoordinate]| list.iter().map(|c| c.name).collect::<Vec<_>>();
+    assert_eq!(names(m.task_coordinates()), ["x", "y", "z"]);
+    assert_eq!(names(m.dependent_coordinates()), ["roll", "pitch", "yaw"]);
+    let (mut rng, mut at) = (Rng::with_seed(1), m.solution());
+    for _ in 0..200 {
+        let p = Vector3::new(0.8 * rng.f64() - 0.4, 0.8 * rng.f64() - 0.4, 0.7 + 0.4 * rng.f64());
+        let solution = m.inverse(p.as_slice(), m.home_mode(), &mut at).unwrap().unwrap();
+        let joint = |name: &str| solution.joints()[number(&m, name)];
+        // The stem: R = Rx(a) Ry(b), whose third column is its direction.
+        let d = p.normalize();
+        let (a, b) = ((-d.y).atan2(d.z), d.x.asin());
+        let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), a)
+            * Rotation3::from_axis_angle(&Vector3::y_axis(), b);
+        assert!((joint("S4") - p.norm()).abs() < 1e-12);
+        assert!((joint("A4.1") - a).abs() < 1e-12 && (joint("A4.2") - b).abs() < 1e-12);
+        for (i, angle) in [90.0_f64, 210.0, 330.0].into_iter().enumerate() {
+            let (sin, cos) = angle.to_radians().sin_cos();
+            let out = Vector3::new(cos, sin, 0.0);
+            let length = (p + turn * (out * 0.14) - out * 0.325).norm();
+            assert!((joint(&format!("S{}", i + 1)) - length).abs() < 1e-12);
+        }
+        let [roll, pitch, yaw] = [0, 1, 2].map(|i| solution.dependent()[i]);
+        let angles = Rotation3::from_euler_angles(roll, pitch, yaw);
+        assert!((angles.matrix() - turn.matrix()).norm() < 1e-12);
+    }
+}
+
+/// An ankle's rods keep their lengths, and its foot turns as its joint does.
+#[test]
+fn an_ankle_by_geometry() {
+    let m = Manipulator::example("ankle").unwrap();
+    let (mut rng, mut all, mut at) = (Rng::with_seed(2), m.all_modes(), m.solution());
+    let mut solved = 0;
+    for _ in 0..200 {
+        let pose = [rng.f64() - 0.5, 1.4 * rng.f64() - 0.7];
+        let Some(found) = m.inverse_all(&pose, &mut all).unwrap() else { continue };
+        let modes: Vec<_> = found.modes(&m).collect();
+        for mode in modes {
+            let solution = m.solution_in_mode(&all, mode, &mut at).unwrap();
+            let foot = Rotation3::from_euler_angles(pose[0], pose[1], solution.dependent()[0]);
+            let [pitch, roll] =
+                ["pitch_joint", "roll_joint"].map(|name| solution.joints()[number(&m, name)]);
+            let by_joints = Rotation3::from_axis_angle(&Vector3::y_axis(), pitch)
+                * Rotation3::from_axis_angle(&Vector3::x_axis(), roll);
+            assert!((foot.matrix() - by_joints.matrix()).norm() < 1e-12);
+            for (name, side) in [("A1", 1.0), ("A2", -1.0)] {
+                let (sin, cos) = solution.joints()[number(&m, name)].sin_cos();
+                let pin: Vector3<f64> = Vector3::new(-0.05 * cos, 0.045 * side, 0.18 + 0.05 * sin);
+                let heel: Vector3<f64> = foot * Vector3::new(-0.05, 0.036 * side, 0.0);
+                let rod = 0.009_f64.hypot(0.18);
+                assert!(((pin - heel).norm() - rod).abs() < 1e-12);
+            }
+            solved += 1;
+        }
+    }
+    assert!(solved > 400, "{solved}");
+}
+
+/// A mechanism of two legs, in metres and radians, with its platform at a point.
+fn legs(point: [f64; 3], legs: [&[&str]; 2]) -> Manipulator {
+    let leg = |(i, joints): (usize, &&[&str])| {
+        let joint = |(k, joint): (usize, &&str)| format!("{{ name = \"j{i}{k}\", {joint} }}");
+        let joints: Vec<String> = joints.iter().enumerate().map(joint).collect();
+        format!("[[leg]]\nname = \"leg{i}\"\njoints = [\n{},\n]\n", joints.join(",\n"))
+    };
+    let legs: String = legs.iter().enumerate().map(leg).collect();
+    let head = "format = 1\nname = \"loop\"\nunits = { length = \"m\", angle = \"rad\" }\n";
+    Manipulator::read(&format!("{head}[platform]\npoint = {point:?}\n{legs}")).unwrap()
+}
+
+fn axis(kind: &str, axis: Vector3<f64>, point: Vector3<f64>) -> String {
+    let [axis, point] = [axis, point].map(|v| <[f64; 3]>::from(v));
+    format!("type = \"{kind}\", axis = {axis:?}, point = {point:?}")
+}
+
+/// A four-bar's coupler has no closed form, its crank has: the coupler's length stays, on both branches.
+#[test]
+fn a_four_bar_is_moved_by_its_crank() {
+    let z = Vector3::z();
+    let at = |x: f64, y: f64| axis("revolute", z, Vector3::new(x, y, 0.0));
+    let [a, b, c, d] =
+        [at(0.0, 0.0) + ", actuated = true", at(0.03, 0.08), at(0.15, 0.0), at(0.17, 0.11)];
+    let m = legs([0.1, 0.1, 0.0], [&[&a, &b], &[&c, &d]]);
+    assert_eq!(m.mechanism().legs[0].joints.len(), 1);
+    assert_eq!(m.task_coordinates()[0].name, "theta");
+    let (mut all, mut at) = (m.all_modes(), m.solution());
+    let turned = |x: f64, y: f64, q: f64| {
+        Rotation3::from_axis_angle(&Vector3::z_axis(), q) * Vector3::new(x, y, 0.0)
+    };
+    let mut solved = 0;
+    for i in -20..=20 {
+        let theta = 0.15 * f64::from(i);
+        let Some(found) = m.inverse_all(&[theta], &mut all).unwrap() else { continue };
+        let modes: Vec<_> = found.modes(&m).collect();
+        for mode in modes {
+            let joints = m.solution_in_mode(&all, mode, &mut at).unwrap().joints();
+            assert!((joints[0] - theta).abs() < 1e-12);
+            let pin = turned(0.03, 0.08, theta);
+            let tip = Vector3::new(0.15, 0.0, 0.0) + turned(0.02, 0.11, joints[1]);
+            assert!(((tip - pin).norm() - 0.14_f64.hypot(0.03)).abs() < 1e-12);
+            solved += 1;
+        }
+    }
+    assert!(solved > 30, "{solved}");
+}
+
+/// Two cranks and a rod between balls: an RSSR, of which the rod spins.
+#[test]
+fn a_spatial_four_bar_keeps_its_rod() {
+    let (x, y) = (Vector3::x(), Vector3::y());
+    let crank = axis("revolute", x, Vector3::zeros()) + ", actuated = true";
+    let rocker = axis("revolute", y, Vector3::new(0.2, 0.1, 0.0));
+    let [a, b] = ["[0.02, 0.05, 0.02]", "[0.23, 0.12, 0.08]"]
+        .map(|p| format!("type = \"spherical\", point = {p}"));
+    let m = legs([0.23, 0.12, 0.08], [&[&crank, &a], &[&rocker, &b]]);
+    assert_eq!(m.decomposition().platform(), PlatformSet::Stem(0));
+    let (mut all, mut at) = (m.all_modes(), m.solution());
+    let rod = Vector3::<f64>::new(0.21, 0.07, 0.06).norm();
+    let mut solved = 0;
+    for i in -20..=20 {
+        let theta = 0.15 * f64::from(i);
+        let Some(found) = m.inverse_all(&[theta], &mut all).unwrap() else { continue };
+        let modes: Vec<_> = found.modes(&m).collect();
+        for mode in modes {
+            let joints = m.solution_in_mode(&all, mode, &mut at).unwrap().joints();
+            let pin: Vector3<f64> = Rotation3::from_axis_angle(&Vector3::x_axis(), theta)
+                * Vector3::new(0.02, 0.05, 0.02);
+            let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), joints[1]);
+            let tip: Vector3<f64> =
+                Vector3::new(0.2, 0.1, 0.0) + turn * Vector3::new(0.03, 0.02, 0.08);
+            assert!(((tip - pin).norm() - rod).abs() < 1e-12);
+            solved += 1;
+        }
+    }
+    assert!(solved > 60, "{solved}");
+}
+
+/// Bennett's linkage, overconstrained: the product of the half angles' tangents is constant (Bennett 1903).
+#[test]
+fn bennett_s_linkage() {
+    // Links a and b with twists alpha and beta: a / sin alpha = b / sin beta.
+    let (a, alpha, beta) = (0.1_f64, 0.6_f64, 1.1_f64);
+    let b = a * beta.sin() / alpha.sin();
+    let constant = (0.5 * (beta + alpha)).sin() / (0.5 * (beta - alpha)).sin();
+    // The closed loop at one angle, joint by joint.
+    let (first, second) = (1.0_f64, |t: f64| 2.0 * (constant / (0.5 * t).tan()).atan());
+    let angles = |t: f64| [t, second(t), -t, -second(t)];
+    let links = [(a, alpha), (b, beta), (a, alpha), (b, beta)];
+    let place = |t: f64| {
+        let (mut turn, mut point, mut axes) = (Rotation3::identity(), Vector3::zeros(), Vec::new());
+        for (angle, (length, twist)) in angles(t).into_iter().zip(links) {
+            axes.push((turn * Vector3::z(), point));
+            turn *= Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
+            point += turn * Vector3::new(length, 0.0, 0.0);
+            turn *= Rotation3::from_axis_angle(&Vector3::x_axis(), twist);
+        }
+        assert!(point.norm() < 1e-12 && turn.angle() < 1e-7, "{t}: open by {point:?}");
+        axes
+    };
+    let joint = |(u, p): (Vector3<f64>, Vector3<f64>)| axis("revolute", u, p);
+    let axes = place(first);
+    // The first joint's axis stands still, and the last one's, before the closing link.
+    let crank = joint(axes[0]) + ", actuated = true";
+    let [two, three, four] = [joint(axes[1]), joint(axes[2]), joint(axes[3])];
+    let m = legs([0.05, 0.05, 0.05], [&[&crank, &two], &[&four, &three]]);
+    let (mut all, mut at) = (m.all_modes(), m.solution());
+    let mut solved = 0;
+    for i in -30..30 {
+        let theta = 0.1 * f64::from(i);
+        if (0.5 * (first + theta)).tan().abs() < 0.05 {
+            continue;
+        }
+        let found = m.inverse_all(&[theta], &mut all).unwrap().expect("it turns all the way");
+        let mode = found.modes(&m).next().unwrap();
+        let joints = m.solution_in_mode(&all, mode, &mut at).unwrap().joints();
+        // The crank's neighbour counts as before, though it is passed from its other side.
+        let moved = second(first + theta) - second(first);
+        let own = joints[number(&m, "j01")];
+        let off = (0.5 * (own - moved)).sin().abs();
+        assert!(off < 1e-8, "{theta}: {own} {moved}");
+        solved += 1;
+    }
+    assert!(solved > 50, "{solved}");
+}
+
+/// Of a stem whose coordinates cannot be found one by one, the joints are named; and only loops have other links for a
+/// platform.
+#[test]
+fn what_has_no_closed_form_is_refused() {
+    let text = file::write(
+        Manipulator::example("tricept").unwrap().mechanism(),
+        file::FileUnits::SI,
+        file::Digits::All,
+    );
+    // A stem with an arm at its end, of two revolutes that do not meet.
+    let arm = r#"{ name = "A5", type = "revolute", axis = [1, 0, 0], point = [0, 0.1, 1.0], actuated = true },
+      { name = "A6", type = "revolute", axis = [0, 1, 0.3], point = [0.1, 0.2, 1.1], actuated = true }
+]"#;
+    let place = text.rfind(']').unwrap();
+    let text = format!("{},\n{arm}", text[..place].trim_end().trim_end_matches(','));
+    let mechanism = file::read(&text).unwrap().mechanism;
+    assert!(rerooted(&mechanism).is_empty());
+    match Manipulator::new(mechanism) {
+        Err(CompileError::Constraint(ConstraintError::Stem { leg, reason })) => {
+            assert_eq!(leg, "stem");
+            assert!(
+                reason.to_string().contains("together") || reason.to_string().contains("choices"),
+                "{reason}"
+            );
+        }
+        other => panic!("{:?}", other.err()),
+    }
+}
