@@ -256,7 +256,7 @@ pub fn mechanism(
         imaginary_joints,
         first_section_motions: 0,
         upper_mobility: 0,
-        stem: None,
+        constrained: None,
         redundancy: 0,
         deviation: 0.0,
     };

@@ -17,11 +17,14 @@ impl Way<'_> {
             PlatformSet::Pair => None,
             PlatformSet::Subgroup => Some(d.lower.name()),
             PlatformSet::Free => Some(SubspaceClass::Full.name()),
-            PlatformSet::Stem(_) => None,
+            PlatformSet::Stem(_) | PlatformSet::Constrained => None,
         };
         let stem = match kind {
             PlatformSet::Stem(leg) => Some(self.legs[leg].name),
-            PlatformSet::Pair | PlatformSet::Subgroup | PlatformSet::Free => None,
+            PlatformSet::Pair
+            | PlatformSet::Subgroup
+            | PlatformSet::Free
+            | PlatformSet::Constrained => None,
         };
         let motion = self.motion();
         json!({ "kind": kind.name(), "subspace": subspace, "stem": stem, "motion": motion })
@@ -46,7 +49,10 @@ impl Way<'_> {
         let motion = self.decomposition.motion();
         match self.decomposition.platform() {
             PlatformSet::Stem(leg) => format!("{motion}: {}", self.legs[leg].name),
-            PlatformSet::Pair | PlatformSet::Subgroup | PlatformSet::Free => motion,
+            PlatformSet::Pair
+            | PlatformSet::Subgroup
+            | PlatformSet::Free
+            | PlatformSet::Constrained => motion,
         }
     }
 
@@ -54,6 +60,7 @@ impl Way<'_> {
     pub(super) fn solved_whole(&self) -> String {
         let could = match self.decomposition.platform() {
             PlatformSet::Free => "each leg lets the platform do everything",
+            PlatformSet::Constrained => "some legs let the platform do less than it could",
             PlatformSet::Pair | PlatformSet::Subgroup | PlatformSet::Stem(_) => {
                 "each leg lets the platform do that, or more"
             }

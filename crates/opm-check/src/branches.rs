@@ -74,7 +74,7 @@ impl Alone {
         let alone = Mechanism { legs: vec![mechanism.legs[number].clone()], ..mechanism.clone() };
         let misfit = decomposition.deviation;
         let legs = vec![split.clone()];
-        let decomposition = Decomposition { legs, stem: None, ..decomposition.clone() };
+        let decomposition = Decomposition { legs, constrained: None, ..decomposition.clone() };
         let cylinder = |class: &SubspaceClass| matches!(class, SubspaceClass::Cylindrical { .. });
         let cylindrical = [cylinder(&decomposition.lower), cylinder(&decomposition.upper)];
         let manipulator = Manipulator::with_decomposition(alone, decomposition)?;

@@ -37,7 +37,7 @@ pub use near::{JointMiss, NearMiss, Snapped, nearly, slightly_off, snap};
 pub use reorder::{OrderChange, Reordered};
 pub use reroot::rerooted;
 pub use survey::{Applies, LegSurvey, Outside, PlatformMotion, Survey, survey};
-pub use whole::{PlatformSet, WholeMiss};
+pub use whole::{Constrained, PlatformSet, WholeMiss};
 
 use crate::chain::whole::WholeLeg;
 use crate::decomposition::mobility::{HomeSingularity, Mobility, MobilityError, frame, mobility};
@@ -119,8 +119,8 @@ pub struct Decomposition {
     /// identity where they share nothing else. Its axis points in the positive direction: to the side that the mechanism's
     /// [`TaskHints`](crate::mechanism::TaskHints) give, or else up.
     pub intersection: SubspaceClass,
-    /// The number of the leg whose motion is that of the platform: [`PlatformSet::Stem`].
-    pub stem: Option<usize>,
+    /// What constrains the platform where its motion is no group, and no product of two.
+    pub constrained: Option<Constrained>,
     /// The split of each leg, in the order of the mechanism's legs.
     pub legs: Vec<LegSplit>,
     /// The mobility of the upper section with its imaginary joints, `J`, at most `mobility`; zero where
@@ -461,7 +461,7 @@ fn one_subspace(mechanism: &Mechanism, report: &Mobility) -> Option<Decompositio
         lower: class,
         upper: SubspaceClass::Identity,
         intersection: SubspaceClass::Identity,
-        stem: None,
+        constrained: None,
         legs: mechanism.legs.iter().map(whole).collect(),
         imaginary_joints: 0,
         first_section_motions: report.mobility,
@@ -590,7 +590,7 @@ impl<'a> Sections<'a> {
             lower: self.lower.class.restored(frame),
             upper: self.upper.class.restored(frame),
             intersection,
-            stem: None,
+            constrained: None,
             legs: self.legs.iter().enumerate().map(split).collect(),
             imaginary_joints,
             first_section_motions: mobility - upper_motions,

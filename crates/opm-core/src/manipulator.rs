@@ -536,8 +536,8 @@ impl Compiled {
             legs.push(compiled);
         }
         let names: Vec<&str> = mechanism.legs.iter().map(|leg| leg.name.as_str()).collect();
-        let mut dependent = match decomposition.stem {
-            Some(stem) => Some(Dependent::of_stem(&task, mechanism, stem, length)?),
+        let mut dependent = match decomposition.constrained {
+            Some(by) => Some(Dependent::of_whole(&task, mechanism, by, length)?),
             None => Dependent::new(&task, &legs, &names, decomposition.mobility, length)?,
         };
         let choices: Vec<usize> = dependent.iter().flat_map(Dependent::choosing_legs).collect();

@@ -3,10 +3,10 @@
 //! Nothing has to be shared by the legs but the motion of the platform. It is found from the twists that all legs allow
 //! at home, and certified by finite displacements: every leg is solved at each of them (see [`crate::chain::whole`]). Where these
 //! twists are no group, but those of one leg, that leg is the *stem*: the platform moves as it lets it. Its motion is described
-//! by the coordinates of a group around it, of which some depend on the others.
+//! by the coordinates of a group around it, of which some depend on the others. So is what several legs allow together.
 
 use super::architecture::chain;
-use super::mobility::{Mobility, frame};
+use super::mobility::{Mobility, assembled, frame};
 use super::{DecomposeError, Decomposition, Freedom, LegSplit, ranked};
 use crate::chain::whole::{LegJoint, NoOrder, WholeLeg};
 use crate::group::SubspaceKind;
@@ -29,16 +29,31 @@ pub enum PlatformSet {
     Free,
     /// The displacements that the leg with this number allows, which are no group.
     Stem(usize),
+    /// The displacements that several legs allow together, which are no group.
+    Constrained,
+}
+
+/// What constrains a platform whose motion is no group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constrained {
+    /// The leg with this number: the platform moves as it does.
+    Stem(usize),
+    /// Several legs together, which leave so many freedoms.
+    Legs {
+        /// The number of freedoms of the platform.
+        freedoms: usize,
+    },
 }
 
 impl PlatformSet {
-    /// A short name: `pair`, `subgroup`, `free` or `stem`.
+    /// A short name: `pair`, `subgroup`, `free`, `stem` or `constrained`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pair => "pair",
             Self::Subgroup => "subgroup",
             Self::Free => "free",
             Self::Stem(_) => "stem",
+            Self::Constrained => "constrained",
         }
     }
 }
@@ -115,7 +130,10 @@ impl Decomposition {
     /// The set in which the platform moves.
     pub fn platform(&self) -> PlatformSet {
         match (self.is_whole(), self.upper) {
-            _ if self.stem.is_some() => PlatformSet::Stem(self.stem.unwrap_or(0)),
+            _ if self.constrained.is_some() => match self.constrained {
+                Some(Constrained::Stem(leg)) => PlatformSet::Stem(leg),
+                Some(Constrained::Legs { .. }) | None => PlatformSet::Constrained,
+            },
             (_, SubspaceClass::Identity) => PlatformSet::Subgroup,
             (true, _) => PlatformSet::Free,
             (false, _) => PlatformSet::Pair,
@@ -133,6 +151,7 @@ impl Decomposition {
             PlatformSet::Pair => format!("{}, then {}", words(&self.lower), words(&self.upper)),
             PlatformSet::Subgroup => words(&self.lower).to_owned(),
             PlatformSet::Free => words(&SubspaceClass::Full).to_owned(),
+            PlatformSet::Constrained => "what several legs allow together".to_owned(),
             PlatformSet::Stem(stem) => match (self.upper, self.lower) {
                 (_, SubspaceClass::Planar { normal: axis }) if self.legs[stem].lower.len() == 1 => {
                     words(&SubspaceClass::Rotation { axis, point: Point3::origin() }).to_owned()
@@ -186,7 +205,7 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
             let found = Found {
                 lower: SubspaceClass::TranslationalSpace,
                 upper: SubspaceClass::Spherical { centre: mechanism.platform },
-                stem: None,
+                constrained: None,
                 twists: SubspaceClass::Full.screws(),
                 motions: motions(&SubspaceClass::Full, frame.length),
             };
@@ -196,7 +215,7 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
             let found = Found {
                 lower: class,
                 upper: SubspaceClass::Identity,
-                stem: None,
+                constrained: None,
                 twists: class.screws(),
                 motions: motions(&class, frame.length),
             };
@@ -206,11 +225,21 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
             }
         }
         Some(subspace) => WholeMiss::NoCoordinates { subspace },
-        None => no_group,
+        None => no_group.clone(),
     };
     let is_stem = |leg: &Leg| Freedom::of_leg(leg).len() == dimension;
     match mechanism.legs.iter().position(is_stem) {
         Some(stem) => Found::of_stem(mechanism, stem, frame.length).solved(mechanism, report),
+        None if miss == no_group => {
+            let found = Found {
+                lower: SubspaceClass::TranslationalSpace,
+                upper: SubspaceClass::Spherical { centre: mechanism.platform },
+                constrained: Some(Constrained::Legs { freedoms: dimension }),
+                twists: common.screws(),
+                motions: assembled(mechanism),
+            };
+            found.solved(mechanism, report)
+        }
         None => Err(miss),
     }
 }
@@ -219,7 +248,7 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
 struct Found {
     lower: SubspaceClass,
     upper: SubspaceClass,
-    stem: Option<usize>,
+    constrained: Option<Constrained>,
     /// Its twists at home.
     twists: Vec<Screw>,
     /// Some of its displacements, at random.
@@ -246,11 +275,11 @@ impl Found {
             each.fold(Isometry3::identity(), |all, joint| all * joint)
         };
         let motions = configurations(leg, length).map(displaced).collect();
-        Self { lower, upper, stem: Some(stem), twists: leg.screws(), motions }
+        Self { lower, upper, constrained: Some(Constrained::Stem(stem)), twists: leg.screws(), motions }
     }
 
     fn solved(self, mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {
-        let Self { lower, upper, stem, twists, motions } = self;
+        let Self { lower, upper, constrained, twists, motions } = self;
         let frame = frame(mechanism);
         let deviation = |leg: &Leg| {
             let span = MotionSubspace::span(frame, &leg.screws());
@@ -277,7 +306,7 @@ impl Found {
             lower,
             upper,
             intersection: SubspaceClass::Identity,
-            stem,
+            constrained,
             legs: legs?,
             imaginary_joints: 0,
             first_section_motions: report.mobility,
@@ -377,6 +406,7 @@ impl Decomposition {
             PlatformSet::Free => motions(&SubspaceClass::Full, length),
             PlatformSet::Pair | PlatformSet::Subgroup => motions(&self.lower, length),
             PlatformSet::Stem(stem) => Found::of_stem(mechanism, stem, length).motions,
+            PlatformSet::Constrained => assembled(mechanism),
         };
         Some(solved(leg, &motions, length).map(Cow::Owned))
     }

@@ -14,7 +14,8 @@
 //! it rises (the plus branch) and falls (minus), or one. A section with one joint that moves has a one-parameter
 //! motion: one of its coordinates tells the joint, and the joint the others ([`one_joint`]).
 //!
-//! Where every leg is solved whole and one is the [`stem`], all dependent coordinates follow from it at once.
+//! Where every leg is solved whole, one is the [`stem`] from which all dependent coordinates follow at once, or they follow from
+//! the [`rows`] of several.
 //!
 //! Further legs may impose constraints that the platform obeys already. They are only checked.
 
@@ -23,6 +24,7 @@ pub(crate) mod constraint;
 pub(super) mod form;
 mod many;
 pub(crate) mod one_joint;
+mod rows;
 mod stem;
 pub(crate) mod zeros;
 
@@ -30,6 +32,8 @@ use super::Mode;
 use super::leg::{CompiledLeg, Section};
 use super::mode::{Choices, ModeLayout};
 use crate::chain::whole::NoOrder;
+use crate::decomposition::mobility::assembled;
+use crate::decomposition::whole::Constrained;
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::mechanism::Mechanism;
 use crate::numeric::Quantity;
@@ -37,6 +41,7 @@ use crate::task::{CoordinateKind, Task};
 use constraint::{Constraint, constraints, follows, order, target_of};
 pub(super) use many::Complete;
 use one_joint::OneJoint;
+use rows::{NoRows, Rows};
 use stem::Stem;
 use zeros::Function;
 
@@ -84,6 +89,9 @@ pub enum ConstraintError {
         /// Why not.
         reason: NoOrder,
     },
+    /// The constraints of several legs that are solved whole have no closed form.
+    #[error(transparent)]
+    Rows(NoRows),
     /// The constraints of several legs differ, or those of one have no closed form in this order.
     #[error(
         "legs {} constrain the platform in more ways than closed-form inverse kinematics covers: the mobility is \
@@ -107,6 +115,8 @@ impl ConstraintError {
         match self {
             Self::Singular { leg, .. } | Self::Stem { leg, .. } | Self::Poles { leg } => Some(leg),
             Self::Several { legs, .. } => legs.first().map(String::as_str),
+            Self::Rows(NoRows::Leg { leg, .. }) => Some(leg),
+            Self::Rows(_) => None,
         }
     }
 }
@@ -118,8 +128,8 @@ pub(crate) struct Dependent {
     pub independent: Vec<usize>,
     /// The numbers of the dependent ones.
     pub coordinates: Vec<usize>,
-    /// How they follow where one leg is the stem; then there are no steps.
-    stem: Option<Stem>,
+    /// How they follow where legs are solved whole; then there are no steps.
+    whole: Option<Whole>,
     steps: Vec<Step>,
     /// Constraints that are not used by a step.
     checks: Vec<Constraint>,
@@ -127,6 +137,40 @@ pub(crate) struct Dependent {
     bits: Vec<u32>,
     /// The size of the mechanism, metres.
     size: f64,
+}
+
+/// How dependent coordinates follow where legs are solved whole.
+#[derive(Clone, Debug)]
+pub(crate) enum Whole {
+    /// From the one leg that the platform moves as.
+    Stem(Stem),
+    /// From the constraints of several legs.
+    Rows(Rows),
+}
+
+impl Whole {
+    /// The first leg that constrains.
+    fn leg(&self) -> usize {
+        match self {
+            Self::Stem(stem) => stem.leg,
+            Self::Rows(rows) => rows.leg(),
+        }
+    }
+
+    fn choices(&self) -> usize {
+        match self {
+            Self::Stem(stem) => stem.choices(),
+            Self::Rows(rows) => rows.choices(),
+        }
+    }
+
+    /// The bits of its choices.
+    fn bits(&self) -> [Option<u32>; 4] {
+        match self {
+            Self::Stem(stem) => stem.bits,
+            Self::Rows(rows) => [rows.bit, None, None, None],
+        }
+    }
 }
 
 /// One step of the solution.
@@ -195,30 +239,42 @@ impl Dependent {
             let legs = legs.collect();
             return Err(ConstraintError::Several { legs, mobility, determined });
         }
-        let (stem, bits) = (None, Vec::new());
-        Ok(Some(Self { independent, coordinates, stem, steps, checks, bits, size }))
+        let (whole, bits) = (None, Vec::new());
+        Ok(Some(Self { independent, coordinates, whole, steps, checks, bits, size }))
     }
 
-    /// The dependent coordinates of a mechanism whose platform moves as the leg with this number lets it.
+    /// The dependent coordinates of a mechanism whose legs are solved whole.
     ///
     /// # Errors
-    /// If no coordinates determine that motion in closed form.
-    pub fn of_stem(
+    /// If no coordinates determine the platform's motion in closed form.
+    pub fn of_whole(
         task: &Task,
         mechanism: &Mechanism,
-        leg: usize,
+        by: Constrained,
         size: f64,
     ) -> Result<Self, ConstraintError> {
-        let name = || mechanism.legs[leg].name.clone();
-        let (independent, stem) =
-            Stem::new(task, mechanism, leg, size).map_err(|reason| match reason {
-                Some(reason) => ConstraintError::Stem { leg: name(), reason },
-                None => ConstraintError::Poles { leg: name() },
-            })?;
+        let (mut independent, whole) = match by {
+            Constrained::Stem(leg) => {
+                let name = || mechanism.legs[leg].name.clone();
+                let found = Stem::new(task, mechanism, leg, size);
+                let (independent, stem) = found.map_err(|reason| match reason {
+                    Some(reason) => ConstraintError::Stem { leg: name(), reason },
+                    None => ConstraintError::Poles { leg: name() },
+                })?;
+                (independent, Whole::Stem(stem))
+            }
+            Constrained::Legs { freedoms } => {
+                let motions = assembled(mechanism);
+                let found = Rows::new(task, mechanism, freedoms, &motions, size);
+                let (independent, rows) = found.map_err(ConstraintError::Rows)?;
+                (independent, Whole::Rows(rows))
+            }
+        };
+        independent.sort_unstable();
         let all = 0..task.coordinates.len();
         let coordinates = all.filter(|i| !independent.contains(i)).collect();
         let (steps, checks, bits) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Self { independent, coordinates, stem: Some(stem), steps, checks, bits, size })
+        Ok(Self { independent, coordinates, whole: Some(whole), steps, checks, bits, size })
     }
 
     /// The steps, in their order.
@@ -228,10 +284,11 @@ impl Dependent {
 
     /// For each two-valued choice of the steps, the leg that it belongs to.
     pub fn choosing_legs(&self) -> impl Iterator<Item = usize> + '_ {
-        let of_stem =
-            self.stem.iter().flat_map(|stem| std::iter::repeat_n(stem.leg, stem.choices()));
+        let whole = self.whole.iter();
+        let of_whole =
+            whole.flat_map(|whole| std::iter::repeat_n(whole.leg(), whole.choices()));
         let choosing = self.steps.iter().filter(|step| step.solution.has_choice());
-        choosing.map(|step| step.solution.leg()).chain(of_stem)
+        choosing.map(|step| step.solution.leg()).chain(of_whole)
     }
 
     /// Takes the bits of the choices from a layout that was made for them.
@@ -244,9 +301,13 @@ impl Dependent {
                 given[leg] += 1;
             }
         }
-        if let Some(stem) = &mut self.stem {
-            let given = layout.pose_bits(stem.leg);
-            stem.bits.iter_mut().zip(given).for_each(|(to, bit)| *to = Some(bit));
+        match &mut self.whole {
+            Some(Whole::Stem(stem)) => {
+                let given = layout.pose_bits(stem.leg);
+                stem.bits.iter_mut().zip(given).for_each(|(to, bit)| *to = Some(bit));
+            }
+            Some(Whole::Rows(rows)) => rows.bit = layout.pose_bits(rows.leg()).next(),
+            None => {}
         }
         let mut bits: Vec<u32> = self.own_bits().collect();
         let used = self.steps.iter().map(|step| (step.solution.leg(), step.solution.section()));
@@ -263,8 +324,8 @@ impl Dependent {
 
     /// The bits of the choices with which the dependent coordinates follow.
     fn own_bits(&self) -> impl Iterator<Item = u32> {
-        let of_stem = self.stem.iter().flat_map(|stem| stem.bits);
-        self.steps.iter().map(|step| step.bit).chain(of_stem).flatten()
+        let of_whole = self.whole.iter().flat_map(Whole::bits);
+        self.steps.iter().map(|step| step.bit).chain(of_whole).flatten()
     }
 
     /// The number of combinations of choices on which the dependent coordinates depend.
@@ -309,17 +370,22 @@ impl Dependent {
         self.checks.iter().map(|check| (check.leg, Some(check.section)))
     }
 
-    /// The number of the leg that is the stem.
-    pub fn stem(&self) -> Option<usize> {
-        self.stem.as_ref().map(|stem| stem.leg)
+    /// How they follow where legs are solved whole.
+    pub fn whole(&self) -> Option<&Whole> {
+        self.whole.as_ref()
     }
 
     /// The legs and sections whose constraints determine the dependent coordinates.
-    /// A stem constrains as a whole.
+    /// A leg that is solved whole constrains as a whole.
     pub fn constraining(&self) -> impl Iterator<Item = (usize, Option<Section>)> + '_ {
-        let of_stem = self.stem.iter().map(|stem| (stem.leg, None));
+        let of_whole: Vec<usize> = match &self.whole {
+            Some(Whole::Stem(stem)) => vec![stem.leg],
+            Some(Whole::Rows(rows)) => rows.legs().collect(),
+            None => Vec::new(),
+        };
+        let of_whole = of_whole.into_iter().map(|leg| (leg, None));
         let of_step = |step: &Step| (step.solution.leg(), Some(step.solution.section()));
-        self.steps.iter().map(of_step).chain(of_stem)
+        self.steps.iter().map(of_step).chain(of_whole)
     }
 
     /// The leg, the section and the numbers of the locked joints of each step, which are as many as it has
@@ -461,4 +527,24 @@ impl Closed {
             Self::Joint(joint) => joint.has_choice(),
         }
     }
+}
+
+/// The subsets of some numbers with so many of them, in the order of the numbers; each is sorted.
+fn subsets(numbers: &[usize], of: usize) -> impl Iterator<Item = Vec<usize>> {
+    let count = numbers.len();
+    let mut next = (of <= count).then(|| (0..of).collect::<Vec<usize>>());
+    std::iter::from_fn(move || {
+        let now = next.take()?;
+        let mut following = now.clone();
+        if let Some(place) = (0..of).rev().find(|&i| now[i] < count - of + i) {
+            following[place] += 1;
+            for i in place + 1..of {
+                following[i] = following[i - 1] + 1;
+            }
+            next = Some(following);
+        }
+        let mut subset: Vec<usize> = now.into_iter().map(|i| numbers[i]).collect();
+        subset.sort_unstable();
+        Some(subset)
+    })
 }

@@ -74,8 +74,8 @@ impl Manipulator {
     fn locked_motion(&self, dependent: &Dependent, at: &Solution, given: [&[f64]; 2]) -> AllRates {
         let mut found = [[0.0; MOST]; 2];
         let twists = self.section_twists(&at.solved.pose, given[0], given[1]);
-        if let Some(stem) = dependent.stem() {
-            return self.stem_motion(at, stem, &twists);
+        if dependent.whole().is_some() {
+            return self.held_motion(at, &twists);
         }
         for (row, (leg, section, joint)) in dependent.locked(&self.legs).enumerate().take(MOST) {
             let differential = self.leg_differential(at, leg);

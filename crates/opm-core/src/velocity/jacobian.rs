@@ -304,7 +304,7 @@ impl Manipulator {
         if self.is_whole() {
             self.platform_columns(at, out);
             let regular = self.whole_rows(at, rows, out);
-            self.stem_rows(at, out);
+            self.held_rows(at, out);
             return regular;
         }
         let task = self.task();

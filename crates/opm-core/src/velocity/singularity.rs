@@ -23,7 +23,7 @@
 use super::Jacobians;
 use super::closure::{along_unit, inputs, row_unit, section_rows, twist_unit, volume};
 use crate::group::LocalTwist;
-use crate::manipulator::{CompiledLeg, Dependent, Manipulator, Section};
+use crate::manipulator::{CompiledLeg, Manipulator, Section};
 use crate::numeric::svd::Svd;
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -186,10 +186,12 @@ impl Layout {
             let driven = manipulator.actuated().iter().filter(|number| own.contains(number));
             rows.extend(driven.map(|_| Cause { leg, section: Section::Lower }));
         }
-        if let Some(leg) = manipulator.dependent.as_ref().and_then(Dependent::stem) {
-            let held = manipulator.dependent_coordinates();
-            rows.extend(held.iter().map(|_| Cause { leg, section: Section::Lower }));
+        let mut held: Vec<usize> = manipulator.constraining_legs().map(|(leg, _)| leg).collect();
+        if let Some(&last) = held.last() {
+            // A stem holds with several wrenches.
+            held.resize(manipulator.dependent_coordinates().len(), last);
         }
+        rows.extend(held.into_iter().map(|leg| Cause { leg, section: Section::Lower }));
         Self {
             along: vec![None; manipulator.legs.len()],
             along_count: 0,

@@ -16,7 +16,8 @@ use super::{
 use crate::chain::whole::MOST_FREEDOMS as MOST;
 use crate::group::screw::Screw;
 use crate::group::{LocalTwist, Subspace, SubspaceKind};
-use crate::manipulator::{Manipulator, Solution, WholeJoint};
+use crate::manipulator::dependent::Whole as Constraining;
+use crate::manipulator::{Dependent, Manipulator, Solution, WholeJoint};
 use crate::task::Task;
 use nalgebra::{
     DMatrix, Isometry3, Matrix3, Matrix6, SVector, Translation3, UnitQuaternion, Vector3, Vector6,
@@ -426,36 +427,65 @@ impl Manipulator {
         basis.into_iter().take(known).skip(start).map(|row| row.fixed_rows::<6>(0).into_owned())
     }
 
-    /// The rates and accelerations of the platform along the wrenches of the stem, which are zero where it moves as the stem lets
-    /// it.
-    pub(super) fn stem_motion(
+    /// The wrenches by which constraining legs hold the platform, as many as there are dependent coordinates, each with the number of
+    /// its leg. `differential` gives that of a leg.
+    fn holding(
         &self,
         at: &Solution,
-        stem: usize,
-        twists: &SectionTwists,
-    ) -> [[f64; 6]; 2] {
+        point: &Vector3<f64>,
+        differential: impl Fn(usize) -> WholeDifferential,
+    ) -> ([(usize, Vector6<f64>); 6], usize) {
+        let (mut found, mut count) = ([(0, Vector6::zeros()); 6], 0);
+        let mut add = |leg: usize, wrench: Vector6<f64>| {
+            if let Some(free) = found.get_mut(count) {
+                *free = (leg, wrench);
+                count += 1;
+            }
+        };
+        match self.dependent.as_ref().and_then(Dependent::whole) {
+            Some(Constraining::Stem(stem)) => {
+                let wrenches = self.stem_wrenches(&differential(stem.leg), point);
+                wrenches.for_each(|wrench| add(stem.leg, wrench));
+            }
+            Some(Constraining::Rows(rows)) => {
+                let g = at.displacement(self);
+                rows.wrenches(&g).for_each(|(leg, wrench)| add(leg, wrench));
+            }
+            None => {}
+        }
+        (found, count)
+    }
+
+    /// The rates and accelerations of the platform along the wrenches of constraining legs, which are zero where it moves as these
+    /// let it.
+    pub(super) fn held_motion(&self, at: &Solution, twists: &SectionTwists) -> [[f64; 6]; 2] {
         let (point, size) = (self.reference(at), self.characteristic_length());
-        let leg = DisplacedLeg::new(self, at, stem, Rows::All);
-        let differential = self.whole_differential(&leg, &point);
+        let leg = |number: usize| DisplacedLeg::new(self, at, number, Rows::All);
+        let (wrenches, count) =
+            self.holding(at, &point, |number| self.whole_differential(&leg(number), &point));
         let [twist, derivative] = twists.of_platform(self.task(), &at.solved.v);
         let moved = about(&twist, &point, size);
-        let rates: [f64; MOST] = std::array::from_fn(|i| differential.rate(i, &moved));
-        let change = about(&plus(&derivative, -1.0, &leg.bias(&rates)), &point, size);
         let mut found = [[0.0; 6]; 2];
-        for (row, wrench) in self.stem_wrenches(&differential, &point).enumerate().take(6) {
+        for (row, (number, wrench)) in wrenches.iter().enumerate().take(count) {
+            let displaced = leg(*number);
+            let differential = self.whole_differential(&displaced, &point);
+            let rates: [f64; MOST] = std::array::from_fn(|i| differential.rate(i, &moved));
+            let rest = plus(&derivative, -1.0, &displaced.bias(&rates));
+            let change = about(&rest, &point, size);
             (found[0][row], found[1][row]) = (wrench.dot(&moved), wrench.dot(&change));
         }
         found
     }
 
-    /// Computes the rates along the wrenches of the stem for each component of the section twist, whose columns are known.
-    pub(super) fn stem_rows(&self, at: &Solution, out: &mut Jacobians) {
-        let Some(stem) = self.dependent.as_ref().and_then(|dependent| dependent.stem()) else {
+    /// Computes the rates along the wrenches of constraining legs for each component of the section twist, whose columns are known.
+    pub(super) fn held_rows(&self, at: &Solution, out: &mut Jacobians) {
+        if self.dependent.is_none() {
             return;
-        };
+        }
         let (point, size) = (self.reference(at), self.characteristic_length());
         let lower = self.task().lower.isometry(&at.solved.v).rotation;
-        for (row, wrench) in self.stem_wrenches(&out.whole[stem], &point).enumerate() {
+        let (wrenches, count) = self.holding(at, &point, |leg| out.whole[leg].clone());
+        for (row, (_, wrench)) in wrenches.iter().enumerate().take(count) {
             for (column, twist) in out.platform.column_iter().enumerate() {
                 let angular: Vector3<f64> = lower * twist.fixed_rows::<3>(0);
                 let linear: Vector3<f64> = lower * twist.fixed_rows::<3>(3);
@@ -465,7 +495,7 @@ impl Manipulator {
         }
     }
 
-    /// Fills the closure with the actuated joints locked: a row for each of them, and for each wrench of a stem, a column for each
+    /// Fills the closure with the actuated joints locked: a row for each of them, and for each wrench of constraining legs, a column for each
     /// component of the section twist, in units of one radian or the size.
     pub(super) fn fill_whole_closure(&self, jacobians: &Jacobians, closure: &mut DMatrix<f64>) {
         let size = self.characteristic_length();

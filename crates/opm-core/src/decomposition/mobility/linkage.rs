@@ -167,6 +167,11 @@ fn relative(values: Vec<f64>) -> Vec<f64> {
 }
 
 impl Pose {
+    /// The displacement of the platform that each leg gives.
+    pub fn tips(&self) -> impl Iterator<Item = &Isometry3<f64>> {
+        self.tips.iter()
+    }
+
     /// The difference between each leg's displacement and that of the platform: one twist (six
     /// rows) per leg, to first order.
     pub fn gaps(&self, platform: &Isometry3<f64>) -> nalgebra::DVector<f64> {

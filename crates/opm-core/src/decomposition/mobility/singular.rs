@@ -11,7 +11,8 @@ use super::{absolute_values, loose_twists, platform};
 use crate::group::screw::Screw;
 use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::numeric::svd::Svd;
-use nalgebra::{DMatrix, DVector, Isometry3, Vector6};
+use crate::mechanism::Mechanism;
+use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector6};
 use std::fmt;
 
 /// Sizes of the motion to a nearby pose, in the order in which they are tried: radians, and shares
@@ -254,14 +255,37 @@ pub(super) fn singularities<'a>(
     found
 }
 
-/// An assembled pose at some distance from home, found with a first-order motion in `kernel`. Each
-/// sample is another pose.
-fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<(Vec<f64>, Pose)> {
+/// Displacements of the platform at assembled poses of a mechanism, at random.
+pub(crate) fn assembled(mechanism: &Mechanism) -> Vec<Isometry3<f64>> {
+    /// How large the first-order motions are: radians, and shares of the size.
+    const SIZES: [f64; 12] = [0.3, 0.3, 0.3, 0.3, 0.2, 0.2, 0.2, 0.2, 0.1, 0.1, 0.1, 0.1];
+    let Ok(linkage) = Linkage::new(mechanism) else { return Vec::new() };
+    let kernel = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
+    let frame = linkage.frame;
+    let found = SIZES.iter().enumerate().filter_map(|(sample, size)| {
+        let motion = random(&kernel, sample);
+        let (_, pose) = project(&linkage, &(&motion * (size / motion.amax())))?;
+        let tip = pose.tips().next()?;
+        let origin = frame.origin.coords;
+        let shift = tip.translation.vector * frame.length + origin - tip.rotation * origin;
+        Some(Isometry3::from_parts(Translation3::from(shift), tip.rotation))
+    });
+    found.collect()
+}
+
+/// A first-order motion of those in `kernel`. Each sample is another one.
+fn random(kernel: &DMatrix<f64>, sample: usize) -> DVector<f64> {
     // Fixed coefficients without a pattern: multiples of the golden ratio modulo one.
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let coefficient =
         |i: usize, _| ((1 + i + sample * kernel.ncols()) as f64 * golden).fract() - 0.5;
-    let motion = kernel * DVector::from_fn(kernel.ncols(), coefficient);
+    kernel * DVector::from_fn(kernel.ncols(), coefficient)
+}
+
+/// An assembled pose at some distance from home, found with a first-order motion in `kernel`. Each
+/// sample is another pose.
+fn nearby(linkage: &Linkage, kernel: &DMatrix<f64>, sample: usize) -> Option<(Vec<f64>, Pose)> {
+    let motion = random(kernel, sample);
     NEARBY.iter().find_map(|size| project(linkage, &(&motion * (size / motion.amax()))))
 }
 

@@ -1,7 +1,7 @@
 //! The dependent coordinates of a pose, step by step from its independent ones.
 
 use super::constraint::{Constraint, follows, target_of};
-use super::{Closed, Dependent, OBEYED};
+use super::{Closed, Dependent, OBEYED, Whole};
 use crate::chain::ReachDeficit;
 use crate::group::JointDisplacement;
 use crate::manipulator::inverse::Revolutions;
@@ -42,9 +42,13 @@ impl Dependent {
         mode: Mode,
         pose: &mut [f64],
     ) -> Result<(), Unreachable> {
-        if let Some(stem) = &self.stem {
-            let missed = |deficit| Unreachable { leg: stem.leg, section: None, deficit };
-            return stem.complete(manipulator.task(), mode, pose).map_err(missed);
+        if let Some(whole) = &self.whole {
+            let missed = |deficit| Unreachable { leg: whole.leg(), section: None, deficit };
+            let found = match whole {
+                Whole::Stem(stem) => stem.complete(manipulator.task(), mode, pose),
+                Whole::Rows(rows) => rows.complete(manipulator.task(), mode, pose),
+            };
+            return found.map_err(missed);
         }
         for step in &self.steps {
             let sign = step.sign(mode);

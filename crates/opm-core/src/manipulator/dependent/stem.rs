@@ -5,12 +5,14 @@
 //! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
 
 use crate::chain::Branch;
+use super::subsets;
 use crate::chain::ReachDeficit;
 use crate::chain::whole::{LegJoint, MOST_FREEDOMS, NoOrder, WholeLeg};
 use crate::decomposition::whole::{configurations, joints};
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::manipulator::Mode;
 use crate::mechanism::Mechanism;
+use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::numeric::angle::near;
 use crate::numeric::svd::singular_values;
@@ -58,23 +60,24 @@ enum Part {
 }
 
 /// The rotations of a task at home: their axes in base directions, and the point that they are about.
-struct Rotations {
-    angles: Angles,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rotations {
+    pub angles: Angles,
     axes: [Vector3<f64>; 3],
     centre: Point3<f64>,
 }
 
 /// The angles among the coordinates.
 #[derive(Clone, Copy, Debug)]
-struct Angles {
+pub(super) struct Angles {
     /// How many there are: three of a sphere, one of a plane, or none.
     count: usize,
     /// The number of the first one.
-    first: usize,
+    pub first: usize,
 }
 
 impl Rotations {
-    fn new(task: &Task, reference: Point3<f64>) -> Self {
+    pub fn new(task: &Task, reference: Point3<f64>) -> Self {
         let home = task.home();
         let angle = |c: &TaskCoordinate| c.quantity == Quantity::Angle;
         let first = task.coordinates.iter().position(angle).unwrap_or(home.len());
@@ -94,7 +97,7 @@ impl Rotations {
 
 impl Angles {
     /// The angles of the rotations of a pose; zeros for those that there are not.
-    fn factors(self, task: &Task, pose: &[f64]) -> [f64; 3] {
+    pub fn factors(self, task: &Task, pose: &[f64]) -> [f64; 3] {
         match self.count {
             3 => task.angles.to_factors([0, 1, 2].map(|i| pose[self.first + i])),
             _ => std::array::from_fn(|i| if i < self.count { pose[self.first + i] } else { 0.0 }),
@@ -120,9 +123,10 @@ impl Stem {
         size: f64,
     ) -> Result<(Vec<usize>, Self), Option<NoOrder>> {
         let rotations = Rotations::new(task, mechanism.platform);
-        let rates = rates(task, mechanism, leg, &rotations, size);
+        let twists = twists(&mechanism.legs[leg], &rotations.centre, size);
+        let rates = rates(task, &twists, &rotations);
         let (count, freedoms) = (task.coordinates.len(), rates.ncols());
-        let mut choices: Vec<(f64, Vec<usize>)> = subsets(count, freedoms)
+        let mut choices: Vec<(f64, Vec<usize>)> = subsets(&(0..count).collect::<Vec<_>>(), freedoms)
             .filter(|independent| separable(task, &rotations, independent))
             .map(|independent| {
                 let rows = DMatrix::from_fn(freedoms, freedoms, |i, j| rates[(independent[i], j)]);
@@ -357,44 +361,24 @@ fn separable(task: &Task, rotations: &Rotations, independent: &[usize]) -> bool 
     unknown.count() == angles.count()
 }
 
-/// The subsets of the first `count` numbers with so many of them, in alphabetical order.
-fn subsets(count: usize, of: usize) -> impl Iterator<Item = Vec<usize>> {
-    let mut next = (of <= count).then(|| (0..of).collect::<Vec<usize>>());
-    std::iter::from_fn(move || {
-        let now = next.take()?;
-        let mut following = now.clone();
-        if let Some(place) = (0..of).rev().find(|&i| now[i] < count - of + i) {
-            following[place] += 1;
-            for i in place + 1..of {
-                following[i] = following[i - 1] + 1;
-            }
-            next = Some(following);
-        }
-        Some(now)
-    })
-}
-
-/// The rates of all coordinates at home, lengths over the size, for orthonormal twists of the stem. Those of angles are zeros
-/// where home is a pole of the angles.
-fn rates(
-    task: &Task,
-    mechanism: &Mechanism,
-    leg: usize,
-    rotations: &Rotations,
-    size: f64,
-) -> DMatrix<f64> {
-    let at = rotations.centre.coords;
-    let screws = mechanism.legs[leg].screws();
+/// Orthonormal twists `(ω; v)` of a leg at home about a point, lengths over the size.
+fn twists(leg: &Leg, point: &Point3<f64>, size: f64) -> DMatrix<f64> {
+    let screws = leg.screws();
     let mut twists = DMatrix::zeros(6, screws.len());
     for (mut column, screw) in twists.column_iter_mut().zip(&screws) {
-        let linear = (screw.linear + screw.angular.cross(&at)) / size;
+        let linear = (screw.linear + screw.angular.cross(&point.coords)) / size;
         column.fixed_rows_mut::<3>(0).copy_from(&screw.angular);
         column.fixed_rows_mut::<3>(3).copy_from(&linear);
         // A slider counts as much as a rotation.
         let length = column.norm();
         column /= length;
     }
-    let twists = twists.qr().q();
+    twists.qr().q()
+}
+
+/// The rates of all coordinates at home, lengths over the size, for twists about the point that rotations are about. Those of
+/// angles are zeros where home is a pole of the angles.
+pub(super) fn rates(task: &Task, twists: &DMatrix<f64>, rotations: &Rotations) -> DMatrix<f64> {
     let Angles { count, first } = rotations.angles;
     let axes = Matrix3::from_columns(&rotations.axes);
     let regular = axes.determinant().abs() > LEVEL;
