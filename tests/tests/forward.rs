@@ -211,7 +211,7 @@ fn buffers_are_used_again() {
 fn shipped_mechanisms_are_solved() {
     let mut rng = Rng::with_seed(2);
     let mut closed = Vec::new();
-    for shipped in examples::EXAMPLES {
+    for shipped in examples::SPLIT {
         let mechanism = unlimited(file::read(shipped.text).unwrap().mechanism);
         let Ok(m) = Manipulator::new(mechanism) else { continue };
         if m.forward_closed_form().is_err() {
@@ -244,7 +244,7 @@ fn shipped_mechanisms_are_solved() {
         assert!(singular < 400, "{} {singular}", shipped.name);
     }
     let open: Vec<_> =
-        examples::EXAMPLES.iter().map(|e| e.name).filter(|n| !closed.contains(n)).collect();
+        examples::SPLIT.iter().map(|e| e.name).filter(|n| !closed.contains(n)).collect();
     let linkages = ["bennett-double-spherical-6r", "bennett-plano-spherical-6r"];
     assert_eq!(open, [&linkages[..], &["translational-planar-4dof"]].concat());
 }

@@ -2,10 +2,11 @@
 //! its sweep agree with its undecomposed legs.
 
 use fastrand::Rng;
+use opm_core::decomposition::mobility::mobility;
 use opm_core::decomposition::{DecomposeError, Decomposition, decompose};
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{Manipulator, Solution};
-use opm_core::mechanism::examples::{EXAMPLES, find};
+use opm_core::mechanism::examples::{EXAMPLES, SPLIT, find};
 use opm_core::mechanism::joint::Joint;
 use opm_core::mechanism::leg::Leg;
 use opm_core::mechanism::{Mechanism, file};
@@ -227,9 +228,9 @@ fn legs(decomposition: &Decomposition) -> String {
 
 #[test]
 fn every_mechanism_decomposes_as_its_page_says() {
-    let names: Vec<_> = EXAMPLES.iter().map(|example| example.name).collect();
+    let names: Vec<_> = SPLIT.iter().map(|example| example.name).collect();
     assert_eq!(names, PAGES.iter().map(|page| page.name).collect::<Vec<_>>());
-    for (page, example) in PAGES.iter().zip(EXAMPLES) {
+    for (page, example) in PAGES.iter().zip(SPLIT) {
         let mechanism = mechanism(example.text);
         let d = &decompose(&mechanism).unwrap()[0];
         let numbers = [d.lambda, d.mobility, d.imaginary_joints, d.first_section_motions];
@@ -252,14 +253,51 @@ fn every_mechanism_decomposes_as_its_page_says() {
     }
 }
 
-/// There are as many actuators as freedoms, so no leg works against another.
+/// The same of mechanisms whose legs are solved whole: N, what the platform does, its coordinates, the number of choices.
+const WHOLE: [(&str, usize, &str, &str, usize); 10] = [
+    ("delta", 3, "translations of space", "x y z", 6),
+    ("linear-delta", 3, "translations of space", "x y z", 6),
+    ("orthoglide", 3, "translations of space", "x y z", 6),
+    ("tripteron", 3, "translations of space", "x y z", 3),
+    ("3-upu", 3, "translations of space", "x y z", 6),
+    (
+        "quadrupteron",
+        4,
+        "translations of space and rotations about one direction",
+        "x y z theta",
+        4,
+    ),
+    ("stewart", 6, "translations and rotations of space", "x y z roll pitch yaw", 12),
+    ("hexa", 6, "translations and rotations of space", "x y z roll pitch yaw", 12),
+    ("tricept", 3, "what one leg allows, with fewer freedoms than space", "x y z", 8),
+    ("ankle", 4, "rotations about a centre that one leg allows", "roll pitch", 3),
+];
+
+#[test]
+fn mechanisms_with_whole_legs_are_as_their_pages_say() {
+    assert_eq!(EXAMPLES.len(), SPLIT.len() + WHOLE.len());
+    let shipped = EXAMPLES.iter().skip(SPLIT.len());
+    for ((name, mobility, motion, coordinates, choices), example) in WHOLE.iter().zip(shipped) {
+        assert_eq!(*name, example.name);
+        let manipulator = Manipulator::new(mechanism(example.text)).unwrap();
+        let d = manipulator.decomposition();
+        assert_eq!((d.mobility, &*d.motion()), (*mobility, *motion), "{name}");
+        let names: Vec<_> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
+        assert_eq!(names.join(" "), *coordinates);
+        let signs = manipulator.format_mode(manipulator.home_mode());
+        assert_eq!(signs.chars().filter(|sign| "+-".contains(*sign)).count(), *choices, "{name}");
+    }
+}
+
+/// There are as many actuators as freedoms that move the platform, so no leg works against another.
 #[test]
 fn every_mechanism_has_as_many_actuators_as_freedoms() {
     for example in EXAMPLES {
         let mechanism = mechanism(example.text);
         let actuated: usize =
             mechanism.joints().filter(|joint| joint.actuated).map(Joint::freedoms).sum();
-        assert_eq!(actuated, decompose(&mechanism).unwrap()[0].mobility, "{}", example.name);
+        let found = mobility(&mechanism).unwrap();
+        assert_eq!(actuated, found.mobility - found.idle, "{}", example.name);
     }
 }
 

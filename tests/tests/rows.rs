@@ -177,7 +177,7 @@ fn coarse_rows_are_no_exception() {
 /// poses.
 #[test]
 fn round_numbers_are_no_exception() {
-    for example in examples::EXAMPLES {
+    for example in examples::SPLIT {
         let Ok(manipulator) = Manipulator::new(file::read(example.text).unwrap().mechanism) else {
             continue;
         };

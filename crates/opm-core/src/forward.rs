@@ -164,11 +164,15 @@ pub enum ForwardError {
     NoClosedForm(#[from] NoClosedForm),
 }
 
+/// The same of legs that are solved whole, which close to within [`CLOSURE`](crate::chain::whole::CLOSURE).
+const OF_WHOLE: f64 = 1e-10;
+
 impl Manipulator {
     /// The largest residual of an assembly of this mechanism.
     fn largest_residual(&self) -> f64 {
         let of_deviation = DEVIATIONS * self.decomposition().deviation;
-        RESIDUAL.max(of_deviation).max(self.closure.rounding)
+        let of_whole = if self.is_whole() { OF_WHOLE } else { 0.0 };
+        RESIDUAL.max(of_deviation).max(self.closure.rounding).max(of_whole)
     }
 
     /// Whether [`Manipulator::forward`] has a closed form, and if not, why.

@@ -38,7 +38,7 @@ pub fn regular(seed: u64) -> Vec<(String, Mechanism, Decomposition)> {
             (format!("{pair:?}"), mechanism, decomposition)
         })
         .collect();
-    for example in examples::EXAMPLES {
+    for example in examples::SPLIT {
         let mechanism = file::read(example.text).unwrap().mechanism;
         if let Ok(found) = search_all(&mechanism) {
             all.push((example.name.to_owned(), mechanism, found[0].clone()));

@@ -275,7 +275,13 @@ impl Found {
             each.fold(Isometry3::identity(), |all, joint| all * joint)
         };
         let motions = configurations(leg, length).map(displaced).collect();
-        Self { lower, upper, constrained: Some(Constrained::Stem(stem)), twists: leg.screws(), motions }
+        Self {
+            lower,
+            upper,
+            constrained: Some(Constrained::Stem(stem)),
+            twists: leg.screws(),
+            motions,
+        }
     }
 
     fn solved(self, mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {

@@ -285,8 +285,7 @@ impl Dependent {
     /// For each two-valued choice of the steps, the leg that it belongs to.
     pub fn choosing_legs(&self) -> impl Iterator<Item = usize> + '_ {
         let whole = self.whole.iter();
-        let of_whole =
-            whole.flat_map(|whole| std::iter::repeat_n(whole.leg(), whole.choices()));
+        let of_whole = whole.flat_map(|whole| std::iter::repeat_n(whole.leg(), whole.choices()));
         let choosing = self.steps.iter().filter(|step| step.solution.has_choice());
         choosing.map(|step| step.solution.leg()).chain(of_whole)
     }

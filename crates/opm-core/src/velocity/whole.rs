@@ -412,17 +412,15 @@ impl Manipulator {
         }
         // Measures change their sign at singularities alone: joints and wrenches together have the same orientation everywhere.
         let columns = stem.columns[..stem.count].iter().chain(&basis[start..known]);
-        let columns: Vec<&Row> = columns.collect();
-        if columns.len() == described.len() && known > start {
-            let mut together = Matrix6::identity();
+        let mut together = Matrix6::identity();
+        for (j, column) in columns.enumerate().take(described.len()) {
             for (i, twist) in described.iter().enumerate() {
-                for (j, column) in columns.iter().enumerate() {
-                    together[(i, j)] = twist.dot(column);
-                }
+                together[(i, j)] = twist.dot(column);
             }
-            if together.determinant() < 0.0 {
-                basis[known - 1] = -basis[known - 1];
-            }
+        }
+        let all = stem.count + known - start == described.len() && known > start;
+        if all && together.determinant() < 0.0 {
+            basis[known - 1] = -basis[known - 1];
         }
         basis.into_iter().take(known).skip(start).map(|row| row.fixed_rows::<6>(0).into_owned())
     }

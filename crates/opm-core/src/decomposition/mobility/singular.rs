@@ -10,8 +10,8 @@ use super::linkage::{FirstOrder, Linkage, Pose};
 use super::{absolute_values, loose_twists, platform};
 use crate::group::screw::Screw;
 use crate::group::subspace::{SubspaceClass, TOLERANCE};
-use crate::numeric::svd::Svd;
 use crate::mechanism::Mechanism;
+use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector6};
 use std::fmt;
 

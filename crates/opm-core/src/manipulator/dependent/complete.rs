@@ -8,6 +8,7 @@ use crate::manipulator::inverse::Revolutions;
 use crate::manipulator::leg::Section;
 use crate::manipulator::{Manipulator, Mode, PoseError, Solution, Unreachable};
 use crate::numeric::Quantity;
+use crate::task::{CoordinateKind, TaskCoordinate};
 
 impl Dependent {
     /// Writes values of the independent coordinates to their places among all.
@@ -99,6 +100,9 @@ impl Dependent {
     /// mode: in the other ones the dependent coordinates may follow on another branch. Without a mode, they are those nearest
     /// to home where a condition decides the branch.
     pub fn choose_angles(&self, manipulator: &Manipulator, mode: Option<Mode>, all: &mut [f64]) {
+        if let (Some(_), Some(mode)) = (&self.whole, mode) {
+            return self.choose_followed(manipulator, mode, all);
+        }
         for step in &self.steps {
             let sign = step.sign(mode.unwrap_or(manipulator.home_mode()));
             match (&step.solution, mode) {
@@ -119,6 +123,26 @@ impl Dependent {
                 }
                 _ => {}
             }
+        }
+    }
+
+    /// The same where legs are solved whole: the angles from which the others follow in a mode.
+    fn choose_followed(&self, manipulator: &Manipulator, mode: Mode, all: &mut [f64]) {
+        let task = manipulator.task();
+        let second = |c: &TaskCoordinate| {
+            matches!(c.kind(), CoordinateKind::Xi | CoordinateKind::Tilt | CoordinateKind::Pitch)
+        };
+        let Some(second) = task.coordinates.iter().position(second) else { return };
+        let target = task.displacement(all);
+        for _ in 0..2 {
+            let mut followed = all.to_vec();
+            let found = self.complete(manipulator, mode, &mut followed);
+            let there = task.displacement(&followed);
+            if found.is_ok() && manipulator.apart(&there, &target) < OBEYED {
+                return;
+            }
+            // The second time, these are the first ones again.
+            task.take_other_angles(second, all);
         }
     }
 

@@ -9,12 +9,12 @@
 //! rows determine the positions that follow only where `F(ψ) = det [c | c · P + ⟨r, R⟩ + c₀] = 0`. That is
 //! `A cos ψ + B sin ψ + C` for the mechanisms that are covered, and its sign of slope names the branch. The positions are linear.
 
-use super::subsets;
 use super::stem::{Rotations, rates};
+use super::subsets;
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
-use crate::decomposition::whole::{configurations, joints};
 use crate::chain::whole::LegJoint;
+use crate::decomposition::whole::{configurations, joints};
 use crate::manipulator::Mode;
 use crate::mechanism::Mechanism;
 use crate::mechanism::leg::Leg;
@@ -310,10 +310,7 @@ impl Rows {
 
     /// The wrenches by which legs hold the platform at a displacement, about its reference point, with lengths over the size, each
     /// with the number of its leg.
-    pub fn wrenches(
-        &self,
-        g: &Isometry3<f64>,
-    ) -> impl Iterator<Item = (usize, Vector6<f64>)> + '_ {
+    pub fn wrenches(&self, g: &Isometry3<f64>) -> impl Iterator<Item = (usize, Vector6<f64>)> + '_ {
         let (r, p) = (g.rotation.to_rotation_matrix().into_inner(), self.position(g));
         self.rows.iter().map(move |row| (row.leg, row.wrench(&r, &p)))
     }
@@ -459,7 +456,8 @@ fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row
             constant: vector[place + 9],
         }
     };
-    let mut found: Vec<Row> = fitted(&|_, _| None).iter().map(|vector| row(vector, false)).collect();
+    let mut found: Vec<Row> =
+        fitted(&|_, _| None).iter().map(|vector| row(vector, false)).collect();
     for carried in [false, true] {
         let null = fitted(&|r, p| Some(if carried { r.transpose() * p } else { *p }));
         if null.is_empty() {

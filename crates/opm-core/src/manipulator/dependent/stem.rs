@@ -4,8 +4,8 @@
 //! moves in a plane that is `T(x y) · R(theta)`, and where it only rotates about a centre, `R(angles)`. The independent coordinates are known joints of that loop, the dependent
 //! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
 
-use crate::chain::Branch;
 use super::subsets;
+use crate::chain::Branch;
 use crate::chain::ReachDeficit;
 use crate::chain::whole::{LegJoint, MOST_FREEDOMS, NoOrder, WholeLeg};
 use crate::decomposition::whole::{configurations, joints};
@@ -126,14 +126,16 @@ impl Stem {
         let twists = twists(&mechanism.legs[leg], &rotations.centre, size);
         let rates = rates(task, &twists, &rotations);
         let (count, freedoms) = (task.coordinates.len(), rates.ncols());
-        let mut choices: Vec<(f64, Vec<usize>)> = subsets(&(0..count).collect::<Vec<_>>(), freedoms)
-            .filter(|independent| separable(task, &rotations, independent))
-            .map(|independent| {
-                let rows = DMatrix::from_fn(freedoms, freedoms, |i, j| rates[(independent[i], j)]);
-                (singular_values(rows).into_iter().fold(f64::INFINITY, f64::min), independent)
-            })
-            .filter(|(determined, _)| *determined > LEVEL)
-            .collect();
+        let mut choices: Vec<(f64, Vec<usize>)> =
+            subsets(&(0..count).collect::<Vec<_>>(), freedoms)
+                .filter(|independent| separable(task, &rotations, independent))
+                .map(|independent| {
+                    let rows =
+                        DMatrix::from_fn(freedoms, freedoms, |i, j| rates[(independent[i], j)]);
+                    (singular_values(rows).into_iter().fold(f64::INFINITY, f64::min), independent)
+                })
+                .filter(|(determined, _)| *determined > LEVEL)
+                .collect();
         let best = choices.iter().map(|(determined, _)| *determined).fold(0.0, f64::max);
         // Sorting is stable: among those that are well determined, positions come first; of a crank, its angle does.
         let Angles { count: turns, first } = rotations.angles;
