@@ -42,11 +42,11 @@ def draw():
     )  # fmt: skip
     workspace(
         "delta", "gallery-delta.png", panels="slices",
-        x="-1200mm:1200mm:241", y="-1200mm:1200mm:241", z="-1600mm:-500mm:6",
+        x="-1000mm:1000mm:5", y="-1200mm:1200mm:241", z="-1600mm:-500mm:111",
     )  # fmt: skip
     workspace(
         "tricept", "gallery-tricept.png", panels="slices",
-        x="-1200mm:1200mm:241", y="-1200mm:1200mm:241", z="400mm:1300mm:6",
+        x="-800mm:800mm:5", y="-1200mm:1200mm:241", z="300mm:1300mm:101",
     )  # fmt: skip
 
 

@@ -190,7 +190,9 @@ def legend(figure, found):
     def line(color, **more):
         return Line2D([], [], color=color, **more)
 
-    if found["upper"] is None:
+    if found["legs"][0]["solved"] == "whole":
+        sections = [(line(LOWER, linewidth=2), found["platform"]["motion"])]
+    elif found["upper"] is None:
         sections = [(line(LOWER, linewidth=2), f"one subspace: {found['lower']['subspace']}")]
     else:
         sections = [

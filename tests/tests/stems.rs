@@ -1,4 +1,5 @@
-//! Platforms that move as one leg does, and loops with another link as the platform, against plain geometry.
+//! Platforms that move as one leg does or as several let them, and loops with another link as the platform, against plain
+//! geometry and published formulas.
 
 use fastrand::Rng;
 use nalgebra::{Rotation3, Vector3};
@@ -76,8 +77,8 @@ fn an_ankle_by_geometry() {
     assert!(solved > 400, "{solved}");
 }
 
-/// A mechanism of two legs, in metres and radians, with its platform at a point.
-fn legs(point: [f64; 3], legs: [&[&str]; 2]) -> Manipulator {
+/// The file of a mechanism of some legs, in metres and radians, with its platform at a point.
+fn text(point: [f64; 3], legs: &[&[&str]]) -> String {
     let leg = |(i, joints): (usize, &&[&str])| {
         let joint = |(k, joint): (usize, &&str)| format!("{{ name = \"j{i}{k}\", {joint} }}");
         let joints: Vec<String> = joints.iter().enumerate().map(joint).collect();
@@ -85,7 +86,11 @@ fn legs(point: [f64; 3], legs: [&[&str]; 2]) -> Manipulator {
     };
     let legs: String = legs.iter().enumerate().map(leg).collect();
     let head = "format = 1\nname = \"loop\"\nunits = { length = \"m\", angle = \"rad\" }\n";
-    Manipulator::read(&format!("{head}[platform]\npoint = {point:?}\n{legs}")).unwrap()
+    format!("{head}[platform]\npoint = {point:?}\n{legs}")
+}
+
+fn legs(point: [f64; 3], legs: &[&[&str]]) -> Manipulator {
+    Manipulator::read(&text(point, legs)).unwrap()
 }
 
 fn axis(kind: &str, axis: Vector3<f64>, point: Vector3<f64>) -> String {
@@ -100,7 +105,7 @@ fn a_four_bar_is_moved_by_its_crank() {
     let at = |x: f64, y: f64| axis("revolute", z, Vector3::new(x, y, 0.0));
     let [a, b, c, d] =
         [at(0.0, 0.0) + ", actuated = true", at(0.03, 0.08), at(0.15, 0.0), at(0.17, 0.11)];
-    let m = legs([0.1, 0.1, 0.0], [&[&a, &b], &[&c, &d]]);
+    let m = legs([0.1, 0.1, 0.0], &[&[&a, &b], &[&c, &d]]);
     assert_eq!(m.mechanism().legs[0].joints.len(), 1);
     assert_eq!(m.task_coordinates()[0].name, "theta");
     let (mut all, mut at) = (m.all_modes(), m.solution());
@@ -132,7 +137,7 @@ fn a_spatial_four_bar_keeps_its_rod() {
     let rocker = axis("revolute", y, Vector3::new(0.2, 0.1, 0.0));
     let [a, b] = ["[0.02, 0.05, 0.02]", "[0.23, 0.12, 0.08]"]
         .map(|p| format!("type = \"spherical\", point = {p}"));
-    let m = legs([0.23, 0.12, 0.08], [&[&crank, &a], &[&rocker, &b]]);
+    let m = legs([0.23, 0.12, 0.08], &[&[&crank, &a], &[&rocker, &b]]);
     assert_eq!(m.decomposition().platform(), PlatformSet::Stem(0));
     let (mut all, mut at) = (m.all_modes(), m.solution());
     let rod = Vector3::<f64>::new(0.21, 0.07, 0.06).norm();
@@ -182,7 +187,7 @@ fn bennett_s_linkage() {
     // The first joint's axis stands still, and the last one's, before the closing link.
     let crank = joint(axes[0]) + ", actuated = true";
     let [two, three, four] = [joint(axes[1]), joint(axes[2]), joint(axes[3])];
-    let m = legs([0.05, 0.05, 0.05], [&[&crank, &two], &[&four, &three]]);
+    let m = legs([0.05, 0.05, 0.05], &[&[&crank, &two], &[&four, &three]]);
     let (mut all, mut at) = (m.all_modes(), m.solution());
     let mut solved = 0;
     for i in -30..30 {
@@ -230,4 +235,164 @@ fn what_has_no_closed_form_is_refused() {
         }
         other => panic!("{:?}", other.err()),
     }
+}
+
+/// The place and the orientation of a platform in a mode.
+fn platform(
+    m: &Manipulator,
+    pose: &[f64],
+    mode: opm_core::Mode,
+) -> (Vector3<f64>, nalgebra::Matrix3<f64>) {
+    let g = m.displacement_in(pose, mode).unwrap();
+    ((g * m.mechanism().platform).coords, g.rotation.to_rotation_matrix().into_inner())
+}
+
+/// Three legs at a third of a turn, of joints that `joints` gives for the outward and the tangent direction; the first is along
+/// the second base axis.
+fn three(height: f64, joints: impl Fn(Vector3<f64>, Vector3<f64>) -> [String; 3]) -> String {
+    let leg = |i: u32| {
+        let (sin, cos) =
+            (std::f64::consts::FRAC_PI_2 + f64::from(i) * std::f64::consts::TAU / 3.0).sin_cos();
+        joints(Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0))
+    };
+    let all: Vec<[String; 3]> = (0..3).map(leg).collect();
+    let names: Vec<Vec<&str>> =
+        all.iter().map(|leg| leg.iter().map(String::as_str).collect()).collect();
+    let slices: Vec<&[&str]> = names.iter().map(Vec::as_slice).collect();
+    text([0.0, 0.0, height], &slices)
+}
+
+/// The parasitic motions of a 3-RPS (J. A. Carretero and others, "Kinematic analysis and optimization of a new three degree-of-freedom
+/// spatial parallel manipulator", 2000): its balls stay in upright planes.
+#[test]
+fn the_parasitic_motions_of_a_3_rps() {
+    let (base, r, height) = (0.2, 0.12, 0.3);
+    let text = three(height, |out, tangent| {
+        let (foot, tip) = (out * base, out * r + Vector3::z() * height);
+        let ball: [f64; 3] = tip.into();
+        [
+            axis("revolute", tangent, foot),
+            axis("prismatic", (tip - foot).normalize(), foot) + ", actuated = true",
+            format!("type = \"spherical\", point = {ball:?}"),
+        ]
+    });
+    let m = Manipulator::read(&text).unwrap();
+    assert_eq!(m.decomposition().platform(), PlatformSet::Constrained);
+    let names: Vec<_> = m.task_coordinates().iter().map(|c| c.name).collect();
+    assert_eq!(names, ["z", "roll", "pitch"]);
+    let (mut rng, mut at) = (Rng::with_seed(3), m.solution());
+    for _ in 0..200 {
+        let [roll, pitch] = [0, 1].map(|_| 1.2 * rng.f64() - 0.6);
+        let pose = [0.25 + 0.1 * rng.f64(), roll, pitch];
+        let yaw = (pitch.sin() * roll.sin() / (pitch.cos() + roll.cos())).atan();
+        let (p, found) = platform(&m, &pose, m.home_mode());
+        let turn = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();
+        assert!((found - turn).norm() < 1e-11, "{pose:?}");
+        let place =
+            Vector3::new(-r * turn[(0, 1)], 0.5 * r * (turn[(1, 1)] - turn[(0, 0)]), pose[0]);
+        assert!((p - place).norm() < 1e-12, "{pose:?}");
+        let solution = m.inverse(&pose, m.home_mode(), &mut at).unwrap().unwrap();
+        for i in 0..3 {
+            let (sin, cos) = (std::f64::consts::FRAC_PI_2
+                + f64::from(i) * std::f64::consts::TAU / 3.0)
+                .sin_cos();
+            let out = Vector3::new(cos, sin, 0.0);
+            let home: f64 = (out * (base - r)).norm().hypot(height);
+            let length = (p + turn * (out * r) - out * base).norm();
+            assert!((solution.joints()[5 * i as usize + 1] + home - length).abs() < 1e-11);
+        }
+    }
+}
+
+/// A 3-SPR moves inversely: its base, seen from the platform, moves as the platform of a 3-RPS.
+#[test]
+fn the_parasitic_motions_of_a_3_spr() {
+    let (r, top, height) = (0.2, 0.12, 0.3);
+    let text = three(height, |out, tangent| {
+        let (foot, tip) = (out * r, out * top + Vector3::z() * height);
+        let ball: [f64; 3] = foot.into();
+        [
+            format!("type = \"spherical\", point = {ball:?}"),
+            axis("prismatic", (tip - foot).normalize(), foot) + ", actuated = true",
+            axis("revolute", tangent, tip),
+        ]
+    });
+    let m = Manipulator::read(&text).unwrap();
+    let mut rng = Rng::with_seed(4);
+    for _ in 0..200 {
+        let pose = [0.25 + 0.1 * rng.f64(), 0.8 * rng.f64() - 0.4, 0.8 * rng.f64() - 0.4];
+        let (p, turn) = platform(&m, &pose, m.home_mode());
+        assert!((turn[(0, 1)] - turn[(1, 0)]).abs() < 1e-11, "{pose:?}");
+        let seen = turn.transpose() * p;
+        assert!((seen.x - r * turn[(1, 0)]).abs() < 1e-11, "{pose:?}");
+        assert!((seen.y - 0.5 * r * (turn[(0, 0)] - turn[(1, 1)])).abs() < 1e-11, "{pose:?}");
+    }
+}
+
+/// An Exechon, 2-UPR + SPR: two legs share an axis of the base, which the platform's second direction stays perpendicular to.
+#[test]
+fn an_exechon_by_its_rows() {
+    let height = 0.5;
+    let upr = |side: f64| {
+        let (foot, tip) =
+            (Vector3::new(0.3 * side, 0.0, 0.0), Vector3::new(0.1 * side, 0.0, height));
+        let x = axis("universal", Vector3::x(), foot) + ", axis2 = [0.0, 1.0, 0.0]";
+        [
+            x,
+            axis("prismatic", (tip - foot).normalize(), foot) + ", actuated = true",
+            axis("revolute", Vector3::y(), tip),
+        ]
+    };
+    let (foot, tip) = (Vector3::new(0.0, 0.35, 0.0), Vector3::new(0.0, 0.12, height));
+    let third = [
+        "type = \"spherical\", point = [0.0, 0.35, 0.0]".to_owned(),
+        axis("prismatic", (tip - foot).normalize(), foot) + ", actuated = true",
+        axis("revolute", Vector3::x(), tip),
+    ];
+    let all = [upr(1.0), upr(-1.0), third];
+    let names: Vec<Vec<&str>> =
+        all.iter().map(|leg| leg.iter().map(String::as_str).collect()).collect();
+    let slices: Vec<&[&str]> = names.iter().map(Vec::as_slice).collect();
+    let m = legs([0.0, 0.0, height], &slices);
+    let (mut rng, mut all, mut at) = (Rng::with_seed(5), m.all_modes(), m.solution());
+    let mut solved = 0;
+    for _ in 0..100 {
+        let pose = [0.4 + 0.2 * rng.f64(), 0.8 * rng.f64() - 0.4, 0.8 * rng.f64() - 0.4];
+        let Some(found) = m.inverse_all(&pose, &mut all).unwrap() else { continue };
+        let modes: Vec<_> = found.modes(&m).collect();
+        for mode in modes {
+            let (p, turn) = platform(&m, &pose, mode);
+            // The axis of both universal joints, and the planes of the legs about it and of the third leg.
+            assert!(turn[(0, 1)].abs() < 1e-11, "{pose:?}");
+            assert!(turn.column(1).dot(&p).abs() < 1e-11, "{pose:?}");
+            assert!(turn.column(0).dot(&(foot - p)).abs() < 1e-11, "{pose:?}");
+            let joints = m.solution_in_mode(&all, mode, &mut at).unwrap().joints();
+            let (home, now) =
+                ((tip - foot).norm(), (p + turn * (tip - Vector3::z() * height) - foot).norm());
+            let third = joints[number(&m, "j21")] + home;
+            assert!((third.abs() - now).abs() < 1e-11, "{pose:?}: {third} {now}");
+            solved += 1;
+        }
+    }
+    assert!(solved > 500, "{solved}");
+}
+
+/// A leg whose ball stays on a torus constrains in another way: that is said, with the leg.
+#[test]
+fn rows_that_are_not_affine_are_refused() {
+    let text = three(0.3, |out, tangent| {
+        let (foot, tip) = (out * 0.2, out * 0.12 + Vector3::z() * 0.3);
+        let ball: [f64; 3] = tip.into();
+        [
+            axis("revolute", tangent, foot),
+            axis(
+                "revolute",
+                (tangent + Vector3::z() * 0.4).normalize(),
+                foot + Vector3::new(0.03, 0.02, 0.1),
+            ),
+            format!("type = \"spherical\", point = {ball:?}, actuated = true"),
+        ]
+    });
+    let refused = Manipulator::read(&text).err().unwrap().to_string();
+    assert!(refused.contains("leg0 constrains the platform in another way"), "{refused}");
 }

@@ -44,14 +44,16 @@ impl Made {
             }
         }
         let mut links = BTreeMap::new();
+        let drawn = mechanism.clone();
         for ((leg, axis), [rotation, linear]) in axes {
             let (number, second) = place(&mechanism, leg, axis);
             let joint = &mut mechanism.legs[leg].joints[number];
-            // A rotation about the joint's point, and what is left.
-            let way = linear - joint.point.coords.cross(&rotation);
+            // A rotation about the joint's point, and what is left. The first axis of a universal joint may have moved it already.
+            let point = drawn.legs[leg].joints[number].point;
+            let way = linear - point.coords.cross(&rotation);
             match model.error_model() {
                 ErrorModel::Links => {
-                    links.insert((leg, axis), displaced(rotation, &joint.point, way));
+                    links.insert((leg, axis), displaced(rotation, &point, way));
                 }
                 ErrorModel::Axes => {
                     let turned = UnitQuaternion::from_scaled_axis(rotation);

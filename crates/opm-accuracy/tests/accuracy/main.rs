@@ -119,7 +119,11 @@ fn compare_assembled(
     let scale = expected.iter().map(|t| scaled(t).amax()).fold(size, f64::max);
     for ((found, expected), by) in all.zip(&expected).zip(by) {
         let off = (scaled(found) - scaled(expected)).amax();
-        assert!(off < ASSEMBLED * scale / size, "{}: {off:e}", manipulator.mechanism().name);
+        assert!(
+            off < ASSEMBLED * scale / size,
+            "{} {errors:?}: {off:e}",
+            manipulator.mechanism().name
+        );
         second = second.max((scaled(expected) - scaled(&(by * &drawn))).amax());
     }
     // The terms beyond first order are far larger than what the assemblies differ by.

@@ -7,7 +7,9 @@
 
 use super::architecture::chain;
 use super::mobility::{Mobility, assembled, frame};
-use super::{DecomposeError, Decomposition, Freedom, LegSplit, ranked};
+use super::near::JointMiss;
+use super::reorder::{self, Exchanges};
+use super::{DecomposeError, Decomposition, Freedom, LegSplit, near, odd, ranked};
 use crate::chain::whole::{LegJoint, NoOrder, WholeLeg};
 use crate::group::SubspaceKind;
 use crate::group::screw::Screw;
@@ -230,7 +232,7 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
     let is_stem = |leg: &Leg| Freedom::of_leg(leg).len() == dimension;
     match mechanism.legs.iter().position(is_stem) {
         Some(stem) => Found::of_stem(mechanism, stem, frame.length).solved(mechanism, report),
-        None if miss == no_group => {
+        None if miss == no_group && !is_doubtful(mechanism, report) => {
             let found = Found {
                 lower: SubspaceClass::TranslationalSpace,
                 upper: SubspaceClass::Spherical { centre: mechanism.platform },
@@ -242,6 +244,20 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
         }
         None => Err(miss),
     }
+}
+
+/// Whether a mechanism has a joint that is nearly right, or in a wrong place of its leg: that is named, and the mechanism is not
+/// taken as one that several legs constrain.
+fn is_doubtful(mechanism: &Mechanism, report: &Mobility) -> bool {
+    // Where all axes but one meet, nothing has a length that a miss could be small against.
+    let axis = |miss: &JointMiss| {
+        let of_leg = mechanism.legs.iter().filter(|leg| leg.name == miss.leg);
+        let mut joints = of_leg.flat_map(|leg| &leg.joints);
+        joints.any(|joint| joint.name == miss.joint && joint.kind == JointKind::Revolute)
+    };
+    reorder::better_order(mechanism, Exchanges::Neighbours).is_some()
+        || near::near_miss(mechanism, near::MOST_DIMENSIONS).is_some()
+        || odd::odd_joint(mechanism, report).is_some_and(|miss| axis(&miss))
 }
 
 /// What a platform does whose legs are solved whole.

@@ -377,12 +377,13 @@ impl Dependent {
     /// The legs and sections whose constraints determine the dependent coordinates.
     /// A leg that is solved whole constrains as a whole.
     pub fn constraining(&self) -> impl Iterator<Item = (usize, Option<Section>)> + '_ {
-        let of_whole: Vec<usize> = match &self.whole {
-            Some(Whole::Stem(stem)) => vec![stem.leg],
-            Some(Whole::Rows(rows)) => rows.legs().collect(),
-            None => Vec::new(),
+        let (stem, rows) = match &self.whole {
+            Some(Whole::Stem(stem)) => (Some(stem.leg), None),
+            Some(Whole::Rows(rows)) => (None, Some(rows)),
+            None => (None, None),
         };
-        let of_whole = of_whole.into_iter().map(|leg| (leg, None));
+        let of_whole = stem.into_iter().chain(rows.into_iter().flat_map(Rows::legs));
+        let of_whole = of_whole.map(|leg| (leg, None));
         let of_step = |step: &Step| (step.solution.leg(), Some(step.solution.section()));
         self.steps.iter().map(of_step).chain(of_whole)
     }

@@ -385,11 +385,12 @@ impl Manipulator {
                 known += 1;
             }
         }
-        let own = task.lower.kind.basis();
-        let count = if task.upper.kind == SubspaceKind::Identity { own.len() } else { 6 };
+        let own = [LocalTwist::x(), LocalTwist::y(), LocalTwist::z()];
+        let alone = task.upper.kind == SubspaceKind::Identity;
+        let count = if alone { task.lower.kind.dimension() } else { 6 };
         let described: [Row; 6] = std::array::from_fn(|i| {
             let mut twist = Row::zeros();
-            match own.get(i).filter(|_| count < 6) {
+            match own.get(i).filter(|_| alone) {
                 // Twists of a group stay twists of the group as the platform moves.
                 Some(basis) => {
                     let [angular, linear] = task.lower.embedded(basis);

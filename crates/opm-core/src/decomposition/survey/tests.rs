@@ -1,6 +1,6 @@
 use super::*;
 use crate::decomposition::samples::*;
-use crate::decomposition::{DecomposeError, WholeMiss, decompose, search_all};
+use crate::decomposition::{DecomposeError, PlatformSet, decompose, search_all};
 use crate::mechanism::joint::{Joint, JointKind};
 use nalgebra::{Point3, Unit, Vector3};
 
@@ -100,23 +100,9 @@ fn three_rps_legs() {
     assert_eq!((&*found.notation, found.common_name), ("3-RPS", Some("3-RPS tripod")));
     assert_eq!((found.platform.dimension, found.platform.translations), (3, 1));
     assert_eq!(found.platform.subspace, None);
-    // Legs that constrain the platform together leave it no group.
-    assert_eq!(found.whole, Some(WholeMiss::NoGroup { dimension: 3 }));
-    let Applies::Outside(Outside::NothingShared { legs, odd: None }) = &found.applies else {
-        panic!("{:?}", found.applies)
-    };
-    for ((_, groups), (outward, tangent)) in legs.iter().zip(around(3)) {
-        let [SubspaceClass::Planar { normal }, SubspaceClass::Spherical { centre }] = groups else {
-            panic!("{groups:?}")
-        };
-        assert!(normal.cross(&tangent).norm() < 1e-12);
-        assert!((centre.coords - outward * 0.12 - Vector3::z() * 0.3).norm() < 1e-12);
-    }
-    let told = because(&found);
-    assert!(
-        told.starts_with("each leg has a planar and a spherical part, but the legs do not share"),
-        "{told}"
-    );
+    let Applies::Decomposed(ways) = &found.applies else { panic!("{:?}", found.applies) };
+    assert_eq!(ways[0].platform(), PlatformSet::Constrained);
+    assert_eq!((found.applies.name(), ways[0].upper.name()), ("every leg", "spherical"));
 }
 
 /// All axes but one meet in a point: nothing but that joint has a length, so no miss is small. It is named, with the
