@@ -135,7 +135,9 @@ def schematic(name, picture, view, radii):
     panel.locator_params(nbins=5)
     for axis in (panel.xaxis, panel.yaxis):
         axis.labelpad = 10
-    panel.set_box_aspect(span, zoom=0.87)
+    # What is tall stays below the legend.
+    tall = span[2] / np.hypot(span[0], span[1])
+    panel.set_box_aspect(span, zoom=0.87 * min(1, max(0.6, 0.85 / tall)))
     panel.view_init(*view)
     for axis in (panel.xaxis, panel.yaxis, panel.zaxis):
         axis.pane.set_facecolor("#fafafa")

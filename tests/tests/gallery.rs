@@ -392,10 +392,17 @@ fn every_working_mode_closes_every_leg() {
 fn a_sweep_counts_what_inverse_kinematics_finds() {
     for manipulator in manipulators() {
         let name = &manipulator.mechanism().name;
-        for modes in [Modes::One(manipulator.home_mode()), Modes::Any] {
+        let modes = [Modes::One(manipulator.home_mode()), Modes::Any];
+        // Hexapods have too many modes to list at every pose.
+        let listed = manipulator.modes().take(300).count() < 300;
+        for modes in modes.into_iter().filter(|modes| listed || *modes != Modes::Any) {
             let (grid, _) = default_grid(&manipulator, modes, &Progress::default()).unwrap();
             // An even number of values, so that the grid does not contain only the symmetric poses.
-            let values = if grid.axes().len() < 3 { 20 } else { 6 };
+            let values = match grid.axes().len() {
+                0..3 => 20,
+                6 if manipulator.is_whole() => 4,
+                _ => 6,
+            };
             let axes = grid.axes().iter().map(|a| Axis::new(a.name.clone(), a.min, a.max, values));
             let grid = Grid::new(&manipulator, axes.collect()).unwrap();
             let (reached, expected) = by_inverse(&manipulator, &grid, modes);

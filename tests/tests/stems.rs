@@ -94,7 +94,7 @@ fn legs(point: [f64; 3], legs: &[&[&str]]) -> Manipulator {
 }
 
 fn axis(kind: &str, axis: Vector3<f64>, point: Vector3<f64>) -> String {
-    let [axis, point] = [axis, point].map(|v| <[f64; 3]>::from(v));
+    let [axis, point] = [axis, point].map(<[f64; 3]>::from);
     format!("type = \"{kind}\", axis = {axis:?}, point = {point:?}")
 }
 
@@ -384,13 +384,13 @@ fn rows_that_are_not_affine_are_refused() {
         let (foot, tip) = (out * 0.2, out * 0.12 + Vector3::z() * 0.3);
         let ball: [f64; 3] = tip.into();
         [
-            axis("revolute", tangent, foot),
+            axis("revolute", tangent, foot) + ", actuated = true",
             axis(
                 "revolute",
                 (tangent + Vector3::z() * 0.4).normalize(),
                 foot + Vector3::new(0.03, 0.02, 0.1),
             ),
-            format!("type = \"spherical\", point = {ball:?}, actuated = true"),
+            format!("type = \"spherical\", point = {ball:?}"),
         ]
     });
     let refused = Manipulator::read(&text).err().unwrap().to_string();

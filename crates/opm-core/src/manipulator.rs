@@ -175,10 +175,13 @@ impl Manipulator {
     /// The mechanism does not decompose, or none of its decompositions has closed forms; then the error is
     /// that of the first one.
     pub fn new(mechanism: Mechanism) -> Result<Self, CompileError> {
-        Self::as_it_is(&mechanism).or_else(|error| {
-            let mut others = rerooted(&mechanism).into_iter();
-            others.find_map(|other| Self::as_it_is(&other).ok()).ok_or(error)
-        })
+        match Compiled::first(&mechanism) {
+            Ok((compiled, decomposition)) => Ok(compiled.complete(mechanism, decomposition)),
+            Err(error) => {
+                let mut others = rerooted(&mechanism).into_iter();
+                others.find_map(|other| Self::as_it_is(&other).ok()).ok_or(error)
+            }
+        }
     }
 
     /// The same with the platform that the mechanism has.
@@ -186,14 +189,8 @@ impl Manipulator {
     /// # Errors
     /// As [`Manipulator::new`].
     pub fn as_it_is(mechanism: &Mechanism) -> Result<Self, CompileError> {
-        let mut refused = None;
-        for decomposition in decompose(mechanism)? {
-            match Compiled::new(mechanism, &decomposition) {
-                Ok(compiled) => return Ok(compiled.complete(mechanism.clone(), decomposition)),
-                Err(error) => refused = refused.or(Some(error)),
-            }
-        }
-        Err(refused.expect("decompose gives at least one decomposition, or an error"))
+        let (compiled, decomposition) = Compiled::first(mechanism)?;
+        Ok(compiled.complete(mechanism.clone(), decomposition))
     }
 
     /// Compiles a mechanism by one of its decompositions.
@@ -493,6 +490,18 @@ struct Compiled {
 }
 
 impl Compiled {
+    /// By the first decomposition that has closed forms.
+    fn first(mechanism: &Mechanism) -> Result<(Self, Decomposition), CompileError> {
+        let mut refused = None;
+        for decomposition in decompose(mechanism)? {
+            match Self::new(mechanism, &decomposition) {
+                Ok(compiled) => return Ok((compiled, decomposition)),
+                Err(error) => refused = refused.or(Some(error)),
+            }
+        }
+        Err(refused.expect("decompose gives at least one decomposition, or an error"))
+    }
+
     fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();

@@ -211,7 +211,7 @@ impl WholeLeg {
     ) -> Result<Self, NoOrder> {
         let (elements, freedoms) = Element::of(joints, &[]);
         let most = MOST_CHOICES;
-        Self::ordered(elements, freedoms, (actuated, most), size, |elements, centre| {
+        Self::ordered(&elements, freedoms, (actuated, most), size, |elements, centre| {
             let reached =
                 motions.iter().filter_map(|motion| Sample::at(elements, motion, centre, size));
             let reached: Vec<Sample> = reached.take(MOST_SAMPLES).collect();
@@ -235,7 +235,7 @@ impl WholeLeg {
         size: f64,
     ) -> Result<Self, NoOrder> {
         let (elements, freedoms) = Element::of(joints, given);
-        Self::ordered(elements, freedoms, (&[], MOST_GIVEN_CHOICES), size, |elements, _| {
+        Self::ordered(&elements, freedoms, (&[], MOST_GIVEN_CHOICES), size, |elements, _| {
             let of_values = |values: &Vec<f64>| {
                 let (mut all, mut next) = (vec![0.0; VALUES], values.iter());
                 for element in elements {
@@ -249,7 +249,7 @@ impl WholeLeg {
     }
 
     fn ordered(
-        elements: Vec<Element>,
+        elements: &[Element],
         freedoms: usize,
         (actuated, most): (&[bool], usize),
         size: f64,
@@ -265,14 +265,14 @@ impl WholeLeg {
             elements.iter().filter(|one| one.kind != Kind::Slide).map(|one| one.point).collect();
         let count = placed.len().max(1);
         let centre = placed.iter().sum::<Vector3<f64>>() * (1.0 / count as f64);
-        let mut samples = vec![Sample::home(&elements)];
-        samples.extend(sampled(&elements, &centre)?);
-        let leg = Leg { elements: &elements, samples: &samples, centre, size };
-        let mut nodes = Nodes::new(&elements, &samples, size);
+        let mut samples = vec![Sample::home(elements)];
+        samples.extend(sampled(elements, &centre)?);
+        let leg = Leg { elements, samples: &samples, centre, size };
+        let mut nodes = Nodes::new(elements, &samples, size);
         let mut search = Search::new(leg, &mut nodes, actuated, most);
         let mut test = |nodes: &mut Nodes<'_>, steps: &[Candidate]| {
             let program = write::write(leg, nodes, steps)?;
-            let whole = Self::of(&elements, freedoms, steps, program, centre, size);
+            let whole = Self::of(elements, freedoms, steps, program, centre, size);
             whole.finds(&samples).then_some(whole)
         };
         if let Some(found) = search.run(&mut test) {

@@ -258,11 +258,11 @@ impl Rows {
     fn parts(&self, task: &Task, row: &Row, r: &Matrix3<f64>, pose: &[f64]) -> ([f64; 3], f64) {
         let (c, mut rest) = (row.direction_at(r), row.rest(r));
         let mut by = [0.0; 3];
-        for i in 0..3 {
+        for (i, at) in pose.iter().enumerate().take(3) {
             let along = c.dot(&task.lower.axes.column(i));
             match self.lengths.iter().position(|&length| length == i) {
                 Some(place) => by[place] = along,
-                None => rest += along * (pose[i] - task.coordinates[i].home) / self.size,
+                None => rest += along * (at - task.coordinates[i].home) / self.size,
             }
         }
         (by, rest)
@@ -428,10 +428,10 @@ fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row
             (g.rotation.to_rotation_matrix().into_inner(), p)
         })
         .collect();
-    // A column for each coefficient: of the position, of the orientation, and the constant.
-    let fitted = |position: &dyn Fn(&Matrix3<f64>, &Vector3<f64>) -> Option<Vector3<f64>>| {
+    // A column for each coefficient: of the position, as the base or as the platform sees it, of the orientation, and the constant.
+    let fitted = |carried: Option<bool>| {
         let sample = |(r, p): &(Matrix3<f64>, Vector3<f64>)| -> Vec<f64> {
-            let place = position(r, p);
+            let place = carried.map(|carried| if carried { r.transpose() * p } else { *p });
             let place = place.iter().flat_map(|v| v.iter().copied()).collect::<Vec<_>>();
             place.into_iter().chain(r.iter().copied()).chain([1.0]).collect()
         };
@@ -456,10 +456,9 @@ fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row
             constant: vector[place + 9],
         }
     };
-    let mut found: Vec<Row> =
-        fitted(&|_, _| None).iter().map(|vector| row(vector, false)).collect();
+    let mut found: Vec<Row> = fitted(None).iter().map(|vector| row(vector, false)).collect();
     for carried in [false, true] {
-        let null = fitted(&|r, p| Some(if carried { r.transpose() * p } else { *p }));
+        let null = fitted(Some(carried));
         if null.is_empty() {
             continue;
         }
