@@ -9,7 +9,12 @@ from shipped import LINKAGES
 NAMES = [n for n in opm.examples.names() if n not in LINKAGES]
 MANIPULATORS = {name: opm.examples.load(name) for name in NAMES}
 # Without a closed form, or with a screw that counts turns (found to a whole turn).
-FORWARD = [n for n in NAMES if n not in ("translational-planar-4dof", "schoenflies-4dof")]
+FORWARD = [
+    n
+    for n in NAMES
+    if n not in ("translational-planar-4dof", "schoenflies-4dof")
+    and MANIPULATORS[n].decomposition.legs[0].solved == "sections"
+]
 
 
 def poses(m, part):

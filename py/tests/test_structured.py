@@ -53,7 +53,12 @@ def placed(rotations):
 
 def test_poses_of_half_and_quarter_turns_come_back(manipulator):
     for step in (np.pi / 2, np.pi, np.pi / 4, 2 * np.pi):
-        transforms = manipulator.transform(quarters(manipulator, 3000, step))
+        poses = quarters(manipulator, 3000, step)
+        names = [coordinate.name for coordinate in manipulator.task_coordinates]
+        if manipulator.dependent_coordinates and "pitch" in names:
+            # At the poles of the angles, yaw does not follow from the others.
+            poses = poses[np.abs(np.cos(poses[:, names.index("pitch")])) > 1e-3]
+        transforms = manipulator.transform(poses)
         # Dependent coordinates have no solution at some poses.
         transforms = transforms[np.isfinite(transforms).all(axis=(1, 2))]
         assert len(transforms) > (100 if manipulator.dependent_coordinates else 2999)
