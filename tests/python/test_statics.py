@@ -64,7 +64,9 @@ def test_efforts_are_those_of_the_model(exported):
         work = platform.T @ LOAD
         rates = free[list(dofs.values())]
         held = np.linalg.matrix_rank(rates, tol=1e-9)
-        assert found["loose_motions"] == free.shape[1] - held
+        # Rods that spin between two balls do not move the platform.
+        spins = max(0, exported.answer["mobility"] - len(dofs))
+        assert found["loose_motions"] == free.shape[1] - held - spins
         assert found["internal_efforts"] == len(dofs) - held
         assert list(found["efforts"]) == list(dofs)
         efforts = list(found["efforts"].values())
