@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn the_page_is_small_and_refers_to_nothing() {
         let page = explorer("a.toml", "").unwrap();
-        assert!(page.len() <= 2_500_000, "{} bytes", page.len());
+        assert!(page.len() <= 3_000_000, "{} bytes", page.len());
         for reference in ["<link rel=\"stylesheet\"", "<script src", "@import", "sourceMappingURL"]
         {
             assert!(!page.contains(reference), "{reference}");
