@@ -194,8 +194,12 @@ impl Loaded {
     /// The mechanism with the platform that it is solved with: another link of the loop where that of the file has no closed
     /// form. A note says which.
     pub fn rerooted(mut self, output: &Output) -> Self {
-        if let Some(mechanism) = rerooted(&self.file.mechanism) {
-            output.note(format_args!("{}: {}", self.label, moved_platform(&mechanism)));
+        if let Some((mechanism, joint)) = rerooted(&self.file.mechanism) {
+            output.note(format_args!(
+                "{}: the platform has no closed form as a link between both legs of the loop: the link behind {joint} \
+                 is taken as the platform",
+                self.label
+            ));
             self.file.mechanism = mechanism;
         }
         self
@@ -303,23 +307,16 @@ impl Loaded {
     }
 }
 
-/// A loop with another link as the platform, if only so it has a closed form.
-fn rerooted(mechanism: &Mechanism) -> Option<Mechanism> {
-    if mechanism.legs.len() != 2 || Manipulator::as_it_is(mechanism).is_ok() {
+/// A loop with another link as the platform, if only so it has a closed form, and the joint that carries that link.
+fn rerooted(mechanism: &Mechanism) -> Option<(Mechanism, String)> {
+    if mechanism.legs.len() != 2 {
         return None;
     }
     let manipulator = Manipulator::new(mechanism.clone()).ok()?;
-    Some(manipulator.mechanism().clone())
-}
-
-/// Which link of a loop is the platform now.
-fn moved_platform(mechanism: &Mechanism) -> String {
-    let stem = mechanism.legs.iter().min_by_key(|leg| leg.joints.len());
-    let joint = stem.and_then(|leg| leg.joints.last()).map_or("", |joint| &*joint.name);
-    format!(
-        "the platform has no closed form as a link between both legs of the loop: the link behind {joint} is taken as the \
-         platform"
-    )
+    let solved = manipulator.mechanism();
+    let mut legs = solved.legs.iter().zip(&mechanism.legs);
+    let (stem, _) = legs.find(|(stem, leg)| stem.joints.len() < leg.joints.len())?;
+    Some((solved.clone(), stem.joints.last()?.name.clone()))
 }
 
 /// A positive number, rounded up to two significant digits, for a flag.

@@ -28,7 +28,8 @@ pub struct Decomposition {
     upper: Option<String>,
     /// The motion that both sections have in common; None where that is the identity alone.
     intersection: Option<Intersection>,
-    /// The set in which the platform moves: ``"pair"`` of subgroups, one ``"subgroup"``, or ``"free"``.
+    /// The set in which the platform moves: ``"pair"`` of subgroups, one ``"subgroup"``, ``"free"``, as a leg that is its
+    /// ``"stem"``, or ``"constrained"`` by several legs.
     platform: String,
     /// What the platform does, in words: ``"translations of space"``.
     motion: String,

@@ -98,6 +98,20 @@ fn axis(kind: &str, axis: Vector3<f64>, point: Vector3<f64>) -> String {
     format!("type = \"{kind}\", axis = {axis:?}, point = {point:?}")
 }
 
+/// Calls `check` with the crank's angle and all joints, for every mode at angles all around; returns how often.
+fn of_crank(m: &Manipulator, check: impl Fn(f64, &[f64])) -> usize {
+    let (mut all, mut at, mut solved) = (m.all_modes(), m.solution(), 0);
+    for i in -20..=20 {
+        let theta = 0.15 * f64::from(i);
+        let Some(found) = m.inverse_all(&[theta], &mut all).unwrap() else { continue };
+        for mode in found.modes(m).collect::<Vec<_>>() {
+            check(theta, m.solution_in_mode(&all, mode, &mut at).unwrap().joints());
+            solved += 1;
+        }
+    }
+    solved
+}
+
 /// A four-bar's coupler has no closed form, its crank has: the coupler's length stays, on both branches.
 #[test]
 fn a_four_bar_is_moved_by_its_crank() {
@@ -108,24 +122,15 @@ fn a_four_bar_is_moved_by_its_crank() {
     let m = legs([0.1, 0.1, 0.0], &[&[&a, &b], &[&c, &d]]);
     assert_eq!(m.mechanism().legs[0].joints.len(), 1);
     assert_eq!(m.task_coordinates()[0].name, "theta");
-    let (mut all, mut at) = (m.all_modes(), m.solution());
     let turned = |x: f64, y: f64, q: f64| {
         Rotation3::from_axis_angle(&Vector3::z_axis(), q) * Vector3::new(x, y, 0.0)
     };
-    let mut solved = 0;
-    for i in -20..=20 {
-        let theta = 0.15 * f64::from(i);
-        let Some(found) = m.inverse_all(&[theta], &mut all).unwrap() else { continue };
-        let modes: Vec<_> = found.modes(&m).collect();
-        for mode in modes {
-            let joints = m.solution_in_mode(&all, mode, &mut at).unwrap().joints();
-            assert!((joints[0] - theta).abs() < 1e-12);
-            let pin = turned(0.03, 0.08, theta);
-            let tip = Vector3::new(0.15, 0.0, 0.0) + turned(0.02, 0.11, joints[1]);
-            assert!(((tip - pin).norm() - 0.14_f64.hypot(0.03)).abs() < 1e-12);
-            solved += 1;
-        }
-    }
+    let solved = of_crank(&m, |theta, joints| {
+        assert!((joints[0] - theta).abs() < 1e-12);
+        let pin = turned(0.03, 0.08, theta);
+        let tip = Vector3::new(0.15, 0.0, 0.0) + turned(0.02, 0.11, joints[1]);
+        assert!(((tip - pin).norm() - 0.14_f64.hypot(0.03)).abs() < 1e-12);
+    });
     assert!(solved > 30, "{solved}");
 }
 
@@ -139,24 +144,14 @@ fn a_spatial_four_bar_keeps_its_rod() {
         .map(|p| format!("type = \"spherical\", point = {p}"));
     let m = legs([0.23, 0.12, 0.08], &[&[&crank, &a], &[&rocker, &b]]);
     assert_eq!(m.decomposition().platform(), PlatformSet::Stem(0));
-    let (mut all, mut at) = (m.all_modes(), m.solution());
     let rod = Vector3::<f64>::new(0.21, 0.07, 0.06).norm();
-    let mut solved = 0;
-    for i in -20..=20 {
-        let theta = 0.15 * f64::from(i);
-        let Some(found) = m.inverse_all(&[theta], &mut all).unwrap() else { continue };
-        let modes: Vec<_> = found.modes(&m).collect();
-        for mode in modes {
-            let joints = m.solution_in_mode(&all, mode, &mut at).unwrap().joints();
-            let pin: Vector3<f64> = Rotation3::from_axis_angle(&Vector3::x_axis(), theta)
-                * Vector3::new(0.02, 0.05, 0.02);
-            let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), joints[1]);
-            let tip: Vector3<f64> =
-                Vector3::new(0.2, 0.1, 0.0) + turn * Vector3::new(0.03, 0.02, 0.08);
-            assert!(((tip - pin).norm() - rod).abs() < 1e-12);
-            solved += 1;
-        }
-    }
+    let solved = of_crank(&m, |theta, joints| {
+        let pin: Vector3<f64> =
+            Rotation3::from_axis_angle(&Vector3::x_axis(), theta) * Vector3::new(0.02, 0.05, 0.02);
+        let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), joints[1]);
+        let tip: Vector3<f64> = Vector3::new(0.2, 0.1, 0.0) + turn * Vector3::new(0.03, 0.02, 0.08);
+        assert!(((tip - pin).norm() - rod).abs() < 1e-12);
+    });
     assert!(solved > 60, "{solved}");
 }
 

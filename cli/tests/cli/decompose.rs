@@ -547,3 +547,49 @@ fn one_is_not_many() {
         assert!(run.text().contains(told), "{}", run.stdout);
     }
 }
+
+/// A four-bar is solved with the link behind its motor as the platform, whichever leg that is in; a note says so. A conversion
+/// keeps the platform of the file.
+#[test]
+fn a_loop_has_another_platform_where_its_coupler_has_no_closed_form() {
+    let folder = Folder::new();
+    let joint = |name: &str, x: f64, y: f64| {
+        let motor = if name == "M" { ", actuated = true" } else { "" };
+        format!(
+            "{{ name = \"{name}\", type = \"revolute\", axis = [0, 0, 1], point = [{x:?}, {y:?}, 0]{motor} }}"
+        )
+    };
+    let leg = |name: &str, joints: [String; 2]| {
+        format!("[[leg]]\nname = \"{name}\"\njoints = [\n{}\n]\n", joints.join(",\n"))
+    };
+    let crank = leg("crank", [joint("M", 0.0, 0.0), joint("A", 30.0, 80.0)]);
+    let rocker = leg("rocker", [joint("B", 150.0, 0.0), joint("C", 170.0, 110.0)]);
+    let head = "format = 1\nname = \"four-bar\"\nunits = { length = \"mm\", angle = \"deg\" }\n[platform]\npoint = [100, 100, 0]\n";
+    for (legs, passed) in [([&crank, &rocker], ["M", "B C A"]), ([&rocker, &crank], ["B C A", "M"])]
+    {
+        let text = format!("{head}{}{}", legs[0], legs[1]);
+        let file = folder.write("four-bar.toml", text);
+        let run = opm(&["decompose", &file]);
+        assert!(
+            run.stderr.contains("the link behind M is taken as the platform"),
+            "{}",
+            run.stderr
+        );
+        let found = decompose(&file);
+        let of_leg = |leg: &Value| {
+            let joints = leg["lower"].as_array().unwrap().iter();
+            joints.map(|name| name.as_str().unwrap()).collect::<Vec<_>>().join(" ")
+        };
+        let listed: Vec<String> = found["legs"].as_array().unwrap().iter().map(of_leg).collect();
+        assert_eq!(listed, passed);
+        assert_eq!(found["task_coordinates"][0]["name"], "theta");
+        let converted = folder.arg(&format!("{}.toml", passed[0].len()));
+        opm(&["convert", &file, "-o", &converted]).text();
+        let converted = std::fs::read_to_string(converted).unwrap();
+        let [first, second] = ["crank", "rocker"].map(|leg| {
+            let own = converted.split("[[leg]]").find(|text| text.contains(leg)).unwrap();
+            own.matches("type = \"revolute\"").count()
+        });
+        assert_eq!([first, second], [2, 2], "{converted}");
+    }
+}

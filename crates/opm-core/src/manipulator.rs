@@ -178,19 +178,13 @@ impl Manipulator {
         match Compiled::first(&mechanism) {
             Ok((compiled, decomposition)) => Ok(compiled.complete(mechanism, decomposition)),
             Err(error) => {
-                let mut others = rerooted(&mechanism).into_iter();
-                others.find_map(|other| Self::as_it_is(&other).ok()).ok_or(error)
+                let found = rerooted(&mechanism).into_iter().find_map(|other| {
+                    let (compiled, decomposition) = Compiled::first(&other).ok()?;
+                    Some(compiled.complete(other, decomposition))
+                });
+                found.ok_or(error)
             }
         }
-    }
-
-    /// The same with the platform that the mechanism has.
-    ///
-    /// # Errors
-    /// As [`Manipulator::new`].
-    pub fn as_it_is(mechanism: &Mechanism) -> Result<Self, CompileError> {
-        let (compiled, decomposition) = Compiled::first(mechanism)?;
-        Ok(compiled.complete(mechanism.clone(), decomposition))
     }
 
     /// Compiles a mechanism by one of its decompositions.

@@ -8,7 +8,7 @@ mod linkage;
 mod singular;
 
 pub use singular::HomeSingularity;
-pub(crate) use singular::assembled;
+pub(crate) use singular::{assembled, share};
 
 use super::motions;
 use crate::group::subspace::{Basis, Frame, SubspaceClass, TOLERANCE, fit};

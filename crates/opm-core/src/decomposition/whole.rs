@@ -6,7 +6,7 @@
 //! by the coordinates of a group around it, of which some depend on the others. So is what several legs allow together.
 
 use super::architecture::chain;
-use super::mobility::{Mobility, assembled, frame};
+use super::mobility::{Mobility, assembled, frame, share};
 use super::near::JointMiss;
 use super::reorder::{self, Exchanges};
 use super::{DecomposeError, Decomposition, Freedom, LegSplit, near, odd, ranked};
@@ -275,22 +275,14 @@ impl Found {
     /// The motion of a leg.
     fn of_stem(mechanism: &Mechanism, stem: usize, length: f64) -> Self {
         let leg = &mechanism.legs[stem];
-        let (lower, upper) = match group_around(leg, length) {
+        let (lower, upper) = match group_around(mechanism, leg) {
             Some(group) => (group, SubspaceClass::Identity),
             None => (
                 SubspaceClass::TranslationalSpace,
                 SubspaceClass::Spherical { centre: mechanism.platform },
             ),
         };
-        let displaced = |values: Vec<f64>| {
-            let each = joints(leg).scan(0, |first, (joint, _)| {
-                let own = *first;
-                *first += joint.freedoms();
-                Some(joint.exp(&values[own..*first]))
-            });
-            each.fold(Isometry3::identity(), |all, joint| all * joint)
-        };
-        let motions = configurations(leg, length).map(displaced).collect();
+        let motions = configurations(leg, length).map(|values| end(leg, &values)).collect();
         Self {
             lower,
             upper,
@@ -339,53 +331,32 @@ impl Found {
     }
 }
 
-/// A line passes through a point, and lines are parallel or meet, to within this share of the size and this sine.
-const MEETS: f64 = 1e-9;
-
 /// A group in which a leg moves, smaller than all displacements.
-fn group_around(leg: &Leg, length: f64) -> Option<SubspaceClass> {
+fn group_around(mechanism: &Mechanism, leg: &Leg) -> Option<SubspaceClass> {
     let screws = leg.screws();
-    let turns = || screws.iter().filter(|screw| screw.angular.norm() > 0.0);
-    let Some(first) = turns().next() else { return Some(SubspaceClass::TranslationalSpace) };
-    let axis = Unit::new_normalize(first.angular);
-    let across = |screw: &Screw| screw.linear.dot(&axis).abs() <= MEETS * screw.linear.norm();
-    let flat = turns().all(|screw| screw.angular.cross(&axis).norm() <= MEETS);
-    if flat && screws.iter().all(across) {
-        return Some(SubspaceClass::Planar { normal: axis });
+    let generated = MotionSubspace::span(frame(mechanism), &screws).closure().class();
+    let turning = screws.iter().find(|screw| screw.angular != Vector3::zeros());
+    match (generated?, turning) {
+        // A crank turns about its own axis in the plane across it.
+        (SubspaceClass::Rotation { .. } | SubspaceClass::Planar { .. }, Some(screw)) => {
+            Some(SubspaceClass::Planar { normal: Unit::new_normalize(screw.angular) })
+        }
+        (SubspaceClass::Translation { .. } | SubspaceClass::TranslationalPlane { .. }, _) => {
+            Some(SubspaceClass::TranslationalSpace)
+        }
+        (group @ SubspaceClass::Spherical { .. }, _) => Some(group),
+        _ => None,
     }
-    centre(leg, length).map(|centre| SubspaceClass::Spherical { centre })
 }
 
-/// The point that a leg only rotates about: all axes pass through it.
-fn centre(leg: &Leg, length: f64) -> Option<Point3<f64>> {
-    let turns = |joint: &Joint| {
-        matches!(
-            joint.kind,
-            JointKind::Revolute | JointKind::Universal { .. } | JointKind::Spherical
-        )
-    };
-    if !leg.joints.iter().all(turns) {
-        return None;
-    }
-    let screws = leg.screws();
-    let with_point = leg.joints.iter().find(|joint| joint.kind != JointKind::Revolute);
-    let centre = match with_point {
-        Some(joint) => joint.point,
-        None => {
-            let [first, second] = [leg.joints.first()?, leg.joints.get(1)?];
-            let (u, v) = (first.axis, second.axis);
-            let normal = u.cross(&v);
-            if normal.norm() < MEETS {
-                return None;
-            }
-            let apart = second.point - first.point;
-            first.point + u.scale(apart.cross(&v).dot(&normal) / normal.norm_squared())
-        }
-    };
-    let passes = |screw: &Screw| {
-        (screw.linear + screw.angular.cross(&centre.coords)).norm() <= MEETS * length
-    };
-    screws.iter().all(passes).then_some(centre)
+/// The displacement of a leg's end by the values of its freedoms, a ball's as a rotation vector.
+pub(crate) fn end(leg: &Leg, values: &[f64]) -> Isometry3<f64> {
+    let mut rest = values;
+    joints(leg).fold(Isometry3::identity(), |g, (joint, _)| {
+        let (own, others) = rest.split_at(joint.freedoms());
+        rest = others;
+        g * joint.exp(own)
+    })
 }
 
 /// Values of a leg's freedoms near home, without a pattern: see [`motions`].
@@ -458,12 +429,6 @@ fn elementary(joint: &Joint) -> [Option<LegJoint>; 2] {
 
 /// How many samples there are, and how large they are: radians, and shares of the size.
 const SIZES: [f64; 12] = [0.3, 0.3, 0.3, 0.2, 0.2, 0.2, 0.1, 0.1, 0.1, 0.05, 0.05, 0.05];
-
-/// Numbers between -1/2 and 1/2 without a pattern: multiples of the golden ratio modulo one.
-fn share(number: usize) -> f64 {
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    (number as f64 * golden).fract() - 0.5
-}
 
 /// Displacements of a subgroup near home, without a pattern. Lengths are shares of `length`.
 fn motions(class: &SubspaceClass, length: f64) -> Vec<Isometry3<f64>> {

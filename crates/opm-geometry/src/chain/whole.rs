@@ -48,7 +48,7 @@ pub const MOST_FREEDOMS: usize = 7;
 const MOST_CHOICES: usize = 2;
 
 /// The most choices of a leg of which joints are given.
-pub const MOST_GIVEN_CHOICES: usize = 3;
+const MOST_GIVEN_CHOICES: usize = 3;
 
 /// A loop that is open by no more than this is closed: radians, and lengths as a share of the size. A closed form leaves about
 /// 1e-14, and within 1e-7 of a pose at which two branches meet up to 1e-10. A mechanism's file gives directions to some ten
@@ -346,7 +346,7 @@ impl WholeLeg {
             .map(|number| std::array::from_fn(|choice| Branch::BOTH[number >> choice & 1]))
     }
 
-    /// The number of choices with two solutions: at most two, or [`MOST_GIVEN_CHOICES`] where joints are given.
+    /// The number of choices with two solutions: at most two, or three where joints are given.
     pub fn choices(&self) -> usize {
         self.choosing.len()
     }

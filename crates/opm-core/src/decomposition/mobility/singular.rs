@@ -275,11 +275,14 @@ pub(crate) fn assembled(mechanism: &Mechanism) -> Vec<Isometry3<f64>> {
 
 /// A first-order motion of those in `kernel`. Each sample is another one.
 fn random(kernel: &DMatrix<f64>, sample: usize) -> DVector<f64> {
-    // Fixed coefficients without a pattern: multiples of the golden ratio modulo one.
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let coefficient =
-        |i: usize, _| ((1 + i + sample * kernel.ncols()) as f64 * golden).fract() - 0.5;
+    let coefficient = |i: usize, _| share(1 + i + sample * kernel.ncols());
     kernel * DVector::from_fn(kernel.ncols(), coefficient)
+}
+
+/// Numbers between -1/2 and 1/2 without a pattern: multiples of the golden ratio modulo one.
+pub(crate) fn share(number: usize) -> f64 {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    (number as f64 * golden).fract() - 0.5
 }
 
 /// An assembled pose at some distance from home, found with a first-order motion in `kernel`. Each

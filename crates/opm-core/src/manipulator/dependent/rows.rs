@@ -9,26 +9,23 @@
 //! rows determine the positions that follow only where `F(ψ) = det [c | c · P + ⟨r, R⟩ + c₀] = 0`. That is
 //! `A cos ψ + B sin ψ + C` for the mechanisms that are covered, and its sign of slope names the branch. The positions are linear.
 
+use super::determining;
 use super::stem::{Rotations, rates};
-use super::subsets;
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
-use crate::chain::whole::LegJoint;
-use crate::decomposition::whole::{configurations, joints};
+use crate::decomposition::whole::{configurations, end};
 use crate::manipulator::Mode;
 use crate::mechanism::Mechanism;
 use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
-use crate::numeric::svd::{Svd, singular_values};
+use crate::numeric::svd::Svd;
 use crate::task::Task;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Point3, SMatrix, SVector, Vector3, Vector6};
 use std::f64::consts::FRAC_PI_2;
 
 /// An equation holds, or an equation follows from others, to within this, relative to its scale.
 const HOLDS: f64 = 1e-9;
-/// Coordinates are independent if with them the motion at home is determined at least this well, compared to the best ones.
-const DETERMINED: f64 = 0.3;
-/// Below this it is not determined.
+/// What is smaller counts as zero; lengths are over the size.
 const LEVEL: f64 = 1e-6;
 /// The most rows.
 const MOST: usize = 6;
@@ -90,6 +87,11 @@ impl Row {
         self.direction_at(r).dot(p) + self.rest(r)
     }
 
+    /// The wrench at home.
+    fn at_home(&self) -> Vector6<f64> {
+        self.wrench(&Matrix3::identity(), &Vector3::zeros())
+    }
+
     /// Its rate for a twist `(ω; v)` about the reference point: the wrench by which the leg holds the platform.
     fn wrench(&self, r: &Matrix3<f64>, p: &Vector3<f64>) -> Vector6<f64> {
         let c = self.direction_at(r);
@@ -148,44 +150,26 @@ impl Rows {
         }
         // Couples first: they tell the angle by themselves.
         all.sort_by_key(|row| row.direction != Vector3::zeros());
-        let (home, zero) = (Matrix3::identity(), Vector3::zeros());
-        let mut basis: Vec<Vector6<f64>> = Vec::new();
-        let mut kept = Vec::new();
-        for mut row in all {
-            let wrench = row.wrench(&home, &zero);
-            let length = wrench.norm();
-            let rest = basis.iter().fold(wrench, |rest, unit| rest - unit * unit.dot(&rest));
-            let rest = basis.iter().fold(rest, |rest, unit| rest - unit * unit.dot(&rest));
-            if rest.norm() > LEVEL * length {
-                basis.push(rest.normalize());
-                row.direction /= length;
-                row.turn /= length;
-                row.constant /= length;
-                kept.push(row);
-            }
+        let mut kept = independent(all);
+        for row in &mut kept {
+            let length = row.at_home().norm();
+            row.direction /= length;
+            row.turn /= length;
+            row.constant /= length;
         }
         if kept.len() + freedoms != 6 {
             return Err(NoRows::Rank { left: 6 - kept.len(), freedoms });
         }
         let rotations = Rotations::new(task, reference);
         // What the rows leave free at home.
-        let held = DMatrix::from_fn(basis.len(), 6, |i, j| basis[i][j]);
-        let left = Svd::new(held).right.columns(basis.len(), freedoms).into_owned();
+        let held = DMatrix::from_fn(kept.len(), 6, |i, j| kept[i].at_home()[j]);
+        let left = Svd::new(held).right.columns(kept.len(), freedoms).into_owned();
         let rates = rates(task, &left, &rotations);
-        let mut choices: Vec<(f64, Vec<usize>)> = subsets(&preferred(task), freedoms)
-            .filter(|independent| {
-                let is_angle = |i: &usize| task.coordinates[*i].quantity == Quantity::Angle;
-                (0..6).filter(|i| is_angle(i) && !independent.contains(i)).count() <= 1
-            })
-            .map(|independent| {
-                let part = DMatrix::from_fn(freedoms, freedoms, |i, j| rates[(independent[i], j)]);
-                (singular_values(part).into_iter().fold(f64::INFINITY, f64::min), independent)
-            })
-            .filter(|(determined, _)| *determined > LEVEL)
-            .collect();
-        let best = choices.iter().map(|(determined, _)| *determined).fold(0.0, f64::max);
-        choices.sort_by_key(|(determined, _)| *determined < DETERMINED * best);
-        for (_, independent) in choices {
+        let one_angle = |independent: &[usize]| {
+            let is_angle = |i: &usize| task.coordinates[*i].quantity == Quantity::Angle;
+            (0..6).filter(|i| is_angle(i) && !independent.contains(i)).count() <= 1
+        };
+        for independent in determining(&rates, &preferred(task), one_angle, |_| false) {
             let found = Self::of(task, &independent, &kept, rotations, (reference, size));
             if let Some(rows) = found.filter(|rows| rows.holds(task, motions)) {
                 return Ok((independent, rows));
@@ -341,7 +325,10 @@ impl Rows {
                 let mut pose = all.clone();
                 self.lengths.iter().for_each(|&i| pose[i] = task.coordinates[i].home);
                 self.complete_with(task, sign, &mut pose).is_ok()
-                    && (pose.iter().zip(&all)).all(|(a, b)| (a - b).abs() < LEVEL)
+                    && task.coordinates.iter().zip(pose.iter().zip(&all)).all(|(c, (a, b))| {
+                        let unit = if c.quantity == Quantity::Length { self.size } else { 1.0 };
+                        (a - b).abs() < LEVEL * unit
+                    })
             };
             harmonic
                 && self.rows.iter().all(|row| row.value(&r, &p).abs() <= HOLDS)
@@ -401,14 +388,29 @@ impl Rows {
 /// The coordinates in the order in which they are taken as independent: the height, the tilts, then the others.
 fn preferred(task: &Task) -> Vec<usize> {
     let first = task.lower_count;
-    let mut all = vec![2, first, first + 1, 0, 1, first + 2];
-    all.retain(|&i| i < task.coordinates.len());
-    all
+    vec![2, first, first + 1, 0, 1, first + 2]
+}
+
+/// Those rows that do not follow from the ones before them: their wrenches at home are independent.
+fn independent(mut rows: Vec<Row>) -> Vec<Row> {
+    let mut basis: Vec<Vector6<f64>> = Vec::new();
+    rows.retain(|row| {
+        let mut rest = row.at_home().normalize();
+        // Twice, so that rounding is not left.
+        for _ in 0..2 {
+            rest = basis.iter().fold(rest, |rest, unit| rest - unit * unit.dot(&rest));
+        }
+        let new = rest.norm() > LEVEL;
+        if new {
+            basis.push(rest.normalize());
+        }
+        new
+    });
+    rows
 }
 
 /// The rows of a leg: the equations of a form that is covered that all its configurations have in common.
 fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row> {
-    let own: Vec<LegJoint> = joints(leg).map(|(joint, _)| joint).collect();
     let ends: Vec<(Matrix3<f64>, Vector3<f64>)> = (0..4)
         .flat_map(|turn| configurations(leg, size * (1.0 + 0.2 * f64::from(turn))))
         .enumerate()
@@ -418,12 +420,7 @@ fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row
                 value * (1.0 + 0.37 * ((7 * sample + 3 * i) % 5) as f64)
             };
             let values: Vec<f64> = values.iter().enumerate().map(spread).collect();
-            let (mut g, mut rest) = (Isometry3::identity(), &values[..]);
-            for joint in &own {
-                let (these, others) = rest.split_at(joint.freedoms());
-                g *= joint.exp(these);
-                rest = others;
-            }
+            let g = end(leg, &values);
             let p = (g * reference - reference) / size;
             (g.rotation.to_rotation_matrix().into_inner(), p)
         })
@@ -477,15 +474,5 @@ fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row
         }
     }
     // A point that stays where it is gives rows of either kind.
-    let mut basis: Vec<Vector6<f64>> = Vec::new();
-    found.retain(|row| {
-        let wrench = row.wrench(&Matrix3::identity(), &Vector3::zeros()).normalize();
-        let rest = basis.iter().fold(wrench, |rest, unit| rest - unit * unit.dot(&rest));
-        let new = rest.norm() > LEVEL;
-        if new {
-            basis.push(rest.normalize());
-        }
-        new
-    });
-    found
+    independent(found)
 }

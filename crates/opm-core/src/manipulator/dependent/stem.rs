@@ -4,28 +4,21 @@
 //! moves in a plane that is `T(x y) · R(theta)`, and where it only rotates about a centre, `R(angles)`. The independent coordinates are known joints of that loop, the dependent
 //! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
 
-use super::subsets;
-use crate::chain::Branch;
-use crate::chain::ReachDeficit;
+use super::{UNDETERMINED, determining};
 use crate::chain::whole::{LegJoint, MOST_FREEDOMS, NoOrder, WholeLeg};
-use crate::decomposition::whole::{configurations, joints};
+use crate::chain::{Branch, ReachDeficit};
+use crate::decomposition::whole::{configurations, end, joints};
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::manipulator::Mode;
 use crate::mechanism::Mechanism;
 use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::numeric::angle::near;
-use crate::numeric::svd::singular_values;
 use crate::task::{Task, TaskCoordinate};
 use nalgebra::{DMatrix, Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
-/// Coordinates are independent, in the order of preference, if with them the stem's motion at home is determined at
-/// least this well, compared to the best ones.
-const DETERMINED: f64 = 0.3;
 /// The most coordinates.
 const MOST: usize = 6;
-/// Below this they do not determine it.
-const LEVEL: f64 = 1e-6;
 
 /// How coordinates follow from the others.
 #[derive(Clone, Debug)]
@@ -125,27 +118,14 @@ impl Stem {
         let rotations = Rotations::new(task, mechanism.platform);
         let twists = twists(&mechanism.legs[leg], &rotations.centre, size);
         let rates = rates(task, &twists, &rotations);
-        let (count, freedoms) = (task.coordinates.len(), rates.ncols());
-        let mut choices: Vec<(f64, Vec<usize>)> =
-            subsets(&(0..count).collect::<Vec<_>>(), freedoms)
-                .filter(|independent| separable(task, &rotations, independent))
-                .map(|independent| {
-                    let rows =
-                        DMatrix::from_fn(freedoms, freedoms, |i, j| rates[(independent[i], j)]);
-                    (singular_values(rows).into_iter().fold(f64::INFINITY, f64::min), independent)
-                })
-                .filter(|(determined, _)| *determined > LEVEL)
-                .collect();
-        let best = choices.iter().map(|(determined, _)| *determined).fold(0.0, f64::max);
-        // Sorting is stable: among those that are well determined, positions come first; of a crank, its angle does.
-        let Angles { count: turns, first } = rotations.angles;
-        let by_place =
-            |independent: &[usize]| freedoms == 1 && turns == 1 && !independent.contains(&first);
-        choices.sort_by_key(|(determined, independent)| {
-            (*determined < DETERMINED * best, by_place(independent))
-        });
+        let all: Vec<usize> = (0..task.coordinates.len()).collect();
+        // Positions come first; of a crank, its angle does.
+        let Angles { count, first } = rotations.angles;
+        let is_crank = rates.ncols() == 1 && count == 1;
+        let late = |independent: &[usize]| is_crank && !independent.contains(&first);
+        let suits = |independent: &[usize]| separable(task, &rotations, independent);
         let mut reason = None;
-        for (_, independent) in choices {
+        for independent in determining(&rates, &all, suits, late) {
             match Self::of(task, mechanism, leg, &independent, &rotations, size) {
                 Ok(stem) => return Ok((independent, stem)),
                 Err(error) => reason = Some(error),
@@ -203,12 +183,7 @@ impl Stem {
             .collect();
         let configurations: Vec<Vec<f64>> = configurations(&mechanism.legs[leg], size)
             .map(|values| {
-                let (mut g, mut rest) = (Isometry3::identity(), &values[..]);
-                for joint in &own {
-                    let (these, others) = rest.split_at(joint.freedoms());
-                    g *= joint.exp(these);
-                    rest = others;
-                }
+                let g = end(&mechanism.legs[leg], &values);
                 let parts = |parts: &[(Part, LegJoint)]| -> Vec<f64> {
                     parts.iter().flat_map(|(part, _)| part.value(task, &g, rotations)).collect()
                 };
@@ -383,7 +358,7 @@ fn twists(leg: &Leg, point: &Point3<f64>, size: f64) -> DMatrix<f64> {
 pub(super) fn rates(task: &Task, twists: &DMatrix<f64>, rotations: &Rotations) -> DMatrix<f64> {
     let Angles { count, first } = rotations.angles;
     let axes = Matrix3::from_columns(&rotations.axes);
-    let regular = axes.determinant().abs() > LEVEL;
+    let regular = axes.determinant().abs() > UNDETERMINED;
     let by_axes = if regular { axes.try_inverse() } else { None };
     DMatrix::from_fn(task.coordinates.len(), twists.ncols(), |i, j| {
         let twist = twists.column(j);

@@ -143,8 +143,8 @@ impl Solved<'_> {
         (self.elements.iter().map(of).collect(), values)
     }
 
-    /// What the general case does not solve: a joint is free, two equations are one, or the pose is on the rim of reach or beyond
-    /// it.
+    /// Solves what the general case does not: a joint is free, two equations are one, or the target is at the end of reach or out
+    /// of reach.
     #[cold]
     fn special(
         &self,
