@@ -268,7 +268,8 @@ struct Request<'a> {
 
 impl Manipulator {
     /// Whether boxes of poses have bounds. They have none where several legs impose the same constraint: whether it is
-    /// obeyed is a matter of a tolerance.
+    /// obeyed is a matter of a tolerance; nor where legs are solved whole and coordinates depend on each other, or spherical
+    /// joints are limited.
     ///
     /// ```
     /// # use opm_core::Manipulator;
@@ -276,8 +277,10 @@ impl Manipulator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn has_enclosures(&self) -> bool {
-        let constraints = self.dependent.as_ref();
-        !self.is_whole() && constraints.is_none_or(|dependent| dependent.checked().next().is_none())
+        if self.is_whole() {
+            return self.reaches_whole();
+        }
+        self.dependent.as_ref().is_none_or(|dependent| dependent.checked().next().is_none())
     }
 
     /// The task coordinate that a side of a box is; `None` for the displacement of an imaginary joint.

@@ -15,6 +15,7 @@ mod leg;
 mod nearest;
 mod rates;
 mod twist;
+mod whole;
 
 use crate::names::identifiers;
 use crate::trace::{Any, Array, Bits, In, Parameters, Real, Truth, call_known, give, when};
@@ -61,7 +62,7 @@ pub struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     pub fn new(manipulator: &'a Manipulator) -> Result<Self, GenerateError> {
-        if manipulator.is_whole() {
+        if manipulator.is_whole() && !manipulator.dependent_coordinates().is_empty() {
             return Err(GenerateError::Whole);
         }
         let choices = manipulator.choices();
@@ -149,7 +150,7 @@ impl<'a> Writer<'a> {
                 add(format!("tau_{}", number + 1), tau.of_type());
             }
             for section in [Section::Lower, Section::Upper] {
-                if let Chain::Ball(_) = leg.section(section).chain {
+                if leg::is_ball(&leg.section(section).chain) {
                     add(leg::ball(number, section), Given::Direction.of_type());
                 }
             }
@@ -168,8 +169,7 @@ impl<'a> Writer<'a> {
         let legs = self.forms.legs.iter().enumerate();
         let sections =
             legs.flat_map(|(leg, form)| [Section::Lower, Section::Upper].map(|of| (leg, of, form)));
-        let mut balls =
-            sections.filter(|(_, of, form)| matches!(form.section(*of).chain, Chain::Ball(_)));
+        let mut balls = sections.filter(|(_, of, form)| leg::is_ball(&form.section(*of).chain));
         let found =
             balls.find(|(_, of, form)| form.section(*of).coordinates.contains(&Some(coordinate)));
         found.map(|(leg, of, _)| leg::ball(leg, of))
@@ -177,6 +177,9 @@ impl<'a> Writer<'a> {
 
     /// The form in which the displacement of a joint coordinate is given.
     fn given(&self, coordinate: usize) -> Given {
+        if let Some(given) = self.given_of_whole(coordinate) {
+            return given;
+        }
         for leg in &self.forms.legs {
             for section in [&leg.lower, &leg.upper] {
                 if let Some(joint) = section.coordinates.iter().position(|c| *c == Some(coordinate))

@@ -70,10 +70,10 @@ pub enum GenerateError {
         /// The most that there may be.
         most: u32,
     },
-    /// Legs are solved whole, and not by sections.
+    /// Legs are solved whole, and coordinates of the pose follow from others.
     #[error(
-        "code is written for legs that are split into two sections; this mechanism's legs are each solved by itself: \
-         compute joints with opm itself (`opm ik`, the crate or the Python module)"
+        "no code is written for a mechanism whose legs are each solved by itself where coordinates of its pose follow from \
+         others: compute joints with opm itself (`opm ik`, the crate or the Python module)"
     )]
     Whole,
     /// The closed forms have what the other languages do not know: this is a defect of opm.

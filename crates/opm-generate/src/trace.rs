@@ -8,6 +8,7 @@ pub mod closed_forms;
 mod functions;
 mod numbers;
 mod structs;
+pub mod whole;
 
 pub use functions::{In, Out, Parameters, Passed, Traced, call, call_known};
 pub use numbers::*;
@@ -137,6 +138,26 @@ pub fn fresh(name: &str) -> String {
             .find(|one| !taken.contains(one))
             .unwrap_or_default()
     })
+}
+
+/// A variable with this value: one that is declared already, if there is one in this block or around it.
+pub fn once<T: Handle>(name: &str, value: T) -> T {
+    let expr = value.expr();
+    let known = TRACE.with_borrow(|trace| {
+        let mut all = trace.blocks.iter().flatten();
+        all.find_map(|statement| match statement {
+            Statement::Declare { name: known, init: Some(init), .. }
+                if known.starts_with(name) && *init == expr =>
+            {
+                Some(known.clone())
+            }
+            _ => None,
+        })
+    });
+    match known {
+        Some(name) => T::from_expr(Expr::variable(&name, T::kind())),
+        None => named(&fresh(name), value),
+    }
 }
 
 /// Declares a variable with its value.

@@ -299,6 +299,15 @@ impl Expr {
         Self::new(Node::Variable(name.to_owned()), kind)
     }
 
+    /// Whether it is a number as it is written.
+    pub fn is_number(&self) -> bool {
+        match &self.node {
+            Node::Number(_) => true,
+            Node::Negative(of) => of.is_number(),
+            _ => false,
+        }
+    }
+
     /// The variable that a place is in.
     pub fn root(&self) -> Option<&str> {
         match &self.node {

@@ -7,10 +7,8 @@ mod numbers;
 mod opening;
 mod share;
 mod target;
+pub mod whole;
 
 pub use affine::{Affine, Plane, WIDE};
 pub use share::{MOST, Share};
 pub use target::{Enclosed, PlanarTarget, Rotation, Target, dot};
-
-#[cfg(test)]
-mod whole;

@@ -5,6 +5,7 @@
 //! | [`Real`] | what comes out |
 //! |---|---|
 //! | `f64` | the joints at one pose; in a loop without branches, at many |
+//! | numbers of eight poses (`pack`) | the joints at all of them |
 //! | numbers over a box (`opm_geometry::boxes`) | bounds of the joints at all poses of a box |
 //! | handles of expressions (`opm-generate`) | source code |
 //!
@@ -15,6 +16,8 @@
 //! mostly constant. [`Over<C>`] is a number `T` that can be combined with them.
 
 mod joint;
+#[doc(hidden)]
+pub mod pack;
 mod pose;
 
 pub use joint::JointDisplacement;
@@ -212,6 +215,12 @@ pub trait Space: Copy + Debug + PartialEq {
         let ([a, b, c], [x, y, z]) = (self.parts(), other.parts());
         Real::products([a, x], [b, y]) + c * z
     }
+    /// The same, with a name in source code.
+    #[inline(always)]
+    #[must_use]
+    fn named(self, _: &'static str) -> Self {
+        self
+    }
 }
 
 /// Numbers that have no vectors of their own have three of them.
@@ -243,6 +252,26 @@ pub trait Rotation: Copy + Debug + PartialEq {
         let [[a, b, c], [d, e, f], [g, h, i]] = self.rows();
         Self::from_rows([[a, d, g], [b, e, h], [c, f, i]])
     }
+    /// The image of a vector.
+    #[inline(always)]
+    fn image(self, v: <Self::Real as Real>::Space) -> <Self::Real as Real>::Space {
+        let ([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]) = (self.rows(), v.parts());
+        Space::new(
+            Real::products([a, x], [b, y]) + c * z,
+            Real::products([d, x], [e, y]) + f * z,
+            Real::products([g, x], [h, y]) + i * z,
+        )
+    }
+    /// What is rotated to a vector.
+    #[inline(always)]
+    fn image_back(self, v: <Self::Real as Real>::Space) -> <Self::Real as Real>::Space {
+        let ([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]) = (self.rows(), v.parts());
+        Space::new(
+            Real::products([a, x], [d, y]) + g * z,
+            Real::products([b, x], [e, y]) + h * z,
+            Real::products([c, x], [f, y]) + i * z,
+        )
+    }
     /// The product of this one, on the left, and a rotation about the third direction: the first two columns rotate.
     #[must_use]
     #[inline(always)]
@@ -269,7 +298,7 @@ pub trait Rotation: Copy + Debug + PartialEq {
 }
 
 /// A joint's displacement from home.
-pub trait Joint: Copy {
+pub trait Joint: Copy + Debug {
     /// The numbers that it consists of.
     type Real: Real<Joint = Self>;
 

@@ -7,10 +7,12 @@ use super::target::{self, Coordinate};
 use crate::boxes::Affine;
 use crate::boxes::Share;
 use crate::boxes::chain;
+use crate::boxes::whole::enclose;
 use crate::boxes::{Enclosed, Target};
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
 use crate::chain::{Branch, Chain};
+use crate::group::Placed;
 use crate::manipulator::{Choices, CompiledLeg, CompiledSection, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::task::Task;
@@ -173,6 +175,9 @@ impl<const N: usize> LegConditions<'_, N> {
 
     /// The share of a box that meets a query.
     pub fn over_box(&self, query: BoxQuery, coordinates: &[Coordinate<N>]) -> Share<N> {
+        if self.manipulator.is_whole() {
+            return self.over_whole(coordinates);
+        }
         let task = self.manipulator.task();
         let legs = 0..self.manipulator.legs.len();
         let (lower, others) = match query {
@@ -189,6 +194,42 @@ impl<const N: usize> LegConditions<'_, N> {
         }
         let mut taus = others.iter();
         all(legs, |leg| self.lower(leg, &v, self.next_tau(leg, &mut taus)))
+    }
+
+    /// The same where legs are solved whole.
+    fn over_whole(&self, coordinates: &[Coordinate<N>]) -> Share<N> {
+        let (manipulator, task) = (self.manipulator, self.manipulator.task());
+        let (lower, upper) = coordinates.split_at(task.lower_count);
+        let v = task.lower.placed(&target::task::lower(task, lower));
+        let b = task.upper.placed(&target::task::upper(task, upper));
+        let g = match &task.height {
+            None => v.after(b),
+            Some(height) => {
+                let rise = Placed::slid(&height.up, self.rise);
+                match height.section {
+                    Section::Lower => rise.after(v.after(b)),
+                    Section::Upper => v.after(b).after(rise),
+                }
+            }
+        };
+        let target = g.parts();
+        all(0..manipulator.legs.len(), |number| {
+            let whole = self.leg(number).whole.as_ref();
+            let Some((whole, reach)) = whole.and_then(|whole| Some((whole, whole.reach.as_ref()?)))
+            else {
+                return Share::ANY;
+            };
+            any(manipulator.branches_of(self.choices, number), |branches| {
+                let signs = [branches.lower.sign(), branches.upper.sign()];
+                let (share, displacements) = enclose(reach, target, signs);
+                whole.limited(manipulator).fold(share, |share, (freedom, limits)| {
+                    match share.is_none() {
+                        true => share,
+                        false => share.and(within(limits, &displacements[freedom])),
+                    }
+                })
+            })
+        })
     }
 
     /// The same for a box with a rectangle of the plane, whose place in the coordinates is home.

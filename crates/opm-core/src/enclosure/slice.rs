@@ -38,7 +38,7 @@ impl Manipulator {
         mode: Option<Mode>,
         sides: &[Side],
     ) -> Option<[usize; 2]> {
-        if query == BoxQuery::Upper || self.dependent.is_some() {
+        if query == BoxQuery::Upper || self.dependent.is_some() || self.is_whole() {
             return None;
         }
         let coordinates = &self.task().coordinates[..self.task().lower_count];

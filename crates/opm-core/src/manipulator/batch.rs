@@ -11,6 +11,7 @@ pub(crate) mod decide;
 pub(crate) mod lanes;
 mod rows_and_columns;
 pub(crate) mod section;
+mod whole;
 
 use super::all_modes::AllModes;
 use super::dependent::Complete;

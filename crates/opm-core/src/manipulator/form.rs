@@ -7,6 +7,7 @@ use super::leg::{CompiledLeg, Section};
 use super::section::CompiledSection;
 use super::{Dependent, Manipulator};
 use crate::chain::Chain;
+use crate::chain::whole::WholeLeg;
 use crate::group::LocalTwist;
 use nalgebra::Matrix3;
 
@@ -61,6 +62,18 @@ pub struct LegForm {
     pub upper: SectionForm,
     /// The joint that carries the height of a Schoenflies section.
     pub lift: Option<LiftForm>,
+    /// Its closed form, if it is solved whole. Then its sections only say what signs the choices have, and which coordinates
+    /// are those of spherical joints.
+    pub whole: Option<WholeForm>,
+}
+
+/// A leg that is solved whole.
+#[derive(Clone, Debug)]
+pub struct WholeForm {
+    /// The closed form.
+    pub leg: WholeLeg,
+    /// The number of its first joint coordinate. The others follow in the order of the freedoms.
+    pub first: usize,
 }
 
 /// One section of a leg.
@@ -163,6 +176,11 @@ impl Manipulator {
             unwinds: leg.unwinds,
             lower: section(Section::Lower),
             upper: section(Section::Upper),
+            whole: leg.whole.as_ref().map(|whole| {
+                let before = &self.mechanism.legs[..number];
+                let first = before.iter().map(|leg| leg.coordinates().count()).sum();
+                WholeForm { leg: whole.leg.clone(), first }
+            }),
             lift: leg.lift.as_ref().map(|lift| LiftForm {
                 coordinate: lift.coordinate.number,
                 rate: lift.rate,

@@ -7,7 +7,8 @@
 use super::leg::{CompileContext, CompiledLeg, LegBranches, LegSolution};
 use super::section::{ChainCoordinate, CompiledSection};
 use super::{Manipulator, Mode};
-use crate::chain::whole::{MOST_FREEDOMS, WholeLeg};
+use crate::chain::limits::Limits;
+use crate::chain::whole::{LegReach, MOST_FREEDOMS, WholeLeg};
 use crate::chain::{Chain, Part, ReachDeficit};
 use crate::decomposition::Freedom;
 use crate::group::JointDisplacement;
@@ -23,9 +24,13 @@ const BETWEEN: usize = 6;
 #[derive(Clone, Debug)]
 pub(crate) struct Whole {
     pub leg: WholeLeg,
+    /// What decides on many poses, and on boxes of them; `None` where that takes all joints.
+    pub reach: Option<LegReach>,
     /// For each freedom, from base to platform, its place: 0 to 2 in the lower section, 3 to 5 in the upper one, or
     /// between them.
     places: Vec<usize>,
+    /// The freedoms that are limited, and the numbers of their joint coordinates.
+    limited: Vec<(usize, usize)>,
     /// The joint between the sections.
     pub between: Option<ChainCoordinate>,
     /// Its joints, from base to platform: those of one freedom each, and balls.
@@ -68,6 +73,16 @@ impl Whole {
             place @ 3..BETWEEN => solution.upper[place - 3],
             _ => solution.tau,
         }
+    }
+
+    /// The freedoms whose joint coordinates are limited, with their limits.
+    #[inline(always)]
+    pub fn limited<'a>(
+        &'a self,
+        manipulator: &'a Manipulator,
+    ) -> impl Iterator<Item = (usize, &'a Limits)> {
+        let limits = self.limited.iter();
+        limits.map(|&(freedom, number)| (freedom, &manipulator.limits[number]))
     }
 
     /// Whether the joint between the sections is within its limits.
@@ -161,6 +176,11 @@ impl CompiledLeg {
             }
         };
         let choices = whole.choices();
+        let limited = places.iter().enumerate().filter_map(|(freedom, &place)| {
+            coordinates[place].filter(|c| c.limits.any()).map(|c| (freedom, c.number))
+        });
+        let limited: Vec<(usize, usize)> = limited.collect();
+        let reach = whole.reach(|freedom| limited.iter().any(|&(of_limit, _)| of_limit == freedom));
         let between = coordinates[BETWEEN];
         Self {
             lower: section(0, choices > 0),
@@ -175,7 +195,10 @@ impl CompiledLeg {
             unwinds: false,
             lift: None,
             lean: None,
-            whole: Some(Box::new(Whole { leg: whole, places, between, joints: joints(leg) })),
+            whole: Some(Box::new({
+                let joints = joints(leg);
+                Whole { leg: whole, reach, places, limited, between, joints }
+            })),
         }
     }
 }

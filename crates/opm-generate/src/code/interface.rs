@@ -15,6 +15,8 @@ pub const SECTIONS: [Section; 2] = [Section::Lower, Section::Upper];
 pub struct Needs {
     pub moved: [bool; 2],
     pub rise: bool,
+    /// The displacement of the platform.
+    pub body: bool,
 }
 
 /// What most functions of a pose begin with.
@@ -90,6 +92,8 @@ impl Writer<'_> {
         }
         let rise = needs.rise.then(|| Real::empty("rise"));
         known.extend(rise.map(|rise| ("rise", rise.into())));
+        let body = needs.body.then(|| Body::empty("body"));
+        known.extend(body.map(|body| ("body", body.into())));
         name!(status = check(pose));
         return_status(status);
         let mut q = pose;
@@ -103,7 +107,11 @@ impl Writer<'_> {
         if let Some(rise) = rise {
             rise.set(self.rise(g, q));
         }
-        Start { q, status, known }
+        let start = Start { q, status, known };
+        if let Some(body) = body {
+            self.give_body(g, &start, body);
+        }
+        start
     }
 
     /// The same where what cannot be completed is returned.
@@ -131,7 +139,11 @@ impl Writer<'_> {
 
     /// What the functions of all legs need.
     pub fn needs_of_legs(&self) -> Needs {
-        Needs { moved: ["v", "b"].map(|name| self.legs_take(name)), rise: self.legs_take("rise") }
+        if self.legs_take("body") {
+            return Needs { body: true, ..self.needs_of_platform() };
+        }
+        let moved = ["v", "b"].map(|name| self.legs_take(name));
+        Needs { moved, rise: self.legs_take("rise"), body: false }
     }
 
     /// The calls of the functions of a leg.
@@ -374,7 +386,25 @@ impl Writer<'_> {
     /// What a function of the platform's place needs.
     pub fn needs_of_platform(&self) -> Needs {
         let upper = self.kind(Section::Upper) != SubspaceKind::Identity;
-        Needs { moved: [true, upper], rise: self.forms.height.is_some() }
+        Needs { moved: [true, upper], rise: self.forms.height.is_some(), body: false }
+    }
+
+    /// Gives the displacement of the platform.
+    fn give_body(&self, g: Any, start: &Start, body: Body) {
+        if let Some(v) = start.get("v") {
+            body.set(self.body_of(Section::Lower, g, v));
+        }
+        if let Some(b) = start.get("b") {
+            body.set(body_product(body, self.body_of(Section::Upper, g, b)));
+        }
+        if let (Some(height), Some(rise)) = (self.forms.height, start.get("rise")) {
+            let up = self.frame(height.section, g).axes.z;
+            let up = match height.section {
+                Section::Lower => up,
+                Section::Upper => rotated(body.rotation, up),
+            };
+            body.translation.set(add(body.translation, rise.is::<Real>(), up));
+        }
     }
 
     /// The function of the platform's pose.
@@ -393,20 +423,7 @@ impl Writer<'_> {
             let body = Body::empty("body");
             let (r, at) = (Rotation::empty("r"), Vector::empty("p"));
             let start = self.start_or_return(of_pose, self.needs_of_platform(), None);
-            if let Some(v) = start.get("v") {
-                body.set(self.body_of(Section::Lower, g, v));
-            }
-            if let Some(b) = start.get("b") {
-                body.set(body_product(body, self.body_of(Section::Upper, g, b)));
-            }
-            if let (Some(height), Some(rise)) = (self.forms.height, start.get("rise")) {
-                let up = self.frame(height.section, g).axes.z;
-                let up = match height.section {
-                    Section::Lower => up,
-                    Section::Upper => rotated(body.rotation, up),
-                };
-                body.translation.set(add(body.translation, rise.is::<Real>(), up));
-            }
+            self.give_body(g, &start, body);
             let platform: Vector = g.member("platform");
             at.set(add(body.translation, 1.0, rotated(body.rotation, platform)));
             r.set(match self.forms.home_orientation_inverse {

@@ -61,6 +61,20 @@ pub fn ball(leg: usize, section: Section) -> String {
     format!("half_{}_{}", leg + 1, word(section))
 }
 
+/// Whether a section's chain is a spherical joint.
+pub fn is_ball(chain: &Chain) -> bool {
+    match chain {
+        Chain::Ball(_) => true,
+        Chain::Part(part) => part.ball,
+        Chain::Rigid
+        | Chain::Planar(_)
+        | Chain::Spherical(_)
+        | Chain::Cylindrical(_)
+        | Chain::Translational(_)
+        | Chain::Spatial(_) => false,
+    }
+}
+
 /// Whether a section may be out of reach.
 fn may_miss(section: &SectionForm) -> bool {
     section.locked.is_none() && matches!(section.chain, Chain::Planar(_) | Chain::Spherical(_))
@@ -123,6 +137,10 @@ impl Writer<'_> {
     /// The functions that solve the two sections of a leg, in their order.
     pub fn leg(&self, number: usize) {
         let leg = &self.forms.legs[number];
+        if let Some(form) = &leg.whole {
+            self.whole_leg(number, form);
+            return;
+        }
         let name = crate::names::comment(&self.manipulator.mechanism().legs[number].name);
         for (place, section) in [("first", leg.first), ("second", other(leg.first))] {
             let comment = format!(
@@ -159,7 +177,7 @@ impl Writer<'_> {
 
     /// The names of the functions of a leg, with whether each is that of the first section.
     pub fn leg_functions(&self, leg: usize) -> Vec<(String, bool)> {
-        let names = [("first", true), ("second", false)];
+        let names = [("first", true), ("second", false), ("whole", true)];
         let named = names.map(|(place, first)| (format!("leg{}_{place}", leg + 1), first));
         named.into_iter().filter(|(name, _)| self.find(name, |_| ()).is_some()).collect()
     }

@@ -1,7 +1,7 @@
 //! The function of the mode nearest to a previous solution.
 
 use super::displacement::displacement_type;
-use super::leg::{Given, other};
+use super::leg::{Given, is_ball, other};
 use super::*;
 use crate::library::*;
 use crate::trace::*;
@@ -11,6 +11,7 @@ struct Nearest {
     g: Any,
     moved: [Any; 2],
     rise: Real,
+    body: Body,
     previous: Array<Real>,
     mode: Bits,
     joints: Array<Real>,
@@ -129,6 +130,7 @@ impl Writer<'_> {
                 moved: [Section::Lower, Section::Upper]
                     .map(|of| p.of_kind(symbol(of), kind(of), Pass::Value)),
                 rise: p.add::<Real>("rise"),
+                body: p.add::<Body>("body"),
                 previous: p.add::<In<[Real]>>("previous"),
                 mode: p.add::<Out<Bits>>("mode"),
                 joints: p.add::<Out<[Real]>>("joints"),
@@ -137,12 +139,21 @@ impl Writer<'_> {
             };
             self.nearest_body(leg, &nearest)
         });
-        self.add(function.without_unused(&["v", "b", "rise"]));
+        self.add(function.without_unused(&["v", "b", "rise", "body"]));
     }
 
     fn nearest_body(&self, leg: usize, nearest: &Nearest) -> Int {
-        let Nearest { g, moved: [v, b], rise, previous, mode, joints, imaginary, least_motion } =
-            *nearest;
+        let Nearest {
+            g,
+            moved: [v, b],
+            rise,
+            body,
+            previous,
+            mode,
+            joints,
+            imaginary,
+            least_motion,
+        } = *nearest;
         let own = self.own_bits(leg);
         let numbers = self.joints_of(leg);
         name!(rest = mode);
@@ -161,8 +172,8 @@ impl Writer<'_> {
         count_bits("i", 1 << own.len(), |i| {
             let mask = if own.is_empty() { rest } else { spread_bits(Some(rest), &own, i) };
             name!(tried = mask);
-            let known = ["g", "v", "b", "rise", "near", "mode", "at", "missed"];
-            let given = given![g, v, b, rise, previous_tau, tried, at, missed];
+            let known = ["g", "v", "b", "rise", "body", "near", "mode", "at", "missed"];
+            let given = given![g, v, b, rise, body, previous_tau, tried, at, missed];
             let known: Vec<(&str, Any)> = known.into_iter().zip(given).collect();
             if let Some(fails) = any_fails(&self.leg_calls(leg, &known)) {
                 when(fails, again);
@@ -215,8 +226,8 @@ impl Writer<'_> {
         }
         for of in [Section::Lower, Section::Upper] {
             let section = self.forms.legs[leg].section(of);
-            let (Chain::Ball(_), [Some(x), Some(y), Some(z)]) =
-                (&section.chain, section.coordinates)
+            let (true, [Some(x), Some(y), Some(z)]) =
+                (is_ball(&section.chain), section.coordinates)
             else {
                 continue;
             };

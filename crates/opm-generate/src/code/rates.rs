@@ -121,13 +121,20 @@ impl Writer<'_> {
         let own = (locked.is_none() && self.dependent())
             .then(|| Array::empty("locked", (self.lacking() * count_of).max(1)));
         let locked = locked.or(own).unwrap_or(all);
-        let needs = Needs { moved: [needs_v, false], rise: false };
+        let needs = match self.is_whole() {
+            true => self.needs_of_platform(),
+            false => Needs { moved: [needs_v, false], ..Needs::default() },
+        };
         let start = self.start_or_return(of_pose, needs, q);
         start.status.set(self.call("close", &given![g, pose, mode, at]).is::<Int>());
         return_status(start.status);
         self.columns(columns, g, start.q, t);
         let own = ["at", "t", "all", "locked"].into_iter().zip(given![at, t, all, locked]);
-        let known: Vec<(&str, Any)> = start.known.into_iter().chain(own).collect();
+        let mut known: Vec<(&str, Any)> = start.known.iter().copied().chain(own).collect();
+        if self.is_whole() {
+            let of_platform = self.platform_motions(g, &start, t);
+            known.extend(["motions", "point"].into_iter().zip(of_platform));
+        }
         for (leg, name) in legs().filter(|(_, name)| self.find(name, |_| ()).is_some()) {
             let singular = self.call_with(&name, &known).is::<Int>().is_set();
             when(singular, || give(LEGS + number(leg)));
@@ -155,6 +162,10 @@ impl Writer<'_> {
     /// The function of one leg: the columns of its joints' rates, and of the rates of joints that it lacks, whose rows begin
     /// at `first_lacking`. It gives how many these are.
     fn leg_rates(&self, leg: usize, first_lacking: usize) -> usize {
+        if let Some(form) = &self.forms.legs[leg].whole {
+            self.whole_rates(leg, form);
+            return 0;
+        }
         let name = crate::names::comment(&self.manipulator.mechanism().legs[leg].name);
         let comment = format!(
             "Leg {}, {name}: the rates of its joints for the twists t of its sections. It returns 1 where it is singular.",

@@ -1,5 +1,6 @@
 //! The function of the platform's twist.
 
+use super::interface::Start;
 use super::rates::Columns;
 use super::*;
 use crate::library::*;
@@ -28,9 +29,6 @@ impl Writer<'_> {
         let (g, pose, mode) = of_pose;
         let count_of = self.task.coordinates.len();
         let needs = self.needs_of_platform();
-        let lower = Body::empty("lower");
-        let upper = needs.moved[1].then(|| Body::empty("upper"));
-        let (before, point) = (Vector::empty("before"), Vector::empty("point"));
         let t = Array::<Twists>::empty("t", count_of);
         let sums = self.dependent().then(|| {
             let joints = self.fields.len() * count_of;
@@ -44,6 +42,32 @@ impl Writer<'_> {
             return_status(start.status);
         }
         self.columns(Columns::Coordinates, g, start.q, t);
+        let output = sums.map_or(twist, |[all, ..]| all);
+        self.moved_by(g, &start, t, |i, w, velocity| {
+            let parts = [w.x, w.y, w.z, velocity.x, velocity.y, velocity.z];
+            for (place, part) in parts.into_iter().enumerate() {
+                output.at(number(place * count_of) + i).set(part);
+            }
+        });
+        if let Some([all, _, follow]) = sums {
+            self.call("by_pose", &given![all, Int::from(6), follow, twist]);
+        }
+        done()
+    }
+
+    /// Gives the angular velocity of the platform, and the velocity of its reference point, for a unit of each column; and where
+    /// that point is.
+    pub fn moved_by(
+        &self,
+        g: Any,
+        start: &Start,
+        t: Array<Twists>,
+        give: impl FnOnce(Int, Vector, Vector),
+    ) -> Vector {
+        let count_of = self.task.coordinates.len();
+        let lower = Body::empty("lower");
+        let upper = start.get("b").map(|_| Body::empty("upper"));
+        let (before, point) = (Vector::empty("before"), Vector::empty("point"));
         if let Some(v) = start.get("v") {
             lower.set(self.body_of(Section::Lower, g, v));
         }
@@ -65,7 +89,6 @@ impl Writer<'_> {
         if let (Some(up), Some(rise)) = (up, start.get("rise")) {
             point.set(add(point, rise.is::<Real>(), up));
         }
-        let output = sums.map_or(twist, |[all, ..]| all);
         count("i", 0, number(count_of), |i| {
             let of_column = t.at(i);
             let (frame, [of_w, of_v]) =
@@ -81,15 +104,9 @@ impl Writer<'_> {
             if let Some(up) = up {
                 velocity.set(add(velocity, of_column.rise, up));
             }
-            let parts = [w.x, w.y, w.z, velocity.x, velocity.y, velocity.z];
-            for (place, part) in parts.into_iter().enumerate() {
-                output.at(number(place * count_of) + i).set(part);
-            }
+            give(i, w, velocity);
         });
-        if let Some([all, _, follow]) = sums {
-            self.call("by_pose", &given![all, Int::from(6), follow, twist]);
-        }
-        done()
+        point
     }
 
     /// The angular velocity and the velocity of a section's origin, in its frame, of a twist.

@@ -9,7 +9,7 @@ functions! {
     /// unknowns are not determined.
     fn eliminate(a: Out<[Real]>, rows: Int, unknowns: Int, sides: Int, x: Out<[Real]>) -> Int {
         name!(width = unknowns + sides);
-        let place = Array::<Int>::empty("place", 6);
+        let place = Array::<Int>::empty("place", 7);
         count("j", 0, unknowns, |j| {
             place.at(j).set(-1);
         });

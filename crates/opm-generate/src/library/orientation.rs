@@ -9,6 +9,21 @@ functions! {
         rotation_about(normal_vector(w), unit(sqrt(dot(w, w))))
     }
 
+    /// The rotation by the smallest angle that takes the direction of a vector to that of another one.
+    fn swing(from: Vector, to: Vector) -> Rotation {
+        name!(a = normal_vector(from), b = normal_vector(to));
+        name!(cosine = dot(a, b), axis = cross(a, b));
+        when(cosine.lt(-1.0 + REACH), || {
+            give(rotation_about(normal_vector(perpendicular(a)), complex_of(-1.0, 0.0)));
+        });
+        name!(c = add(vector_of(0.0, 0.0, 0.0), 1.0 / (1.0 + cosine), axis));
+        Rotation::made(
+            vector_of(cosine + axis.x * c.x, axis.z + axis.y * c.x, axis.z * c.x - axis.y),
+            vector_of(axis.x * c.y - axis.z, cosine + axis.y * c.y, axis.x + axis.z * c.y),
+            vector_of(axis.y + axis.x * c.z, axis.y * c.z - axis.x, cosine + axis.z * c.z),
+        )
+    }
+
     /// Replaces three columns of rates, from the first on, which belong to rotations about the directions of a frame, by
     /// those of three angles with these screws.
     fn by_angles(

@@ -9,12 +9,20 @@ structs! {
 
     /// The twists of the two sections, in their frames, and the rate of the height.
     Twists { lower: Vector, upper: Vector, rise: Real }
+
+    /// A twist of the platform, base coordinates: its angular velocity, and the velocity of the reference point.
+    Motion { turn: Vector, velocity: Vector }
 }
 
 functions! {
     #[inline]
     fn twists_of(lower: Vector, upper: Vector, rise: Real) -> Twists {
         Twists::made(lower, upper, rise)
+    }
+
+    #[inline]
+    fn motion_of(turn: Vector, velocity: Vector) -> Motion {
+        Motion::made(turn, velocity)
     }
 
     /// Ad(g) s

@@ -34,6 +34,12 @@ constants! {
     /// A coefficient below this share counts as zero.
     VERGE = chain::condition::VERGE, 1e-6;
 
+    /// The sine of the angle below which two equations of one joint count as one.
+    ONE_ROW = 1e-7, 1e-3;
+
+    /// A leg is closed where it is open by less than this, radians or shares of its size.
+    CLOSED = 1e-7, 1e-3;
+
     /// A constraint that the platform obeys already is missed by less than this.
     OBEYED = manipulator::form::OBEYED, 1e-4;
 

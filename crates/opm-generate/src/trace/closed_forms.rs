@@ -15,7 +15,7 @@ pub enum Displaced {
 }
 
 /// Declares a variable with its value. Closed forms that consist of others may name two alike: then the name gets a number.
-fn declared<T: Handle>(name: &str, value: T) -> T {
+pub(super) fn declared<T: Handle>(name: &str, value: T) -> T {
     let name = crate::trace::fresh(name);
     crate::trace::named(&name, value)
 }
@@ -176,8 +176,13 @@ impl numbers::Plane for Complex {
 impl numbers::Space for Vector {
     type Real = Real;
 
+    /// Constants have a name, and only one.
     fn new(x: Real, y: Real, z: Real) -> Self {
-        vector_of(x, y, z)
+        let vector = vector_of(x, y, z);
+        match [x, y, z].iter().all(|part| part.expr().is_number()) {
+            true => crate::trace::once("constant", vector),
+            false => vector,
+        }
     }
 
     fn parts(self) -> [Real; 3] {
@@ -192,8 +197,16 @@ impl numbers::Space for Vector {
         add(self, by, other)
     }
 
+    fn scaled(self, by: Real) -> Self {
+        add(vector_of(0.0, 0.0, 0.0), by, self)
+    }
+
     fn inner(self, other: Self) -> Real {
         dot(self, other)
+    }
+
+    fn named(self, name: &'static str) -> Self {
+        if self.expr().root().is_some() { self } else { declared(name, self) }
     }
 }
 
@@ -211,6 +224,14 @@ impl numbers::Rotation for Rotation {
 
     fn inverse(self) -> Self {
         transposed(self)
+    }
+
+    fn image(self, v: Vector) -> Vector {
+        rotated(self, v)
+    }
+
+    fn image_back(self, v: Vector) -> Vector {
+        rotated(transposed(self), v)
     }
 }
 

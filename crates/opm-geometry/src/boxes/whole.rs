@@ -1,86 +1,84 @@
-//! The closed form of a whole leg over a box of poses.
+//! Legs that are solved whole, over a box of poses.
 
-use super::affine::Affine;
+use super::affine::{Affine, Plane};
+use super::share::Share;
 use super::target::{Enclosed, Rotation};
-use crate::chain::whole::{LegJoint, WholeLeg};
-use crate::numbers::JointDisplacement;
-use nalgebra::{Isometry3, Point3, Unit, Vector3};
+use crate::chain::kernel::Row;
+use crate::chain::whole::{General, Invariant, LegReach, MOST_FREEDOMS, Roots, scale};
+use crate::numbers::Plane as _;
 
-/// Rounding of the numbers of a box, which are not widened by it.
-const ROUNDING: f64 = 1e-12;
+/// How far from zero a number under a root is certainly on one side of it, as a share of its scale: ten times what counts as
+/// reached.
+const SLACK: f64 = 1e-11;
 
-fn screw(axis: [f64; 3], point: [f64; 3], pitch: f64) -> LegJoint {
-    LegJoint::Screw { axis: Unit::new_normalize(axis.into()), point: point.into(), pitch }
+/// Bounds of the share of a box of poses that a branch of a leg reaches, and of the displacements of the joints that were asked
+/// for, by their freedoms. These hold where the branch reaches a pose.
+pub fn enclose<const N: usize>(
+    leg: &LegReach,
+    target: (Rotation<N>, [Affine<N>; 3]),
+    signs: [f64; 2],
+) -> (Share<N>, [Enclosed<N>; MOST_FREEDOMS]) {
+    let mut roots = Shared { share: Share::ALL, size: leg.size() };
+    let displacements = leg.displacements::<Affine<N>>(target, signs, &mut roots);
+    (roots.share, displacements)
 }
 
-fn slide(axis: [f64; 3]) -> LegJoint {
-    LegJoint::Slide { axis: Unit::new_normalize(axis.into()) }
+/// Roots over a box, and the share of it where they are real.
+struct Shared<const N: usize> {
+    share: Share<N>,
+    size: f64,
 }
 
-/// Legs with all kernels of six freedoms.
-fn legs() -> Vec<Vec<LegJoint>> {
-    let (a, b, c) = ([0.2, 0.0, 0.0], [0.35, 0.0, 0.1], [0.1, 0.02, 0.4]);
-    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-    let ball = LegJoint::Ball { point: c.into() };
-    vec![
-        vec![screw(x, a, 0.0), screw(y, a, 0.0), slide([-0.1, 0.02, 0.4]), ball],
-        vec![slide(x), screw(x, b, 0.0), screw(y, b, 0.0), ball],
-        vec![screw(y, a, 0.0), screw(y, b, 0.0), screw([0.1, 0.5, 1.0], b, 0.0), ball],
-        vec![screw(y, a, 0.0), LegJoint::Ball { point: b.into() }, ball],
-        vec![slide(x), slide(y), slide(z), ball],
-    ]
-}
-
-fn target(random: &mut fastrand::Rng, size: f64) -> Isometry3<f64> {
-    let mut vector = || Vector3::from([(); 3].map(|()| size * (2.0 * random.f64() - 1.0)));
-    let shift = 0.1 * vector();
-    // About a point of the platform.
-    let centre = Point3::new(0.0, 0.0, 0.4);
-    let turn = Isometry3::rotation_wrt_point(Isometry3::new(shift, vector()).rotation, centre);
-    nalgebra::Translation3::from(shift) * turn
-}
-
-#[test]
-fn bounds_over_a_box_hold_its_poses() {
-    let mut random = fastrand::Rng::with_seed(1);
-    let mut held = 0;
-    for joints in legs() {
-        let motions: Vec<_> = (0..12).map(|_| target(&mut random, 0.6)).collect();
-        let leg = WholeLeg::new(&joints, &[true, false, false, false], &motions, 0.5).unwrap();
-        for g in &motions {
-            let half = 1e-3;
-            let rotation = g.rotation.to_rotation_matrix().into_inner();
-            let row = |i: usize| [0, 1, 2].map(|j| Affine::<3>::constant(rotation[(i, j)]));
-            let number = |i| Affine::<3>::coordinate(g.translation.vector[i], half, i);
-            let over = (Rotation([row(0), row(1), row(2)]), [number(0), number(1), number(2)]);
-            for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
-                let bounds = leg.attempt::<Affine<3>>(over.0, over.1, signs).displacements;
-                for _ in 0..5 {
-                    let off = Vector3::from([(); 3].map(|()| half * (2.0 * random.f64() - 1.0)));
-                    let at = g.translation.vector + off;
-                    let found = leg.attempt::<f64>(rotation, at, signs);
-                    if !found.holds {
-                        continue;
-                    }
-                    held += 1;
-                    for (one, bound) in found.displacements.iter().zip(&bounds) {
-                        let pairs = match (*one, *bound) {
-                            (JointDisplacement::Value(q), Enclosed::Value(over)) => {
-                                vec![(q, over)]
-                            }
-                            (JointDisplacement::Direction(e), Enclosed::Direction(over)) => {
-                                vec![(e.re, over.re), (e.im, over.im)]
-                            }
-                            (one, bound) => panic!("{one:?} {bound:?}"),
-                        };
-                        for (q, over) in pairs {
-                            let (low, high) = (over.low() - ROUNDING, over.high() + ROUNDING);
-                            assert!(low <= q && q <= high, "{q} {low} {high}");
-                        }
-                    }
-                }
-            }
-        }
+impl<const N: usize> Shared<N> {
+    /// Asks for a number that is not negative, relative to its scale.
+    fn real(&mut self, number: Affine<N>) {
+        self.share = self.share.and(Share::within(&number, [0.0, f64::INFINITY], SLACK));
     }
-    assert!(held > 500, "{held}");
+
+    fn general(&self) -> General<Affine<N>> {
+        General::new(self.size)
+    }
 }
+
+impl<const N: usize> Roots<Affine<N>> for Shared<N> {
+    fn twofold(&mut self, row: Row<Affine<N>>, of: Invariant<Affine<N>>, sign: f64) -> Plane<N> {
+        let per = 1.0 / scale(&of, self.size);
+        let [cosine, sine, constant] = [row.cosine, row.sine, row.constant].map(|part| part * per);
+        let axis = Plane::new(cosine, sine);
+        let square = axis.norm_sqr() - constant.square();
+        self.real(square);
+        let slope = square.sqrt() * sign;
+        (axis * Plane::new(constant, -slope)).scaled(axis.norm_sqr().recip())
+    }
+
+    fn double(&mut self, row: Row<Affine<N>>, of: Invariant<Affine<N>>) -> Plane<N> {
+        self.general().double(row, of)
+    }
+
+    fn pair(&mut self, rows: [Row<Affine<N>>; 2]) -> Plane<N> {
+        self.general().pair(rows)
+    }
+
+    fn turned(&mut self, vector: Plane<N>, square: Affine<N>, scale: f64) -> Plane<N> {
+        self.general().turned(vector, square, scale)
+    }
+
+    fn linear(&mut self, rate: Affine<N>, constant: Affine<N>) -> Affine<N> {
+        self.general().linear(rate, constant)
+    }
+
+    fn quadratic(
+        &mut self,
+        half: Affine<N>,
+        constant: Affine<N>,
+        _: Affine<N>,
+        sign: f64,
+    ) -> Affine<N> {
+        let square = half.square() - constant;
+        self.real(square * (1.0 / (self.size * self.size)));
+        square.sqrt() * sign - half
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -31,8 +31,9 @@ impl<T: Real> Axis<T> {
     /// angle.
     #[inline(always)]
     fn split(&self, vector: T::Space) -> (T, T::Space, T::Space) {
-        let along = self.direction.inner(vector);
-        (along, vector.plus(-along, self.direction), self.direction.crossed(vector))
+        let along = self.direction.inner(vector).named("along");
+        let across = vector.plus(-along, self.direction).named("across");
+        (along, across, self.direction.crossed(vector))
     }
 
     /// The vector from the axis' point.
@@ -44,7 +45,7 @@ impl<T: Real> Axis<T> {
     /// A point that the joint moves is at a distance, of which the square is given, from a fixed one.
     #[inline(always)]
     pub fn distance(&self, moved: T::Space, fixed: T::Space, square: T) -> Row<T> {
-        let (y, w) = (self.to(moved), self.to(fixed));
+        let (y, w) = (self.to(moved).named("arm"), self.to(fixed).named("fixed"));
         let (along, across, turned) = self.split(y);
         let sum = y.inner(y) + w.inner(w) - square;
         let constant = sum * 0.5 - along * self.direction.inner(w);
@@ -54,7 +55,7 @@ impl<T: Real> Axis<T> {
     /// A point that the joint moves has a height along a fixed normal.
     #[inline(always)]
     pub fn height(&self, moved: T::Space, normal: T::Space, height: T) -> Row<T> {
-        let (along, across, turned) = self.split(self.to(moved));
+        let (along, across, turned) = self.split(self.to(moved).named("arm"));
         let level = self.point.plus(along, self.direction).inner(normal);
         Row { cosine: across.inner(normal), sine: turned.inner(normal), constant: height - level }
     }
@@ -77,7 +78,7 @@ impl<T: Real> Axis<T> {
     /// A point moved by the joint.
     #[inline(always)]
     pub fn moved(&self, point: T::Space, q: T::Plane) -> T::Space {
-        self.turned(self.to(point), q).plus(T::constant(1.0), self.point)
+        self.turned(self.to(point).named("arm"), q).plus(T::constant(1.0), self.point)
     }
 }
 

@@ -22,11 +22,18 @@ mod nodes;
 mod objects;
 mod order;
 mod program;
+mod reach;
 mod roots;
+mod run;
 mod samples;
 mod solve;
 mod step;
 mod write;
+
+pub use equation::{Invariant, Roots};
+pub use reach::{LegReach, PackReach};
+pub(crate) use roots::{General, scale};
+pub use run::WholeRun;
 
 use super::{Branch, ReachDeficit};
 use crate::numbers::{JointDisplacement, Real};
@@ -36,7 +43,6 @@ use nodes::Nodes;
 use objects::Leg;
 use order::Search;
 use program::{JOINTS, Program, Run, SIGNS};
-use roots::General;
 use samples::Sample;
 use solve::{MOST_GIVEN, Solved, VALUES};
 use step::Candidate;
@@ -183,6 +189,8 @@ pub struct WholeLeg {
     freedoms: usize,
     centre: Vector3<f64>,
     size: f64,
+    /// Whether the loop closes wherever all roots are real.
+    real_closes: bool,
 }
 
 /// The result of a closed form's general case.
@@ -211,15 +219,18 @@ impl WholeLeg {
     ) -> Result<Self, NoOrder> {
         let (elements, freedoms) = Element::of(joints, &[]);
         let most = MOST_CHOICES;
-        Self::ordered(&elements, freedoms, (actuated, most), size, |elements, centre| {
-            let reached =
-                motions.iter().filter_map(|motion| Sample::at(elements, motion, centre, size));
-            let reached: Vec<Sample> = reached.take(MOST_SAMPLES).collect();
-            match reached.is_empty() && freedoms > 0 {
-                true => Err(NoOrder::Unreached { given: motions.len() }),
-                false => Ok(reached),
-            }
-        })
+        let mut leg =
+            Self::ordered(&elements, freedoms, (actuated, most), size, |elements, centre| {
+                let reached =
+                    motions.iter().filter_map(|motion| Sample::at(elements, motion, centre, size));
+                let reached: Vec<Sample> = reached.take(MOST_SAMPLES).collect();
+                match reached.is_empty() && freedoms > 0 {
+                    true => Err(NoOrder::Unreached { given: motions.len() }),
+                    false => Ok(reached),
+                }
+            })?;
+        leg.real_closes = leg.closes_where_real(motions);
+        Ok(leg)
     }
 
     /// The closed form of a leg of which some joints, three at most and no balls, are `given`: [`WholeLeg::solve_given`] takes
@@ -313,7 +324,9 @@ impl WholeLeg {
         let mut choosing: Vec<usize> =
             steps.iter().filter(|step| step.kernel.chooses()).map(|step| step.joint).collect();
         choosing.sort_unstable();
-        Self { elements: elements.to_vec(), program, names, choosing, freedoms, centre, size }
+        let real_closes = false;
+        let elements = elements.to_vec();
+        Self { elements, program, names, choosing, freedoms, centre, size, real_closes }
     }
 
     /// Whether home is found on some branch, and the samples are.
@@ -390,11 +403,11 @@ impl WholeLeg {
     ) -> WholeAttempt<T> {
         let signs = [first, second, first, second];
         let (elements, size) = (&self.elements, self.size);
-        let mut roots = General { doubt: T::constant(0.0), size };
+        let mut roots = General::new(size);
         let g = (rotation, translation);
         let mut run = Run::new();
         self.program.run::<T>((elements, size), g, signs, &mut roots, &mut run);
-        let open = roots.doubt + self.program.open::<T>(&run, size);
+        let open = roots.doubt() + self.program.open::<T>(&run, size);
         let holds = T::constant(CLOSURE * CLOSURE).at_least(open);
         WholeAttempt { displacements: run.joints, holds }
     }

@@ -115,9 +115,13 @@ pub enum DomainError {
          matter of a tolerance; a grid of its workspace can be counted"
     )]
     Repeated,
-    /// Legs are solved whole, and not by sections.
+    /// A section alone is asked for, but legs are solved whole.
+    #[error("the mechanism has no sections to measure alone: its legs are each solved by itself")]
+    NoSections,
+    /// Legs are solved whole, and their reach alone does not decide.
     #[error(
-        "there are no bounds for a mechanism whose legs are each solved by itself; a grid of its workspace can be counted"
+        "there are no bounds for a mechanism whose legs are each solved by itself, where coordinates of its pose depend on each \
+         other or spherical joints are limited; a grid of its workspace can be counted"
     )]
     Whole,
     /// The heights of legs depend on the imaginary joints.
@@ -193,11 +197,12 @@ impl Domain {
             let dependent = dependent.iter().map(|c| c.name).collect();
             return Err(DomainError::Dependent { dependent });
         }
-        if manipulator.is_whole() {
-            return Err(DomainError::Whole);
+        if sections != Sections::Whole && manipulator.is_whole() {
+            return Err(DomainError::NoSections);
         }
         if !manipulator.has_enclosures() {
-            return Err(DomainError::Repeated);
+            let whole = manipulator.is_whole();
+            return Err(if whole { DomainError::Whole } else { DomainError::Repeated });
         }
         if manipulator.task().shares_height() {
             return Err(DomainError::Inclined);

@@ -1,4 +1,4 @@
-//! Poses of mechanisms with dependent coordinates, tile by tile.
+//! Poses of mechanisms with dependent coordinates, or with legs that are solved whole, tile by tile.
 //!
 //! A tile is some rows of a grid, or a part of one. It is halved until bounds over a box of it tell that all of its poses are in
 //! reach and within the limits, or none. Only in small boxes that these leave open, poses are decided each for itself. In coarse
@@ -71,12 +71,13 @@ pub struct Boxes<'a> {
 }
 
 impl Sweep<'_> {
-    /// Whether bounds over boxes decide most poses. They do where some task coordinates follow from those of the grid.
+    /// Whether bounds over boxes decide most poses. They do where some task coordinates follow from those of the grid, and where
+    /// legs are solved whole.
     pub(super) fn takes_boxes(&self) -> bool {
         let manipulator = self.manipulator;
         self.grid.sections() == Sections::Whole
             && self.clearance.is_none()
-            && !manipulator.dependent_coordinates().is_empty()
+            && (manipulator.is_whole() || !manipulator.dependent_coordinates().is_empty())
             && !manipulator.task().shares_height()
             && manipulator.has_enclosures()
     }

@@ -8,12 +8,15 @@ use super::lanes::{
 };
 use super::rows_and_columns::{read_rows, write_rows};
 use super::section::{self, Found, Side, Step};
+use super::whole::{self, PackPlace};
+use crate::chain::whole::PackReach;
 use crate::group::Displacement;
 use crate::manipulator::Manipulator;
 use crate::manipulator::leg::CompiledLeg;
 use crate::manipulator::pose::LARGEST;
 use crate::manipulator::section::CompiledSection;
 use crate::mechanism::leg::Section;
+use crate::numbers::pack::Pack;
 use crate::numeric::Quantity;
 use crate::numeric::angle::MOST_REDUCED;
 use crate::task::Task;
@@ -44,6 +47,10 @@ pub struct Block {
     imaginary: Vec<Column>,
     pub status: Status,
     pub decided: Decided,
+    /// Where the platform is, if legs are solved whole.
+    pub places: Box<[PackPlace; LANES / Pack::POSES]>,
+    /// What is known of a leg that is solved whole.
+    pub found: Box<PackReach>,
 }
 
 /// What is known of the reachability of each pose of a block.
@@ -130,6 +137,9 @@ impl WithSimd for Displace<'_> {
                 block.displace_section(task, Section::Upper);
             }
         }
+        if manipulator.is_whole() {
+            block.place(manipulator);
+        }
     }
 }
 
@@ -211,6 +221,8 @@ impl Block {
             imaginary: columns(manipulator.imaginary.len()),
             status: Status::UNKNOWN,
             decided: Decided::new(),
+            places: Box::new(whole::at_home()),
+            found: Box::default(),
         }
     }
 

@@ -40,6 +40,18 @@ impl Manipulator {
         self.lifts_straight() && !self.task.shares_height() && !self.is_whole()
     }
 
+    /// Whether many poses are decided together: also where legs are solved whole, and decide without joints that are not
+    /// limited.
+    pub(crate) fn reaches_many(&self) -> bool {
+        self.decides_many() || self.reaches_whole()
+    }
+
+    /// Whether legs are solved whole, and decide without joints that are not limited, at coordinates that are all given.
+    pub(crate) fn reaches_whole(&self) -> bool {
+        let reaches = |leg: &CompiledLeg| leg.whole.as_ref().is_some_and(|leg| leg.reach.is_some());
+        self.is_whole() && self.dependent.is_none() && self.legs.iter().all(reaches)
+    }
+
     /// The branches of a leg in the modes with some choices, all-plus first.
     #[inline(always)]
     pub(crate) fn branches_of(
@@ -82,6 +94,10 @@ impl WithSimd for ReachLeg<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { manipulator, leg, branches, arch, block } = self;
         block.status = Status::UNKNOWN;
+        if let Some(whole) = &manipulator.legs[leg].whole {
+            block.reach_whole(manipulator, whole, branches);
+            return;
+        }
         block.solve_leg(manipulator, &BranchesOfLeg::repeated(branches), leg, arch);
         for section in [Section::Lower, Section::Upper] {
             block.admit(manipulator, &manipulator.legs[leg], section, LANES);
@@ -137,6 +153,10 @@ impl Block {
             for lane in 0..LANES {
                 self.decided.missed[lane] |= (reached[lane] | open[lane]) ^ 1;
                 self.decided.open[lane] |= open[lane];
+            }
+            // A leg that is solved whole takes long.
+            if compiled.whole.is_some() && self.decided.missed.iter().all(|&missed| missed == 1) {
+                break;
             }
         }
         self.decided.imaginary.truncate(number);

@@ -84,6 +84,9 @@ impl Writer<'_> {
 
     /// How many rows there are of joints that legs lack.
     pub fn lacking(&self) -> usize {
+        if self.is_whole() {
+            return 0;
+        }
         let legs = 0..self.forms.legs.len();
         let rows = |leg| SECTIONS.map(|section| self.lacking_in(leg, section).len());
         legs.flat_map(rows).sum()

@@ -31,11 +31,12 @@ pub(super) enum Equation<P> {
 
 /// What is needed to say by how much an equation has no root.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Invariant<T> {
-    /// The square of the distance.
+pub enum Invariant<T> {
+    /// Of two points; the square of the distance.
     Distance(T),
+    /// Of a point over a plane.
     Height,
-    /// The cosine.
+    /// Of two directions; the cosine.
     Angle(T),
 }
 
@@ -63,7 +64,7 @@ pub(super) enum Kernel<P> {
 }
 
 /// Finds roots. The general case has no branch; what is rare is found by another one.
-pub(super) trait Roots<T: Real> {
+pub trait Roots<T: Real> {
     /// The root of a row where it rises or falls.
     fn twofold(&mut self, row: Row<T>, of: Invariant<T>, sign: T::Sign) -> T::Plane;
     /// The root of a row that is a double one.
@@ -82,14 +83,16 @@ impl<P: Copy> Scalar<P> {
     /// The number.
     #[inline(always)]
     pub fn of<T: Real>(&self, read: impl Fn(P) -> T::Space) -> T {
-        let between = |a: P, b: P| read(a).plus(T::constant(-1.0), read(b));
+        let minus = T::constant(-1.0);
         match *self {
             Self::Known(value) => T::constant(value),
             Self::Square([a, b]) => {
-                let across = between(a, b);
-                across.inner(across)
+                let across = read(a).plus(minus, read(b)).named("span");
+                across.inner(across).named("square")
             }
-            Self::Height { point, normal, base } => between(point, base).inner(read(normal)),
+            Self::Height { point, normal, base } => {
+                read(point).plus(minus, read(base)).inner(read(normal))
+            }
             Self::Cosine([a, b]) => read(a).inner(read(b)),
         }
     }
@@ -189,7 +192,7 @@ impl<P: Copy> Equation<P> {
     ) -> (T, T, T) {
         match *self {
             Self::Distance { moved, fixed, square } => {
-                let across = read(moved).plus(T::constant(-1.0), read(fixed));
+                let across = read(moved).plus(T::constant(-1.0), read(fixed)).named("span");
                 let half = across.inner(constant::<T>(&element.direction));
                 let square = square.of::<T>(read);
                 (half, across.inner(across) - square, square)
@@ -258,69 +261,99 @@ impl<P: Copy> Kernel<P> {
         read: impl Fn(P) -> T::Space + Copy,
         roots: &mut R,
     ) -> (Moved<T>, T::Joint) {
-        let slid = |shift: T| match element.kind {
-            Kind::Helix(pitch) => {
-                let angle = shift * (1.0 / pitch);
-                (Moved { unit: angle.unit(), shift }, T::Joint::value(angle))
-            }
-            Kind::Turn | Kind::Slide | Kind::Ball => {
-                (Moved { shift, ..Moved::home() }, T::Joint::value(shift))
-            }
-        };
-        let turned = |unit: T::Plane| match element.kind {
-            Kind::Helix(pitch) => {
-                let angle = unit.argument();
-                (Moved { unit, shift: angle * pitch }, T::Joint::value(angle))
-            }
-            Kind::Turn | Kind::Slide | Kind::Ball => {
-                (Moved { unit, ..Moved::home() }, T::Joint::direction(unit))
-            }
-        };
         let minus = T::constant(-1.0);
-        let direction = constant::<T>(&element.direction);
-        // What turns the part of a vector across the axis to that of another one.
-        let towards = |y: T::Space, w: T::Space, size: f64, roots: &mut R| {
-            let across = y.plus(-direction.inner(y), direction);
-            let vector = T::Plane::new(across.inner(w), direction.crossed(y).inner(w));
-            roots.turned(vector, across.inner(across), size)
-        };
-        let about = |moved: T::Space, fixed: T::Space, roots: &mut R| {
-            let point = constant::<T>(&element.point);
-            towards(moved.plus(minus, point), fixed.plus(minus, point), size, roots)
-        };
+        let towards = |y, w, size, roots: &mut R| towards::<T, R>(element, y, w, size, roots);
+        let point = || constant::<T>(&element.point);
         match self {
             Self::Linear(one) => {
                 let (rate, constant) = one.linear::<T>(element, read);
-                slid(roots.linear(rate, constant))
+                slid(element, roots.linear(rate, constant))
             }
             Self::Difference([one, two]) => {
                 let (a, b) = (one.quadratic::<T>(element, read), two.quadratic::<T>(element, read));
                 let per = 1.0 / size;
-                slid(roots.linear((a.0 - b.0) * (2.0 * per), (b.1 - a.1) * per))
+                slid(element, roots.linear((a.0 - b.0) * (2.0 * per), (b.1 - a.1) * per))
             }
             Self::Quadratic(one) => {
                 let (half, constant, square) = one.quadratic::<T>(element, read);
-                slid(roots.quadratic(half, constant, square, sign))
+                slid(element, roots.quadratic(half, constant, square, sign))
             }
             &Self::Point { moved, fixed } => match element.kind {
-                Kind::Turn => turned(about(read(moved), read(fixed), roots)),
-                Kind::Helix(_) | Kind::Slide | Kind::Ball => {
-                    slid(read(fixed).plus(minus, read(moved)).inner(direction))
+                Kind::Turn => {
+                    let (from, to) =
+                        (read(moved).plus(minus, point()), read(fixed).plus(minus, point()));
+                    turned(element, towards(from, to, size, roots))
                 }
+                Kind::Helix(_) | Kind::Slide | Kind::Ball => slid(
+                    element,
+                    read(fixed).plus(minus, read(moved)).inner(constant::<T>(&element.direction)),
+                ),
             },
-            &Self::Line { moved, fixed } => turned(about(read(moved), read(fixed), roots)),
-            &Self::Direction { moved, fixed } => {
-                turned(towards(read(moved), read(fixed), 1.0, roots))
+            &Self::Line { moved, fixed } => {
+                let (from, to) =
+                    (read(moved).plus(minus, point()), read(fixed).plus(minus, point()));
+                turned(element, towards(from, to, size, roots))
             }
-            Self::Pair(two) => turned(roots.pair(two.map(|one| one.row::<T>(element, read).0))),
+            &Self::Direction { moved, fixed } => {
+                turned(element, towards(read(moved), read(fixed), 1.0, roots))
+            }
+            Self::Pair([one, two]) => {
+                let rows = [one.row::<T>(element, read).0, two.row::<T>(element, read).0];
+                turned(element, roots.pair(rows))
+            }
             Self::Double(one) => {
                 let (row, of) = one.row::<T>(element, read);
-                turned(roots.double(row, of))
+                turned(element, roots.double(row, of))
             }
             Self::Twofold(one) => {
                 let (row, of) = one.row::<T>(element, read);
-                turned(roots.twofold(row, of, sign))
+                turned(element, roots.twofold(row, of, sign))
             }
         }
     }
+}
+
+/// A joint that advances along its direction.
+#[inline(always)]
+fn slid<T: Real>(element: &Element, shift: T) -> (Moved<T>, T::Joint) {
+    match element.kind {
+        Kind::Helix(pitch) => {
+            let angle = shift * (1.0 / pitch);
+            (Moved { unit: angle.unit(), shift }, T::Joint::value(angle))
+        }
+        Kind::Turn | Kind::Slide | Kind::Ball => {
+            (Moved { shift, ..Moved::home() }, T::Joint::value(shift))
+        }
+    }
+}
+
+/// A joint that turns.
+#[inline(always)]
+fn turned<T: Real>(element: &Element, unit: T::Plane) -> (Moved<T>, T::Joint) {
+    match element.kind {
+        Kind::Helix(pitch) => {
+            let angle = unit.argument();
+            (Moved { unit, shift: angle * pitch }, T::Joint::value(angle))
+        }
+        Kind::Turn | Kind::Slide | Kind::Ball => {
+            (Moved { unit, ..Moved::home() }, T::Joint::direction(unit))
+        }
+    }
+}
+
+/// What turns the part of a vector across the axis to that of another one.
+#[inline(always)]
+fn towards<T: Real, R: Roots<T>>(
+    element: &Element,
+    from: T::Space,
+    to: T::Space,
+    size: f64,
+    roots: &mut R,
+) -> T::Plane {
+    let direction = constant::<T>(&element.direction);
+    let from = from.named("arm");
+    let across = from.plus(-direction.inner(from), direction).named("across");
+    let to = to.named("to");
+    let vector = T::Plane::new(across.inner(to), direction.crossed(from).inner(to));
+    roots.turned(vector, across.inner(across), size)
 }

@@ -67,6 +67,7 @@ pub(super) const SIGNS: usize = 4;
 pub(super) const JOINTS: usize = 8;
 
 /// What the operations give.
+#[derive(Clone, Debug)]
 pub(super) struct Run<T: Real> {
     /// The displacement of each joint but balls.
     moved: [Moved<T>; JOINTS],
@@ -107,12 +108,6 @@ fn read<T: Real>(constants: &[Vector3<f64>], registers: &[T::Space], place: Plac
     }
 }
 
-#[inline(always)]
-fn image<T: Real>(rotation: T::Rotation, v: T::Space) -> T::Space {
-    let [x, y, z] = rotation.rows().map(|[x, y, z]| T::Space::new(x, y, z).inner(v));
-    T::Space::new(x, y, z)
-}
-
 impl Program {
     /// Computes all joints but balls.
     #[inline(always)]
@@ -125,7 +120,6 @@ impl Program {
         run: &mut Run<T>,
     ) {
         let (elements, size) = leg;
-        let back_rotation = rotation.inverse();
         for operation in &self.operations {
             let Run { moved, joints, registers } = &mut *run;
             let at = |place| read::<T>(&self.constants, registers, place);
@@ -133,13 +127,13 @@ impl Program {
                 &Operation::Target { back, kind, of, to } => {
                     let v = at(of);
                     let made = match (back, kind) {
-                        (false, Vector::Direction) => image::<T>(rotation, v),
+                        (false, Vector::Direction) => rotation.image(v),
                         (false, Vector::Point) => {
-                            image::<T>(rotation, v).plus(T::constant(1.0), translation)
+                            rotation.image(v).plus(T::constant(1.0), translation)
                         }
-                        (true, Vector::Direction) => image::<T>(back_rotation, v),
+                        (true, Vector::Direction) => rotation.image_back(v),
                         (true, Vector::Point) => {
-                            image::<T>(back_rotation, v.plus(T::constant(-1.0), translation))
+                            rotation.image_back(v.plus(T::constant(-1.0), translation))
                         }
                     };
                     (made, to)
@@ -149,8 +143,8 @@ impl Program {
                     (elements[joint].carry(moved[joint % JOINTS], back, kind, at(of)), to)
                 }
                 &Operation::Meet { lines: [[a, u], [b, v]], to } => {
-                    let [a, u, b, v] = [a, u, b, v].map(at);
-                    let normal = u.crossed(v);
+                    let (a, u, b, v) = (at(a), at(u), at(b), at(v));
+                    let normal = u.crossed(v).named("normal");
                     let apart = b.plus(T::constant(-1.0), a);
                     let along = apart.crossed(v).inner(normal).over(normal.inner(normal));
                     (a.plus(along, u), to)
@@ -165,7 +159,56 @@ impl Program {
                     continue;
                 }
             };
-            registers[usize::from(to) % REGISTERS] = made;
+            registers[usize::from(to) % REGISTERS] = made.named("carried");
+        }
+    }
+
+    /// The operations that decide on choices, and those that find some joints, without checks.
+    pub fn reduced(&self, wanted: impl Fn(usize) -> bool) -> Self {
+        let (mut registers, mut joints) = ([false; REGISTERS], [false; JOINTS]);
+        let mut operations = Vec::new();
+        for operation in self.operations.iter().rev() {
+            let mut read = Vec::new();
+            match operation {
+                Operation::Solve { joint, kernel, .. } => {
+                    let number = usize::from(*joint);
+                    if !(kernel.chooses() || joints[number] || wanted(number)) {
+                        continue;
+                    }
+                    kernel.map(&mut |place| read.push(place));
+                }
+                &Operation::Target { to, .. }
+                | &Operation::Joint { to, .. }
+                | &Operation::Meet { to, .. }
+                | &Operation::Cross { to, .. } => {
+                    if !std::mem::take(&mut registers[usize::from(to)]) {
+                        continue;
+                    }
+                    match *operation {
+                        Operation::Joint { joint, of, .. } => {
+                            joints[usize::from(joint)] = true;
+                            read.push(of);
+                        }
+                        Operation::Meet { lines, .. } => read.extend(lines.as_flattened()),
+                        Operation::Cross { two, .. } => read.extend(two),
+                        Operation::Target { of, .. } => read.push(of),
+                        Operation::Solve { .. } => {}
+                    }
+                }
+            }
+            for place in read {
+                if let Place::Register(number) = place {
+                    registers[usize::from(number)] = true;
+                }
+            }
+            operations.push(*operation);
+        }
+        operations.reverse();
+        Self {
+            constants: self.constants.clone(),
+            operations,
+            checks: Vec::new(),
+            balls: Balls::None,
         }
     }
 
@@ -179,7 +222,8 @@ impl Program {
         for check in &self.checks {
             let off = match check {
                 Check::Same(kind, [a, b]) => {
-                    let off = square(self.at::<T>(run, *a).plus(minus, self.at::<T>(run, *b)));
+                    let apart = self.at::<T>(run, *a).plus(minus, self.at::<T>(run, *b));
+                    let off = square(apart.named("apart"));
                     match kind {
                         Vector::Point => off * (per * per),
                         Vector::Direction => off,
@@ -187,7 +231,8 @@ impl Program {
                 }
                 Check::Length(two) => {
                     let [a, b] = two.map(|[a, b]| {
-                        square(self.at::<T>(run, a).plus(minus, self.at::<T>(run, b)))
+                        let apart = self.at::<T>(run, a).plus(minus, self.at::<T>(run, b));
+                        square(apart.named("apart"))
                     });
                     ((a - b) * (per * per)).square()
                 }

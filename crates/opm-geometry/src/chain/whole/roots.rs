@@ -7,10 +7,15 @@ use crate::chain::kernel::Row;
 use crate::numbers::{Plane, REACH, Real};
 use nalgebra::Complex;
 
-/// The roots of the general case. What is wrong with them adds to a doubt: they are valid where it is at most the square of
+/// The roots of the general case. What is wrong with them adds to doubts: they are valid where these are at most the square of
 /// [`CLOSURE`].
-pub(super) struct General<T> {
-    pub doubt: T,
+pub(crate) struct General<T> {
+    /// Coefficients that are zero but for rounding.
+    pub free: T,
+    /// Vectors that should be one unit long.
+    pub off: T,
+    /// Twice what is negative under a root, as a share of its scale.
+    pub negative: T,
     pub size: f64,
 }
 
@@ -18,7 +23,7 @@ pub(super) struct General<T> {
 const FREE: f64 = CLOSURE * CLOSURE * REACH.share * REACH.share;
 
 /// What an equation's coefficients are compared with.
-fn scale<T>(of: &Invariant<T>, size: f64) -> f64 {
+pub(crate) fn scale<T>(of: &Invariant<T>, size: f64) -> f64 {
     match of {
         Invariant::Distance(_) => size * size,
         Invariant::Height => size,
@@ -28,21 +33,34 @@ fn scale<T>(of: &Invariant<T>, size: f64) -> f64 {
 
 impl<T: Real> General<T> {
     #[inline(always)]
-    fn doubt(&mut self, more: T) {
-        self.doubt = self.doubt + more;
+    pub fn new(size: f64) -> Self {
+        let zero = T::constant(0.0);
+        Self { free: zero, off: zero, negative: zero, size }
+    }
+
+    /// All doubts.
+    #[inline(always)]
+    pub fn doubt(&self) -> T {
+        self.free + self.off + self.negative
+    }
+
+    /// Doubts what is over the square of a coefficient.
+    #[inline(always)]
+    fn free(&mut self, over: T) {
+        self.free = self.free + over;
     }
 
     /// Doubts a number that is negative.
     #[inline(always)]
     fn negative(&mut self, number: T) {
-        self.doubt(number.absolute() - number);
+        self.negative = self.negative + (number.absolute() - number);
     }
 
     /// A vector that is one unit long but for rounding.
     #[inline(always)]
     fn unit(&mut self, vector: T::Plane) -> T::Plane {
         let off = vector.norm_sqr() - 1.0;
-        self.doubt(off.square());
+        self.off = self.off + off.square();
         // One step of Newton's method corrects the length to less than rounding.
         vector.scaled(off * -0.5 + 1.0)
     }
@@ -58,7 +76,7 @@ impl<T: Real> Roots<T> for General<T> {
         let over = T::constant(1.0).over(axis.norm_sqr());
         let square = axis.norm_sqr() - row.constant.square();
         self.negative(square);
-        self.doubt(over * FREE);
+        self.free(over * FREE);
         let slope = square.root() * sign;
         (axis * T::Plane::new(row.constant, -slope)).scaled(over)
     }
@@ -68,7 +86,7 @@ impl<T: Real> Roots<T> for General<T> {
         let axis = T::Plane::new(row.cosine, row.sine);
         let over = T::constant(1.0).over(axis.norm_sqr());
         let scale = scale(&of, self.size);
-        self.doubt(over * (FREE * scale * scale));
+        self.free(over * (FREE * scale * scale));
         self.unit(axis.scaled(row.constant * over))
     }
 
@@ -80,7 +98,7 @@ impl<T: Real> Roots<T> for General<T> {
     #[inline(always)]
     fn turned(&mut self, vector: T::Plane, square: T, scale: f64) -> T::Plane {
         let over = T::constant(1.0).over(square);
-        self.doubt(over * (FREE * scale * scale));
+        self.free(over * (FREE * scale * scale));
         self.unit(vector.scaled(over))
     }
 

@@ -64,11 +64,11 @@ impl Solved<'_> {
     ) -> Result<(), ReachDeficit> {
         let (Self { elements, program, size, .. }, g) = (*self, numbers(target));
         let signs = branches.map(Branch::sign);
-        let mut roots = General { doubt: 0.0, size };
+        let mut roots = General::new(size);
         let mut run = self.begin();
         program.run::<f64>((elements, size), g, signs, &mut roots, &mut run);
         let open = program.open::<f64>(&run, size);
-        let closed = roots.doubt + open <= CLOSURE * CLOSURE;
+        let closed = roots.doubt() + open <= CLOSURE * CLOSURE;
         if !closed {
             return self.special(target, signs, out);
         }

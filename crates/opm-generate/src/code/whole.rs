@@ -1,0 +1,334 @@
+//! Legs that are solved whole: the joints at a pose, and their rates.
+
+use super::interface::Start;
+use super::leg::Given;
+use super::*;
+use crate::library::*;
+use crate::trace::closed_forms::Displaced;
+use crate::trace::whole::RootsOfCode;
+use crate::trace::*;
+use crate::tree::visit;
+use opm_core::chain::whole::LegJoint;
+use opm_core::manipulator::form::WholeForm;
+use opm_core::nalgebra::Vector3;
+use opm_core::numbers::{Plane as _, Real as _, Space as _};
+
+fn constant(v: &Vector3<f64>) -> Vector {
+    vector_of(v.x, v.y, v.z)
+}
+
+/// The unit direction of an axis.
+fn axis(place: usize) -> Vector {
+    constant(&Vector3::ith(place, 1.0))
+}
+
+fn identity() -> Rotation {
+    Rotation::made(axis(0), axis(1), axis(2))
+}
+
+fn name_of(leg: usize) -> String {
+    format!("leg{}_whole", leg + 1)
+}
+
+/// The freedoms of a joint, and the form in which each is given.
+fn freedoms(joint: &LegJoint) -> (usize, Given) {
+    match joint {
+        LegJoint::Screw { pitch, .. } if *pitch == 0.0 => (1, Given::Direction),
+        LegJoint::Screw { .. } | LegJoint::Slide { .. } => (1, Given::Value),
+        LegJoint::Ball { .. } => (3, Given::Value),
+    }
+}
+
+/// The joints of a leg with the number of the first freedom of each.
+fn numbered(form: &WholeForm) -> Vec<(usize, LegJoint)> {
+    let mut next = 0;
+    let joints = form.leg.joints().into_iter().map(|joint| {
+        let first = next;
+        next += freedoms(&joint).0;
+        (first, joint)
+    });
+    joints.collect()
+}
+
+impl Writer<'_> {
+    /// The form in which the displacement of a joint coordinate of a whole leg is given.
+    pub fn given_of_whole(&self, coordinate: usize) -> Option<Given> {
+        self.forms.legs.iter().filter_map(|leg| leg.whole.as_ref()).find_map(|form| {
+            let freedom = coordinate.checked_sub(form.first)?;
+            let joints = numbered(form);
+            let (_, joint) = joints
+                .iter()
+                .find(|(first, joint)| (*first..first + freedoms(joint).0).contains(&freedom))?;
+            Some(freedoms(joint).1)
+        })
+    }
+
+    /// The function of a leg that is solved whole.
+    pub fn whole_leg(&self, leg: usize, form: &WholeForm) {
+        let name = crate::names::comment(&self.manipulator.mechanism().legs[leg].name);
+        let comment = format!(
+            "Leg {}, {name}: all its joints, for the displacement of the platform.",
+            leg + 1
+        );
+        let function = Traced::new(&name_of(leg), &comment).body(|p| {
+            let body = p.add::<Body>("body");
+            let mode = p.add::<Bits>("mode");
+            let at = p.of_kind("at", Type::Struct(DISPLACEMENTS.to_owned()), Pass::Write);
+            let missed = p.add::<Out<Real>>("missed");
+            let mut body = statements(|| self.whole_body(leg, form, (body, mode, at, missed)));
+            visit::drop_unread(&mut body);
+            body.into_iter().for_each(emit);
+            done()
+        });
+        self.add(function.without_unused(&["body", "mode", "at", "missed"]));
+    }
+
+    fn whole_body(
+        &self,
+        leg: usize,
+        form: &WholeForm,
+        (body, mode, at, missed): (Body, Bits, Any, Real),
+    ) {
+        let of_leg = &self.forms.legs[leg];
+        let choice = |section: Section| match of_leg.section(section).bit {
+            Some(bit) => sign(mode, bit).named("sign"),
+            None => Real::from(1.0),
+        };
+        let signs = [choice(Section::Lower), choice(Section::Upper)];
+        let mut roots = RootsOfCode { missed, size: form.leg.size() };
+        let target = (body.rotation, body.translation);
+        let run = form.leg.run::<Real>(target, signs, &mut roots);
+        let open = run.open().named("open");
+        when(!open.le(CLOSED * CLOSED), || {
+            missed.set(Real::infinity());
+            give(1);
+        });
+        let field = |freedom: usize| &*self.fields[form.first + freedom];
+        let joints = numbered(form);
+        for (first, joint) in &joints {
+            if !matches!(joint, LegJoint::Ball { .. }) {
+                match run.displacement(*first) {
+                    Displaced::Direction(z) => at.member::<Complex>(field(*first)).set(z),
+                    Displaced::Value(value) => at.member::<Real>(field(*first)).set(value),
+                }
+            }
+        }
+        let is_ball = |&number: &usize| matches!(joints[number].1, LegJoint::Ball { .. });
+        let balls: Vec<usize> = (0..joints.len()).filter(is_ball).collect();
+        let (Some(&one), Some(&last)) = (balls.first(), balls.last()) else { return };
+        let back = |number: usize| match joints[number].1 {
+            LegJoint::Screw { axis, .. } => {
+                let turn = conjugate(run.turn(number).named("turn"));
+                Some(rotation_about(constant(&axis), turn))
+            }
+            LegJoint::Slide { .. } | LegJoint::Ball { .. } => None,
+        };
+        note("What is left of the rotation for spherical joints.");
+        let rest = Rotation::empty("rest");
+        rest.set(body.rotation);
+        for before in (0..one).filter_map(back) {
+            rest.set(product(before, rest));
+        }
+        for behind in (last + 1..joints.len()).rev().filter_map(back) {
+            rest.set(product(rest, behind));
+        }
+        let ball_fields = |number: usize| {
+            let (first, _) = joints[number];
+            let places = [0, 1, 2].map(|i| at.member::<Real>(field(first + i)));
+            let half = self.ball_of(form.first + first);
+            (places, at.member::<Complex>(&half.unwrap_or_default()))
+        };
+        let solve = |rotation: Rotation, number: usize| {
+            let ([x, y, z], half) = ball_fields(number);
+            let own = crate::trace::named(&fresh("ball"), SphericalS::made(identity()));
+            solve_spherical_s(own, rotation, x, y, z, half);
+        };
+        if let Some([from, to]) = run.swing() {
+            let swung =
+                crate::trace::named(&fresh("swung"), swing(from.named("from"), to.named("to")));
+            solve(swung, one);
+            rest.set(product(transposed(swung), rest));
+            for between in (one + 1..last).filter_map(back) {
+                rest.set(product(between, rest));
+            }
+        }
+        solve(rest, last);
+    }
+
+    /// Whether legs are solved whole.
+    pub fn is_whole(&self) -> bool {
+        self.manipulator.is_whole()
+    }
+
+    /// Declares and gives the twists of the platform for a unit of each column, and its reference point.
+    pub fn platform_motions(&self, g: Any, start: &Start, t: Array<Twists>) -> [Any; 2] {
+        let motions = Array::<Motion>::empty("motions", self.task.coordinates.len());
+        let point = self.moved_by(g, start, t, |place, turn, velocity| {
+            motions.at(place).set(motion_of(turn, velocity));
+        });
+        [motions.into(), point.into()]
+    }
+
+    /// The function of the rates of a leg that is solved whole: linear equations in the rates, which make the platform's twist
+    /// about its reference point.
+    pub fn whole_rates(&self, leg: usize, form: &WholeForm) {
+        let name = crate::names::comment(&self.manipulator.mechanism().legs[leg].name);
+        let comment = format!(
+            "Leg {}, {name}: the rates of its joints for motions of the platform, whose reference point is given. It returns 1 \
+             where it is singular.",
+            leg + 1
+        );
+        let function = Traced::new(&format!("leg{}_rates", leg + 1), &comment).body(|p| {
+            let at = p.of_kind("at", Type::Struct(DISPLACEMENTS.to_owned()), Pass::Read);
+            let motions = p.add::<In<[Motion]>>("motions");
+            let point = p.add::<Vector>("point");
+            let all = p.add::<Out<[Real]>>("all");
+            self.whole_rates_body(form, (at, motions, point, all));
+            done()
+        });
+        self.add(function.without_unused(&["at", "motions", "point", "all"]));
+    }
+
+    fn whole_rates_body(
+        &self,
+        form: &WholeForm,
+        (at, motions, point, all): (Any, Array<Motion>, Vector, Array<Real>),
+    ) {
+        let (joints, size) = (numbered(form), form.leg.size());
+        let unknowns = form.leg.freedoms();
+        let sides = self.task.coordinates.len();
+        let idle = form.leg.idle();
+        let (rows, width) = (6 + usize::from(idle.is_some()), unknowns + sides);
+        let a = Array::<Real>::empty("a", rows * width);
+        let x = Array::<Real>::empty("x", unknowns * sides);
+        name!(turned = identity(), moved = vector_of(0.0, 0.0, 0.0));
+        let column = |column: usize, turn: Vector, velocity: Vector| {
+            let parts = [turn.x, turn.y, turn.z, velocity.x, velocity.y, velocity.z];
+            for (row, part) in parts.into_iter().enumerate() {
+                a.at(number(row * width + column)).set(part);
+            }
+        };
+        let zero = || vector_of(0.0, 0.0, 0.0);
+        let rotates = |first: usize, axis: Vector, at_point: &Vector3<f64>, pitch: f64| {
+            block(|| {
+                name!(axis = rotated(turned, axis));
+                name!(
+                    arm = add(add(point, -1.0, moved), -1.0, rotated(turned, constant(at_point)))
+                );
+                name!(velocity = add(cross(axis, arm), pitch, axis));
+                name!(share = add(zero(), 1.0 / size, velocity));
+                column(first, axis, share);
+            });
+        };
+        // A rotation about a point of the leg at home, behind what is known.
+        let follows = |rotation: Rotation, about: &Vector3<f64>, is_last: bool| {
+            if !is_last {
+                let about = constant(about);
+                moved.set(add(
+                    moved,
+                    1.0,
+                    rotated(turned, add(about, -1.0, rotated(rotation, about))),
+                ));
+                turned.set(product(turned, rotation));
+            }
+        };
+        let field = |freedom: usize| &*self.fields[form.first + freedom];
+        let mut ball_rows: Vec<(usize, Screws)> = Vec::new();
+        for (place, (first, joint)) in joints.iter().enumerate() {
+            let is_last = place + 1 == joints.len();
+            match joint {
+                LegJoint::Slide { axis } => {
+                    let slid = crate::trace::named(&fresh("slid"), rotated(turned, constant(axis)));
+                    column(*first, zero().named("still"), slid);
+                    if !is_last {
+                        moved.set(add(moved, at.member::<Real>(field(*first)), slid));
+                    }
+                }
+                LegJoint::Screw { axis, point: about, pitch } => {
+                    rotates(*first, constant(axis), &about.coords, *pitch);
+                    let turn = match *pitch == 0.0 {
+                        true => normal(at.member::<Complex>(field(*first))),
+                        false => unit(at.member::<Real>(field(*first))),
+                    };
+                    if !is_last {
+                        let by =
+                            crate::trace::named(&fresh("by"), rotation_about(constant(axis), turn));
+                        if *pitch != 0.0 {
+                            let advance = at.member::<Real>(field(*first)) * *pitch;
+                            moved.set(add(moved, advance, rotated(turned, constant(axis))));
+                        }
+                        follows(by, &about.coords, false);
+                    }
+                }
+                LegJoint::Ball { point: centre } => {
+                    for i in 0..3 {
+                        rotates(first + i, axis(i), &centre.coords, 0.0);
+                    }
+                    let parts = [0, 1, 2].map(|i| at.member::<Real>(field(first + i)));
+                    let half = self.ball_of(form.first + first).unwrap_or_default();
+                    let along = vector_of(parts[0], parts[1], parts[2]);
+                    let vector = rotation_vector(along, at.member::<Complex>(&half));
+                    let vector = crate::trace::named(&fresh("vector"), vector);
+                    let screws = Screws::empty(&fresh("ball"));
+                    rotation_vector_rates(identity_named(), vector, screws);
+                    ball_rows.push((*first, screws));
+                    if !is_last {
+                        let by = crate::trace::named(&fresh("by"), rotation_by(vector));
+                        follows(by, &centre.coords, false);
+                    }
+                }
+            }
+        }
+        if let (Some((first, along)), Some((_, screws))) = (idle, ball_rows.first()) {
+            note("The first spherical joint does not spin.");
+            for column in 0..width {
+                a.at(number(6 * width + column)).set(0.0);
+            }
+            let [x, y, z] = [screws.s1, screws.s2, screws.s3];
+            let spin = add(add(add(zero(), along.x, x), along.y, y), along.z, z);
+            let spin = spin.named("spin");
+            for (i, part) in [spin.x, spin.y, spin.z].into_iter().enumerate() {
+                a.at(number(6 * width + first + i)).set(part);
+            }
+        }
+        count("i", 0, number(sides), |i| {
+            let Motion { turn, velocity, .. } = motions.at(i);
+            let parts = [turn.x, turn.y, turn.z];
+            for (row, part) in parts.into_iter().enumerate() {
+                a.at(number(row * width + unknowns) + i).set(part);
+            }
+            for (row, part) in (3..).zip([velocity.x, velocity.y, velocity.z]) {
+                a.at(number(row * width + unknowns) + i).set(part / size);
+            }
+        });
+        let [rows, of_unknowns, of_sides] = [rows, unknowns, sides].map(number);
+        when(eliminate(a, rows, of_unknowns, of_sides, x).is_set(), || give(1));
+        count("i", 0, of_sides, |i| {
+            for (first, joint) in &joints {
+                let rate = |freedom: usize| x.at(number(freedom * sides) + i);
+                let write = |freedom: usize, rate: Real| {
+                    all.at(number((form.first + freedom) * sides) + i).set(rate);
+                };
+                match joint {
+                    LegJoint::Slide { .. } => write(*first, rate(*first) * size),
+                    LegJoint::Screw { .. } => write(*first, rate(*first)),
+                    LegJoint::Ball { .. } => {
+                        let Some((_, rows)) = ball_rows.iter().find(|(of, _)| of == first) else {
+                            continue;
+                        };
+                        block(|| {
+                            name!(w = vector_of(rate(*first), rate(first + 1), rate(first + 2)));
+                            for (k, row) in [rows.s1, rows.s2, rows.s3].into_iter().enumerate() {
+                                write(first + k, dot(row, w));
+                            }
+                        });
+                    }
+                }
+            }
+        });
+    }
+}
+
+fn identity_named() -> Rotation {
+    crate::trace::named(&fresh("axes"), identity())
+}
