@@ -4,13 +4,15 @@ use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use opm_core::Manipulator;
 use opm_core::decomposition::{DecomposeError, PlatformSet, WholeMiss, decompose};
+use opm_core::enclosure::{BoxQuery, Side};
 use opm_core::forward::{ForwardError, NoClosedForm};
+use opm_core::manipulator::Solution;
 use opm_core::mechanism::examples::{EXAMPLES, Example, SPLIT, find};
 use opm_core::mechanism::file;
 use opm_core::mechanism::joint::JointKind;
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::displacement;
-use opm_workspace::measure::{Domain, DomainError};
+use opm_workspace::measure::{CoordinateRange, Domain, DomainError, Goal, measure};
 use opm_workspace::{Axis, Grid, Modes, Progress, Sections, Sweep};
 
 /// The shipped mechanisms whose legs are solved whole.
@@ -306,22 +308,26 @@ fn a_delta_with_rods_that_are_nearly_level() {
     assert!(found[0] > 0.05 && found.is_sorted_by(|a, b| a > b), "{found:?}");
 }
 
+/// A mechanism whose motors go a little way.
+fn with_limits(text: &str) -> Manipulator {
+    let mut mechanism = file::read(text).unwrap().mechanism;
+    let size = Manipulator::read(text).unwrap().characteristic_length();
+    for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+        let slides = joint.kind == JointKind::Prismatic;
+        for c in joint.coordinates.iter_mut().filter(|_| joint.actuated) {
+            let far = if slides { 0.2 * size } else { 0.3 };
+            c.limits = Some([c.home - far, c.home + far]);
+        }
+    }
+    Manipulator::new(mechanism).unwrap()
+}
+
 /// Sweeps, which do not compute joints, decide as inverse kinematics do, at round poses and with limits too.
 #[test]
 fn sweeps_decide_as_inverse_kinematics_do() {
     for Example { name, text, .. } in shipped() {
-        // Sliders and cranks that go a little way.
-        let mut mechanism = file::read(text).unwrap().mechanism;
         let size = example(name).characteristic_length();
-        for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
-            let slides = joint.kind == JointKind::Prismatic;
-            for c in joint.coordinates.iter_mut().filter(|_| joint.actuated) {
-                let far = if slides { 0.2 * size } else { 0.3 };
-                c.limits = Some([c.home - far, c.home + far]);
-            }
-        }
-        let limited = Manipulator::new(mechanism).unwrap();
-        for m in [example(name), limited] {
+        for m in [example(name), with_limits(text)] {
             let axes = m.task_coordinates().iter().enumerate().map(|(i, c)| {
                 let (far, count) = match c.quantity {
                     opm_core::Quantity::Length => (0.5 * size, 5),
@@ -386,12 +392,129 @@ fn joints_that_nearly_contain_a_subgroup_are_refused() {
     assert!(deviation > 1e-10 && deviation < 1e-6 && refused.to_string().contains("twelve digits"));
 }
 
+/// A box that is all in reach has only poses that are, and one that is out of reach has none.
+#[test]
+fn boxes_tell_of_their_poses() {
+    let mut rng = Rng::with_seed(6);
+    let (mut inside, mut outside) = (0, 0);
+    for Example { name, text, .. } in shipped() {
+        let plain = example(name);
+        if !plain.has_enclosures() {
+            assert!(!plain.dependent_coordinates().is_empty(), "{name}");
+            continue;
+        }
+        for m in [plain, with_limits(text)] {
+            let size = m.characteristic_length();
+            let all: Vec<_> = m.modes().take(8).collect();
+            let mut solution = m.solution();
+            for number in 0..400 {
+                let far = [0.1, 0.5, 1.5][number % 3];
+                let half = [1e-4, 1e-2, 0.05][number / 3 % 3];
+                let middle = near(&m, far, &mut rng);
+                let widths = m.task_coordinates().iter().zip(&middle).map(|(c, &middle)| {
+                    let unit = if c.quantity == opm_core::Quantity::Length { size } else { 1.0 };
+                    let half = if rng.f64() < 0.6 { half * unit } else { 0.0 };
+                    Side { middle, half, half_turn: None }
+                });
+                let sides: Vec<Side> = widths.collect();
+                let mode = (number % 2 == 0).then(|| all[number / 2 % all.len()]);
+                let verdict = m.enclose(BoxQuery::Whole, mode, &sides);
+                if verdict.lower < 1.0 && verdict.upper > 0.0 {
+                    continue;
+                }
+                for _ in 0..5 {
+                    let at = |side: &Side| side.middle + side.half * (2.0 * rng.f64() - 1.0);
+                    let pose: Vec<f64> = sides.iter().map(at).collect();
+                    let within = match mode {
+                        Some(mode) => {
+                            let found = m.inverse(&pose, mode, &mut solution).unwrap();
+                            found.is_some_and(Solution::within_limits)
+                        }
+                        None => {
+                            let mut every = m.all_modes();
+                            let found = m.inverse_all(&pose, &mut every).unwrap();
+                            found.is_some_and(|all| all.within_limits_in_any(&m, |_, _| {}))
+                        }
+                    };
+                    assert_eq!(within, verdict.lower >= 1.0, "{name} {pose:?} {verdict:?}");
+                    *(if within { &mut inside } else { &mut outside }) += 1;
+                }
+            }
+        }
+    }
+    assert!(inside > 500 && outside > 500, "{inside} {outside}");
+}
+
+/// A hexapod goes up and down as far as the shells about its feet let it: the measure of that is a length.
+#[test]
+fn the_height_of_a_hexapod_is_a_length() {
+    let text = find("stewart").unwrap().text;
+    let m = with_limits(text);
+    let over = [CoordinateRange::new("z", -0.2, 0.9)];
+    let domain = Domain::new(&m, Sections::Whole, &over).unwrap();
+    let goal = Goal { tolerance: 1e-9, budget: 20_000 };
+    let modes = Modes::One(m.home_mode());
+    let found = measure(&m, &domain, modes, &goal, &Progress::default());
+    // Each leg allows two intervals of heights; those above its foot.
+    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    let home = m.home_pose()[2];
+    for leg in &m.mechanism().legs {
+        let [base, top] = [leg.joints[0].point, leg.joints[2].point];
+        let span = top - base;
+        let [low, high] = leg.joints[1].coordinates[0].limits.unwrap();
+        let height = |length: f64| {
+            let level = span.x.hypot(span.y);
+            home - span.z + (length * length - level * level).max(0.0).sqrt()
+        };
+        (from, to) = (height(low).max(from), height(high).min(to));
+    }
+    let length = to - from;
+    assert!(length > 0.05 && found.lower <= length && length <= found.upper, "{length} {found:?}");
+    assert!(found.upper - found.lower < 1e-6, "{found:?}");
+}
+
+/// Bounds of measures hold what is counted.
+#[test]
+fn measures_hold_what_is_counted() {
+    let mut rng = Rng::with_seed(8);
+    for (name, far, budget) in
+        [("delta", 0.8, 40_000), ("tripteron", 0.5, 20_000), ("3-upu", 0.5, 20_000)]
+    {
+        for m in [example(name), with_limits(find(name).unwrap().text)] {
+            let size = m.characteristic_length();
+            let over = m.task_coordinates().iter();
+            let over = over
+                .map(|c| CoordinateRange::new(c.name, c.home - far * size, c.home + far * size));
+            let domain = Domain::new(&m, Sections::Whole, &over.collect::<Vec<_>>()).unwrap();
+            let goal = Goal { tolerance: 0.01, budget };
+            let modes = Modes::One(m.home_mode());
+            let bounds = measure(&m, &domain, modes, &goal, &Progress::default());
+            let (mut hits, samples) = (0, 20_000);
+            let mut solution = m.solution();
+            for _ in 0..samples {
+                let pose = domain.pose(&[rng.f64(), rng.f64(), rng.f64()]).unwrap();
+                let found = m.inverse(&pose, m.home_mode(), &mut solution).unwrap();
+                hits += u32::from(found.is_some_and(Solution::within_limits));
+            }
+            let sampled = bounds.whole * f64::from(hits) / f64::from(samples);
+            // Four standard deviations of a count.
+            let slack = 2.0 * bounds.whole / f64::from(samples).sqrt();
+            assert!(hits > 0 && bounds.lower > 0.0, "{name}: {bounds:?} {hits}");
+            let held = bounds.lower - slack < sampled && sampled < bounds.upper + slack;
+            assert!(held, "{name}: {bounds:?} {sampled}");
+            assert!(bounds.upper - bounds.lower < 0.15 * bounds.whole, "{name}: {bounds:?}");
+        }
+    }
+}
+
 /// What follows from sections is refused by name.
 #[test]
 fn what_whole_legs_do_not_have_is_refused() {
     let m = example("delta");
     let values = vec![0.0; 3];
     assert_eq!(m.forward(&values), Err(ForwardError::NoClosedForm(NoClosedForm::Whole)));
-    assert_eq!(Domain::new(&m, Sections::Whole, &[]), Err(DomainError::Whole));
-    assert!(!m.has_enclosures() && !m.encloses_places() && !m.workspace_factorises());
+    assert_eq!(Domain::new(&m, Sections::Upper, &[]), Err(DomainError::NoUpperSection));
+    assert_eq!(Domain::new(&m, Sections::Lower, &[]), Err(DomainError::NoSections));
+    assert_eq!(Domain::new(&example("tricept"), Sections::Whole, &[]), Err(DomainError::Whole));
+    assert!(m.has_enclosures() && !m.encloses_places() && !m.workspace_factorises());
 }
