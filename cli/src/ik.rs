@@ -304,33 +304,43 @@ impl<'a> Answer<'a> {
     fn joint_table(&self, solution: &Solution) -> Table {
         let units = self.loaded.file.units;
         let mut table = Table::new(["leg", "joint", "", ">value", "unit", ">limits", ""]);
-        let mut row = |leg: &str, name: &str, kind: &str, value: f64, of: Of<'_>| {
+        let mut row = |leg: &str, name: &str, kind: &str, value: f64, of: Of<'_>, cone: ConeOf| {
             let quantity = of.quantity();
-            let limits = of.limits().map_or(String::new(), |l| text::range(l, quantity, units));
+            let limits = of.limits().map(|l| text::range(l, quantity, units));
+            let angle = |angle| format!("cone {}", text::number(angle, Quantity::Angle, units));
+            let limits: Vec<String> =
+                limits.into_iter().chain(cone.map(|(most, _)| angle(most))).collect();
+            let within = of.admits(value) && cone.is_none_or(|(_, within)| within);
             table.row([
                 leg,
                 name,
                 kind,
                 &text::number(value, quantity, units),
                 units.symbol(quantity),
-                &limits,
-                if of.admits(value) { "" } else { "*" },
+                &limits.join(", "),
+                if within { "" } else { "*" },
             ]);
         };
         let mut number = 0;
+        let beyond = self.manipulator.beyond_cones(solution.joints());
+        let beyond: Vec<usize> = beyond.map(|(_, first)| first).collect();
         let imaginary = || self.manipulator.imaginary().iter().zip(solution.imaginary());
         for (leg_number, leg) in self.manipulator.mechanism().legs.iter().enumerate() {
             for joint in &leg.joints {
                 let kind = if joint.actuated { "actuated" } else { "passive" };
+                let first = number;
                 for coordinate in &joint.coordinates {
                     let value = solution.joints()[number];
                     let of = Of::Joint(coordinate, &self.manipulator.limits()[number]);
-                    row(&leg.name, &coordinate.name, kind, value, of);
+                    let cone = joint.cone.filter(|_| number == first);
+                    let cone = cone.map(|cone| (cone.half_angle, !beyond.contains(&number)));
+                    row(&leg.name, &coordinate.name, kind, value, of, cone);
                     number += 1;
                 }
             }
             for (joint, &value) in imaginary().filter(|(joint, _)| joint.leg == leg_number) {
-                row(&leg.name, &joint.name, "imaginary", value, Of::Imaginary(joint.quantity));
+                let of = Of::Imaginary(joint.quantity);
+                row(&leg.name, &joint.name, "imaginary", value, of, None);
             }
         }
         table
@@ -395,6 +405,9 @@ impl<'a> Answer<'a> {
         &self.manipulator.mechanism().legs[unreachable.leg].name
     }
 }
+
+/// Half the angle of the cone of a joint, radians, and whether the joint is within it.
+type ConeOf = Option<(f64, bool)>;
 
 /// The owner of a value.
 #[derive(Clone, Copy)]

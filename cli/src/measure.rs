@@ -239,8 +239,8 @@ impl Run<'_> {
     /// The warning that the budget was too small, with advice.
     fn beyond(&self, found: &Measured) -> String {
         let section = match self.args.section {
-            SectionName::Whole => "--section upper, ",
-            SectionName::Upper | SectionName::Lower => "",
+            SectionName::Whole if !self.manipulator.is_whole() => "--section upper, ",
+            SectionName::Whole | SectionName::Upper | SectionName::Lower => "",
         };
         format!(
             "the --budget of {} ended before --tolerance was met: the value is certain to within \

@@ -55,6 +55,7 @@ fn name(manipulator: &Manipulator, leg: usize, cause: Cause) -> String {
         Cause::Reach(section) => format!("{leg} {section:?}"),
         Cause::Lowest(number) => format!("{} lowest", joint(number)),
         Cause::Highest(number) => format!("{} highest", joint(number)),
+        Cause::Cone(number) => format!("{} cone", joint(number)),
     }
 }
 

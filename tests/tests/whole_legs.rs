@@ -1,19 +1,20 @@
 //! Mechanisms whose legs are solved whole, against plain geometry, products of exponentials and differences.
 
 use fastrand::Rng;
-use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use opm_core::Manipulator;
 use opm_core::decomposition::{DecomposeError, PlatformSet, WholeMiss, decompose};
 use opm_core::enclosure::{BoxQuery, Side};
 use opm_core::forward::{ForwardError, NoClosedForm};
 use opm_core::manipulator::Solution;
+use opm_core::mechanism::Cone;
 use opm_core::mechanism::examples::{EXAMPLES, Example, SPLIT, find};
 use opm_core::mechanism::file;
 use opm_core::mechanism::joint::JointKind;
 use opm_tests::by_inverse::by_inverse;
 use opm_tests::displacement;
 use opm_workspace::measure::{CoordinateRange, Domain, DomainError, Goal, measure};
-use opm_workspace::{Axis, Grid, Modes, Progress, Sections, Sweep};
+use opm_workspace::{Axis, Grid, GridError, Modes, Progress, Sections, Sweep};
 
 /// The shipped mechanisms whose legs are solved whole.
 fn shipped() -> impl Iterator<Item = &'static Example> {
@@ -505,6 +506,89 @@ fn measures_hold_what_is_counted() {
             assert!(bounds.upper - bounds.lower < 0.15 * bounds.whole, "{name}: {bounds:?}");
         }
     }
+}
+
+/// A hexapod whose universal and spherical joints tilt no further than these angles.
+fn with_cones(base: Cone, top: Cone) -> Manipulator {
+    let mut mechanism = file::read(find("stewart").unwrap().text).unwrap().mechanism;
+    for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+        joint.cone = match joint.kind {
+            JointKind::Universal { .. } => Some(base),
+            JointKind::Spherical => Some(top),
+            _ => None,
+        };
+    }
+    Manipulator::new(mechanism).unwrap()
+}
+
+/// The rod of a hexapod's leg is the line between its joints: it stays in a cone of the base, and in one of the platform.
+#[test]
+fn rods_stay_in_their_cones() {
+    let upright = Unit::new_normalize(Vector3::new(0.1, 0.0, 1.0));
+    let about_home = |half_angle| Cone { half_angle, axis: None };
+    let others = (Cone { half_angle: 0.4, axis: Some(upright) }, about_home(0.3));
+    for (base, top) in [(about_home(0.2), about_home(0.35)), others] {
+        let m = with_cones(base, top);
+        assert!(m.has_cones() && !m.has_enclosures());
+        let axis = |name: &str, far: f64, count| Axis::new(name, -far, far, count);
+        let axes = [axis("x", 0.25, 9), axis("roll", 0.5, 7), axis("yaw", 0.6, 7)];
+        let grid = Grid::new(&m, axes.into()).unwrap();
+        let mut expected = 0;
+        let (mut solution, mut motors) = (m.solution(), m.actuated_joints());
+        for number in 0..grid.poses() {
+            let pose = grid.pose(number);
+            let turn = Rotation3::from_euler_angles(pose[3], pose[4], pose[5]);
+            let reached = m.mechanism().legs.iter().all(|leg| {
+                let [foot, head] = [leg.joints[0].point, leg.joints[2].point];
+                let [low, high] = leg.joints[1].coordinates[0].limits.unwrap();
+                let from = Vector3::new(pose[0], pose[1], pose[2]);
+                let moved = Point3::from(from + turn * (head - m.mechanism().platform));
+                let (rod, home) = (moved - foot, head - foot);
+                let tilt = rod.angle(&base.axis.map_or(home, Unit::into_inner));
+                let below = (-rod).angle(&(turn * -home));
+                (low..=high).contains(&rod.norm())
+                    && tilt <= base.half_angle
+                    && below <= top.half_angle
+            });
+            let found = m.inverse(&pose, m.home_mode(), &mut solution).unwrap().unwrap();
+            assert_eq!(found.within_limits(), reached, "{pose:?}");
+            let beyond = m.beyond_limits(found).count();
+            assert_eq!(beyond == 0, reached, "{pose:?}");
+            let found = m.inverse_actuated(&pose, m.home_mode(), &mut motors).unwrap().unwrap();
+            assert_eq!(found.within_limits(), reached, "{pose:?}");
+            expected += u64::from(reached);
+        }
+        assert!(expected > 20 && expected < grid.poses() - 20, "{expected}");
+        for modes in [Modes::One(m.home_mode()), Modes::Any] {
+            let found = Sweep::new(&m, &grid, modes).count(&Progress::default()).unwrap();
+            assert_eq!(found.reachable, expected, "{modes:?}");
+        }
+        let told = Domain::new(&m, Sections::Whole, &[]).unwrap_err();
+        assert_eq!(told, DomainError::Cones);
+    }
+}
+
+/// Cones of legs that are split count, too, though their rows are decided otherwise.
+#[test]
+fn cones_of_split_legs_count() {
+    let text = find("plano-spherical-5dof-joints").unwrap().text;
+    let mut mechanism = file::read(text).unwrap().mechanism;
+    let ball = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    let ball = ball.filter(|joint| joint.kind == JointKind::Spherical);
+    ball.for_each(|joint| joint.cone = Some(Cone { half_angle: 0.3, axis: None }));
+    let m = Manipulator::new(mechanism).unwrap();
+    let free = example("plano-spherical-5dof-joints");
+    let axis = |name: &str, far: f64, count| Axis::new(name, -far, far, count);
+    let axes =
+        || vec![axis("x", 0.1, 21), axis("y", 0.1, 5), axis("xi", 0.8, 5), axis("zeta", 0.5, 3)];
+    let grid = Grid::new(&m, axes()).unwrap();
+    for modes in [Modes::One(m.home_mode()), Modes::Any] {
+        let count = |m| Sweep::new(m, &grid, modes).count(&Progress::default()).unwrap().reachable;
+        let expected = by_inverse(&m, &grid, modes).1.reachable;
+        assert_eq!(count(&m), expected);
+        assert!(0 < expected && expected < count(&free), "{expected}");
+    }
+    assert_eq!(Grid::of(Sections::Upper, &m, vec![]), Err(GridError::NotAlone));
 }
 
 /// What follows from sections is refused by name.

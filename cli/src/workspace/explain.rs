@@ -1,8 +1,11 @@
 //! What rejects the poses of a workspace, for printing.
 
 use crate::text::{self, Table, count, short};
+use opm_core::Quantity;
 use opm_core::manipulator::part_of;
+use opm_core::mechanism::Cone;
 use opm_core::mechanism::file::FileUnits;
+use opm_core::mechanism::joint::Joint;
 use opm_study::Workspace;
 use opm_workspace::{Cause, Rejection, Rejections};
 use serde_json::{Value, json};
@@ -23,8 +26,17 @@ impl Report<'_> {
             Cause::Reach(_) => return None,
             Cause::Lowest(joint) => (joint, 0),
             Cause::Highest(joint) => (joint, 1),
+            Cause::Cone(joint) => return self.cone(joint).map(|(_, cone)| cone.half_angle),
         };
         Some(self.workspace.manipulator().coordinates()[joint].limits?[end])
+    }
+
+    /// The joint with a cone that has a first coordinate.
+    fn cone(&self, first: usize) -> Option<(&Joint, Cone)> {
+        let name = &self.workspace.manipulator().coordinates()[first].name;
+        let mut joints = self.workspace.manipulator().mechanism().joints();
+        let joint = joints.find(|joint| joint.coordinates[0].name == *name)?;
+        Some((joint, joint.cone?))
     }
 
     pub fn json(&self) -> Value {
@@ -38,6 +50,9 @@ impl Report<'_> {
                     Cause::Lowest(joint) => (None, Some(&*coordinates[joint].name), Some("lowest")),
                     Cause::Highest(joint) => {
                         (None, Some(&*coordinates[joint].name), Some("highest"))
+                    }
+                    Cause::Cone(joint) => {
+                        (None, self.cone(joint).map(|(joint, _)| &*joint.name), Some("cone"))
                     }
                 };
                 json!({
@@ -67,11 +82,17 @@ impl Report<'_> {
         for rejection in rejections {
             let what = match rejection.cause {
                 Cause::Reach(section) => format!("{} out of reach", part_of(section)),
+                Cause::Cone(joint) => {
+                    let name = self.cone(joint).map_or("", |(joint, _)| &joint.name);
+                    let limit = self.limit(rejection.cause).unwrap_or(f64::NAN);
+                    let limit = text::number(limit, Quantity::Angle, units);
+                    format!("{name} beyond its cone of {limit} {}", units.symbol(Quantity::Angle))
+                }
                 Cause::Lowest(joint) | Cause::Highest(joint) => {
                     let coordinate = &coordinates[joint];
                     let past = match rejection.cause {
                         Cause::Lowest(_) => "below",
-                        Cause::Highest(_) | Cause::Reach(_) => "above",
+                        Cause::Highest(_) | Cause::Cone(_) | Cause::Reach(_) => "above",
                     };
                     let limit = self.limit(rejection.cause).unwrap_or(f64::NAN);
                     let limit = text::number(limit, coordinate.quantity, units);

@@ -269,7 +269,7 @@ struct Request<'a> {
 impl Manipulator {
     /// Whether boxes of poses have bounds. They have none where several legs impose the same constraint: whether it is
     /// obeyed is a matter of a tolerance; nor where legs are solved whole and coordinates depend on each other, or spherical
-    /// joints are limited.
+    /// joints are limited; nor where joints have cones.
     ///
     /// ```
     /// # use opm_core::Manipulator;
@@ -277,6 +277,9 @@ impl Manipulator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn has_enclosures(&self) -> bool {
+        if self.has_cones() {
+            return false;
+        }
         if self.is_whole() {
             return self.reaches_whole();
         }

@@ -19,6 +19,7 @@ mod all_modes;
 mod angles;
 pub(crate) mod batch;
 mod closure;
+mod cones;
 pub(crate) mod dependent;
 pub mod form;
 mod inverse;
@@ -64,6 +65,7 @@ use crate::numeric::four_wide::FourWide;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 pub(crate) use closure::ClosureBuffer;
+use cones::ConeLimit;
 use judged::judged_at;
 use leg::CompileContext;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
@@ -511,6 +513,7 @@ impl Compiled {
                     actuated: joint.actuated.then_some(actuated.len()),
                     home: coordinate.home,
                     limits: limits[number],
+                    cone: joint.cone.is_some(),
                 });
                 if joint.actuated {
                     actuated.push(number);
@@ -535,6 +538,7 @@ impl Compiled {
                 compiled.imaginary = Some(imaginary.len());
                 imaginary.push(ImaginaryJoint::new(leg, number, &task));
             }
+            compiled.cones = ConeLimit::of_leg(leg, first);
             first += leg.coordinates().count();
             legs.push(compiled);
         }

@@ -4,6 +4,7 @@
 #![cfg_attr(not(feature = "files"), allow(dead_code, unused_imports))]
 
 mod bodies;
+mod cone;
 pub mod family;
 pub mod file;
 mod hints;
@@ -13,6 +14,7 @@ mod screws;
 mod shapes;
 
 pub use bodies::BodyMasses;
+pub use cone::{Cone, JointCone};
 #[doc(hidden)]
 pub use hints::HOME_COORDINATES;
 pub use hints::{FrameHints, OrientationCoordinates, TaskHints, TaskKey};

@@ -44,8 +44,8 @@ pub enum GridError {
     NoUpperSection,
     /// The grid is of one section alone, but one section depends on the other.
     #[error(
-        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, or the \
-         sections share an inclined translation"
+        "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, joints have \
+         cones, or the sections share an inclined translation"
     )]
     NotAlone,
     /// No coordinate has the name of the axis.
@@ -270,8 +270,9 @@ impl Grid {
         if coordinates.is_empty() && one_subspace {
             return Err(GridError::NoUpperSection);
         }
-        let alone =
-            manipulator.dependent_coordinates().is_empty() && !manipulator.task().shares_height();
+        let alone = manipulator.dependent_coordinates().is_empty()
+            && !manipulator.has_cones()
+            && !manipulator.task().shares_height();
         if sections != Sections::Whole && !alone {
             return Err(GridError::NotAlone);
         }

@@ -23,6 +23,8 @@ pub enum Cause {
     Lowest(usize),
     /// A joint coordinate is above its highest value.
     Highest(usize),
+    /// A joint is beyond its cone, by the number of its first coordinate.
+    Cone(usize),
 }
 
 /// The number of poses that one cause rejects.

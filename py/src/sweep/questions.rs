@@ -126,11 +126,18 @@ impl Sweep {
         let found = interrupt::run(py, threads, work, || progress.cancel())?.map_err(study)?;
         let manipulator = self.workspace.manipulator();
         let name = |joint: usize| Some(manipulator.coordinates()[joint].name.clone());
+        let joint_of = |first: usize| {
+            let mut joints = manipulator.mechanism().joints();
+            let first = name(first);
+            let found = joints.find(|joint| Some(&joint.coordinates[0].name) == first.as_ref());
+            found.map(|joint| joint.name.clone())
+        };
         let rejections = found.rejections.iter().map(|rejection| {
             let (section, joint, limit) = match rejection.cause {
                 Cause::Reach(section) => (section.map(|section| section.to_string()), None, None),
                 Cause::Lowest(joint) => (None, name(joint), Some("lowest".to_owned())),
                 Cause::Highest(joint) => (None, name(joint), Some("highest".to_owned())),
+                Cause::Cone(joint) => (None, joint_of(joint), Some("cone".to_owned())),
             };
             let leg = manipulator.mechanism().legs[rejection.leg].name.clone();
             let (alone, with_others) = (rejection.alone, rejection.with_others);

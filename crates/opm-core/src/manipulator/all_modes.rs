@@ -126,6 +126,7 @@ impl Manipulator {
         (buffer.solved.v, buffer.solved.b) = (*v, *b);
         self.divide(buffer);
         self.write_lifts(buffer);
+        self.test_cones(buffer);
         buffer.reached()
     }
 

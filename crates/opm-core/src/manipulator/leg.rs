@@ -1,5 +1,6 @@
 //! One leg, split into two closed-form chains.
 
+use super::cones::ConeLimit;
 use super::lift::{self, Lean, Lift, Separated};
 use super::refused::RefusedLeg;
 use super::section::{ChainCoordinate, CompiledSection, Slider, chain_joints, coordinate_number};
@@ -47,6 +48,8 @@ pub(crate) struct CompiledLeg {
     pub lean: Option<Lean>,
     /// How it is solved whole; `None` where it is solved by its sections.
     pub whole: Option<Box<Whole>>,
+    /// The cones of its joints.
+    pub cones: Vec<ConeLimit>,
 }
 
 /// What compiling a leg needs to know of the manipulator.
@@ -232,7 +235,7 @@ impl CompiledLeg {
                 screws,
                 scale,
                 coordinates,
-                limited: own().any(|c| c.limits.any()),
+                limited: own().any(|c| c.limits.any() || c.cone),
                 driven: partial.is_some() || own().any(|c| c.actuated.is_some()),
                 partial,
                 // See `CompiledSection::slider`.
@@ -260,6 +263,7 @@ impl CompiledLeg {
             lift: None,
             lean: None,
             whole: None,
+            cones: Vec::new(),
             unwinds: task.shared() == Some(MotionType::Rotation)
                 && [&task.lower, &task.upper].iter().any(|s| s.kind == SubspaceKind::Cylindrical),
         })

@@ -263,6 +263,7 @@ impl Manipulator {
             && leg.upper.admits(&solution.upper)
             && leg.lift.as_ref().is_none_or(lifted)
             && leg.whole.as_ref().is_none_or(|whole| whole.admits(solution))
+            && leg.within_cones(solution)
     }
 
     /// The value and whether it is within its limits of a lift at a height above home, metres.

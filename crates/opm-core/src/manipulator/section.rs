@@ -22,6 +22,8 @@ pub(crate) struct ChainCoordinate {
     /// Its value at home, radians or metres.
     pub home: f64,
     pub limits: Limits,
+    /// Whether its joint has a cone.
+    pub cone: bool,
 }
 
 /// One section of a leg: its chain, and the chain's joint coordinates.

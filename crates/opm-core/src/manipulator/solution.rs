@@ -235,14 +235,16 @@ impl ActuatedJoints {
 }
 
 impl Manipulator {
-    /// The numbers of the joint coordinates that are beyond their limits in a solution.
-    pub fn beyond_limits(&self, solution: &Solution) -> impl Iterator<Item = usize> {
+    /// The numbers of the joint coordinates that are beyond their limits in a solution; of joints that are beyond their cones,
+    /// the first one's.
+    pub fn beyond_limits<'a>(&'a self, solution: &'a Solution) -> impl Iterator<Item = usize> + 'a {
         let limits = self.coordinates.iter().zip(&self.limits);
         let joints = limits.zip(solution.joints()).enumerate();
         let beyond = joints.filter(|(_, ((c, limits), value))| {
             !limits.admits(JointDisplacement::Value(**value - c.home))
         });
-        beyond.map(|(number, _)| number)
+        let cones = self.beyond_cones(solution.joints()).map(|(_, first)| first);
+        beyond.map(|(number, _)| number).chain(cones)
     }
 
     /// A buffer for [`Manipulator::inverse`]. It holds the values at home, which the first call of

@@ -199,6 +199,7 @@ impl CompiledLeg {
                 let joints = joints(leg);
                 Whole { leg: whole, reach, places, limited, between, joints }
             })),
+            cones: Vec::new(),
         }
     }
 }

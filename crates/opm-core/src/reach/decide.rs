@@ -58,6 +58,12 @@ impl Reach<'_> {
                 }
             }
         }
+        if manipulator.has_cones() {
+            // What is known does not count these.
+            for (lane, &reached) in reached.iter().enumerate() {
+                alone[lane] |= u64::from(reached);
+            }
+        }
         for lane in (0..rows).filter(|&lane| alone[lane] & 1 == 1) {
             let pose = &poses[lane * width..][..width];
             if manipulator.is_whole() {

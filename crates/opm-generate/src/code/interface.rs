@@ -6,6 +6,7 @@ use super::*;
 use crate::library::*;
 use crate::trace::*;
 use opm_core::group::SubspaceKind;
+use opm_core::nalgebra;
 
 /// Both sections.
 pub const SECTIONS: [Section; 2] = [Section::Lower, Section::Upper];
@@ -453,11 +454,56 @@ impl Writer<'_> {
     }
 }
 
+impl Writer<'_> {
+    /// Returns where a joint leaves its cone: the cosine of its tilt is too small.
+    fn cones(&self, g: Any, joints: Array<Real>) {
+        let mut next = 0;
+        for leg in &self.manipulator.mechanism().legs {
+            let firsts: Vec<usize> = leg
+                .joints
+                .iter()
+                .map(|joint| {
+                    let first = next;
+                    next += joint.coordinates.len();
+                    first
+                })
+                .collect();
+            for cone in leg.cones() {
+                let first = firsts[cone.joint];
+                let off = |i: usize| joints.at(number(first + i)) - self.joint(g, first + i).home;
+                let of = |v: nalgebra::Unit<nalgebra::Vector3<f64>>| vector_of(v.x, v.y, v.z);
+                block(|| {
+                    name!(rod = of(cone.behind()));
+                    match cone.axes() {
+                        Some([one, two]) => {
+                            rod.set(rotated_about(of(two), unit(off(1)), rod));
+                            rod.set(rotated_about(of(one), unit(off(0)), rod));
+                        }
+                        None => {
+                            name!(vector = vector_of(off(0), off(1), off(2)));
+                            rod.set(rotated(rotation_by(vector), rod));
+                        }
+                    }
+                    name!(cosine = dot(of(cone.before()), rod));
+                    name!(aside = cross(of(cone.before()), rod));
+                    name!(tilt = atan2(sqrt(dot(aside, aside)), cosine));
+                    when(!tilt.le(cone.half_angle + REACH), || give(number(first + 1)));
+                });
+            }
+        }
+    }
+}
+
 /// The function of the limits.
 fn limits(writer: &Writer<'_>) {
     let function = Traced::new(
         "limits",
-        "0 where all joints are within their limits; otherwise the number of the first one, from 1, that is not.",
+        if writer.manipulator.has_cones() {
+            "0 where all joints are within their limits and their cones; otherwise the number of the first coordinate, from 1, \
+             that is not, or of a joint that leaves its cone."
+        } else {
+            "0 where all joints are within their limits; otherwise the number of the first one, from 1, that is not."
+        },
     );
     writer.add(function.public().body(|p| {
         let (g, joints) = (geometry(p), p.add::<In<[Real]>>("joints"));
@@ -467,6 +513,7 @@ fn limits(writer: &Writer<'_>) {
             let value = joints.at(i);
             when(!(value.ge(joint.low - slack) & value.le(joint.high + slack)), || give(i + 1));
         });
+        writer.cones(g, joints);
         done()
     }));
 }

@@ -2,16 +2,33 @@
 
 use crate::program::Question;
 use fastrand::Rng;
-use opm_core::mechanism::examples::EXAMPLES;
+use opm_core::mechanism::Cone;
+use opm_core::mechanism::examples::SPLIT;
+use opm_core::mechanism::joint::JointKind;
 use opm_core::{Manipulator, Quantity};
 use opm_tests::random::{self, Options};
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
-/// The shipped mechanisms with code: not those whose legs are solved whole, and that have coordinates that follow from others.
+/// The shipped mechanisms whose legs are split, and some whose legs are solved whole: with universal joints, with spherical ones,
+/// and with a height.
 pub fn shipped() -> Vec<Manipulator> {
-    let read = EXAMPLES.iter().filter_map(|example| Manipulator::read(example.text).ok());
-    read.filter(|m| opm_generate::c(m).is_ok()).collect()
+    let split = SPLIT.iter().filter_map(|example| Manipulator::read(example.text).ok());
+    let whole = ["delta", "stewart", "quadrupteron"];
+    let whole = whole.map(|name| Manipulator::example(name).expect("it is shipped"));
+    split
+        .chain(whole.map(|m| if m.mechanism().name == "stewart" { with_cones(&m) } else { m }))
+        .collect()
+}
+
+/// The same mechanism, whose universal and spherical joints have cones.
+fn with_cones(m: &Manipulator) -> Manipulator {
+    let mut mechanism = m.mechanism().clone();
+    for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+        let tilts = matches!(joint.kind, JointKind::Universal { .. } | JointKind::Spherical);
+        joint.cone = tilts.then_some(Cone { half_angle: 0.5, axis: None });
+    }
+    Manipulator::new(mechanism).expect("the cones have home inside")
 }
 
 /// A random mechanism of every pair of subspaces, and some of which a leg constrains the platform.

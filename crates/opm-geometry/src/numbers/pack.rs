@@ -59,8 +59,8 @@ impl Pack {
     #[inline(always)]
     fn test(self, f: impl Fn(f64) -> bool) -> PackTruth {
         let mut truth = [false; Self::POSES];
-        for i in 0..Self::POSES {
-            truth[i] = f(self.0[i]);
+        for (truth, value) in truth.iter_mut().zip(self.0) {
+            *truth = f(value);
         }
         PackTruth(truth)
     }

@@ -1,5 +1,6 @@
 //! Joints: a kind, an axis at the assembled home, and the coordinates that measure them.
 
+use super::Cone;
 use crate::chain::limits::Limits;
 use crate::group::screw::Screw;
 pub use crate::numeric::Quantity;
@@ -240,6 +241,8 @@ pub struct Joint {
     /// The joint's coordinates: one; two (cylindrical: angle and slide; universal: two angles); or
     /// three (spherical: the components of a rotation vector).
     pub coordinates: Vec<JointCoordinate>,
+    /// How far a spherical or a universal joint may tilt; `None` where it may as far as it wants.
+    pub cone: Option<Cone>,
 }
 
 /// The number of values differs from the number of coordinates of a joint, a leg or a mechanism.
@@ -296,7 +299,7 @@ impl Joint {
                 max_effort: None,
             })
             .collect();
-        Self { name, kind, axis, point, actuated: false, coordinates }
+        Self { name, kind, axis, point, actuated: false, coordinates, cone: None }
     }
 
     /// Marks the joint as driven by a motor.

@@ -43,6 +43,7 @@ fn words(manipulator: &Manipulator, Rejection { leg, cause, .. }: &Rejection) ->
         Cause::Reach(section) => format!("{} out of reach", part_of(section)),
         Cause::Lowest(joint) => format!("{} below its limit", name(joint)),
         Cause::Highest(joint) => format!("{} above its limit", name(joint)),
+        Cause::Cone(joint) => format!("{} beyond its cone", name(joint)),
     };
     format!("{}: {what}", manipulator.mechanism().legs[*leg].name)
 }

@@ -124,6 +124,11 @@ pub enum DomainError {
          other or spherical joints are limited; a grid of its workspace can be counted"
     )]
     Whole,
+    /// Joints have cones.
+    #[error(
+        "there are no bounds for a mechanism whose joints have cones; a grid of its workspace can be counted"
+    )]
+    Cones,
     /// The heights of legs depend on the imaginary joints.
     #[error(
         "there are no bounds for a mechanism whose sections share a translation that is inclined to the direction of \
@@ -199,6 +204,9 @@ impl Domain {
         }
         if sections != Sections::Whole && manipulator.is_whole() {
             return Err(DomainError::NoSections);
+        }
+        if manipulator.has_cones() {
+            return Err(DomainError::Cones);
         }
         if !manipulator.has_enclosures() {
             let whole = manipulator.is_whole();

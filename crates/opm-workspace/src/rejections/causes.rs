@@ -99,7 +99,8 @@ impl<'a> Causes<'a> {
             };
             all.extend(sections.iter().map(|&section| (leg, Cause::Reach(section))));
             for joint in (0..legs.len()).filter(|&joint| legs[joint] == leg) {
-                all.extend([(leg, Cause::Lowest(joint)), (leg, Cause::Highest(joint))]);
+                let ends = [Cause::Lowest(joint), Cause::Highest(joint), Cause::Cone(joint)];
+                all.extend(ends.map(|cause| (leg, cause)));
             }
         }
         let families = match modes {
@@ -220,6 +221,11 @@ impl<'a> Causes<'a> {
                 causes.push(number(leg, cause));
             } else if by.abs() < nearest.0 {
                 nearest = (by.abs(), Some(number(leg, cause)));
+            }
+        }
+        for (leg, joint) in manipulator.beyond_cones(solution.joints()) {
+            if closed(leg) {
+                causes.push(number(leg, Cause::Cone(joint)));
             }
         }
         if causes.is_empty() {

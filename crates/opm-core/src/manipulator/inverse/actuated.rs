@@ -149,6 +149,7 @@ impl WithSimd for SolveActuated<'_> {
                 out.within_limits &= between.limits.admits(found.tau);
                 Manipulator::write_actuated_joint(between, found.tau, out, &mut angles);
             }
+            out.within_limits &= leg.within_cones(&found);
             if let Some(imaginary) = leg.imaginary {
                 match found.tau {
                     JointDisplacement::Direction(e) => angles.ask(AngleOf::Leg(number), e),

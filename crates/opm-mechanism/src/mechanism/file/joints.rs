@@ -1,16 +1,18 @@
 //! Reading the form of mechanism file that lists the joints at the assembled home pose.
 
+use super::FileUnits;
 use super::leg_name;
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
 use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
 use crate::mechanism::leg::{Leg, Section, placed};
 use crate::mechanism::{
-    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, Shapes, TaskHints,
-    TaskKey,
+    BodyMasses, Cone, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, Shapes,
+    TaskHints, TaskKey,
 };
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
+use std::f64::consts::PI;
 
 pub(super) const KEYS: &[&str] =
     &["format", "name", "units", "platform", "task", "bodies", "obstacle", "leg"];
@@ -69,6 +71,9 @@ impl Type {
         let mut keys = vec!["name", "type", "point", "actuated", "home", "limits"];
         keys.extend(DriveLimit::ALL.map(DriveLimit::key));
         keys.extend(self.directions().iter().chain(self.lengths()));
+        if self.tilts() {
+            keys.push("cone");
+        }
         keys
     }
 
@@ -80,6 +85,14 @@ impl Type {
             keys.push("point");
         }
         keys
+    }
+
+    /// Whether it may have a cone.
+    fn tilts(self) -> bool {
+        match self {
+            Self::Universal | Self::Spherical => true,
+            Self::Revolute | Self::Prismatic | Self::Helical | Self::Cylindrical => false,
+        }
     }
 
     /// The keys of its axes.
@@ -230,7 +243,9 @@ fn read_joints(
         value.report("is empty, expected at least one joint");
     }
     let joints = all(items.iter().map(|item| read_joint(item, platform, names)))?;
-    Some(placed(joints))
+    let placed = Leg::new("", placed(joints));
+    check_cones(leg, &items, &placed);
+    Some(placed.joints)
 }
 
 /// Reads a joint; `None` if it has no type, because the type decides what else there is to check.
@@ -271,7 +286,56 @@ fn read_joint(
         }
     }
     read_coordinates(&table, &mut joint);
+    let units = table.reader.units();
+    let cone = table.get("cone").filter(|_| kind.tilts());
+    joint.cone = cone.and_then(|value| read_cone(&value, units));
     Some((joint, has_place))
+}
+
+/// Reads the cone of a joint: half its angle, or a table with that and its axis.
+fn read_cone(value: &Value<'_>, units: FileUnits) -> Option<Cone> {
+    let table = if value.is_table() { Some(value.table(&["angle", "axis"])?) } else { None };
+    let (angle, axis) = match &table {
+        None => (value.quantity(Quantity::Angle), None),
+        Some(table) => {
+            let angle = table.require("angle", "the largest angle between the rod and the axis");
+            let axis = table.get("axis").and_then(|value| value.direction());
+            (angle.and_then(|angle| angle.quantity(Quantity::Angle)), axis)
+        }
+    };
+    let half_angle = angle?;
+    if !(half_angle > 0.0 && half_angle < PI) {
+        let [found, most] = [half_angle, PI].map(|angle| units.show(angle, Quantity::Angle));
+        value.report(format!("has the angle {found}, expected one above 0 and below {most}"));
+        return None;
+    }
+    Some(Cone { half_angle, axis })
+}
+
+/// Checks the cones of a leg's joints: that they have a rod, and that home is inside.
+fn check_cones(table: &Table<'_>, items: &[Value<'_>], leg: &Leg) {
+    let units = table.reader.units();
+    let cones = leg.cones();
+    for (number, (item, joint)) in items.iter().zip(&leg.joints).enumerate() {
+        let Some(Cone { half_angle, .. }) = joint.cone else { continue };
+        let Some(cone) = cones.iter().find(|cone| cone.joint == number) else {
+            let name = &joint.name;
+            let problem = format!(
+                "{name} has a cone, but no other joint of its leg has another place: there is no rod"
+            );
+            table.reader.report(item.at, problem);
+            continue;
+        };
+        let tilt = cone.tilt(&[0.0; 3]);
+        if !cone.admits(&[0.0; 3]) {
+            let [tilt, most] = [tilt, half_angle].map(|angle| units.show(angle, Quantity::Angle));
+            let name = &joint.name;
+            let problem = format!(
+                "the cone of {name} excludes home: the rod is {tilt} from its axis there, expected at most {most}"
+            );
+            table.reader.report(item.at, problem);
+        }
+    }
 }
 
 fn direction(table: &Table<'_>, key: &str) -> Option<Unit<Vector3<f64>>> {

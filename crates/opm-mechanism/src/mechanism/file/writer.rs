@@ -2,7 +2,7 @@
 
 use super::FileUnits;
 use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
-use crate::mechanism::{HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, TaskHints};
+use crate::mechanism::{Cone, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, TaskHints};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
@@ -192,6 +192,15 @@ impl Writer {
         });
         if let Some(limits) = limits.collect() {
             entries.push(format!("limits = {}", one_or_all(limits)));
+        }
+        if let Some(Cone { half_angle, axis }) = joint.cone {
+            let angle = self.number(half_angle, Quantity::Angle);
+            entries.push(match axis {
+                None => format!("cone = {angle}"),
+                Some(axis) => {
+                    format!("cone = {{ angle = {angle}, axis = {} }}", self.direction(&axis))
+                }
+            });
         }
         for limit in DriveLimit::ALL {
             let largest =

@@ -115,6 +115,7 @@ fn joint() -> Value {
         ),
         ("home", json!({ "description": AT_HOME })),
         ("limits", json!({ "description": LIMITS })),
+        ("cone", cone()),
         (DriveLimit::Motion(MotionLimit::Rate).key(), json!({ "description": MAX_RATE })),
         (
             DriveLimit::Motion(MotionLimit::Acceleration).key(),
@@ -132,6 +133,20 @@ fn joint() -> Value {
     joint
 }
 
+/// The cone of a spherical or a universal joint.
+fn cone() -> Value {
+    let angle =
+        number("the largest angle between the rod and the axis of the cone", Quantity::Angle);
+    let axis = direction("the axis of the cone at home, away from the joint along the rod");
+    let properties = [("angle", angle), ("axis", axis)];
+    let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
+    let mut table = object(properties);
+    table["required"] = json!(["angle"]);
+    described(CONE, json!({ "anyOf": [{ "type": "number" }, table] }))
+}
+
+const CONE: &str = "How far the rod at the joint may tilt: half the angle of a cone about the rod at home, or about a \
+                    given axis. In units.angle.";
 const PITCH: &str = "the advance along the axis per radian; negative if it is left-handed";
 const AT_HOME: &str = "The value at home, 0 if it is not given; a reported value is this one plus the \
                        displacement. A number, or for a joint of several coordinates an array with one for \

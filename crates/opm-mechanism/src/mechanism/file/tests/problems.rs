@@ -204,6 +204,24 @@ fn joints() {
         ("[[0, 90], [-30, 30]]", "[[0, 90], ^[30, -30]]", "are reversed: 30 deg is above -30 deg"),
         ("[[0, 90], [-30, 30]]", "^[[0, 90], [-10, 30]]", "exclude home: u1.2 is -20 deg there"),
         (r#""spherical", "#, r#""spherical", ^axis = [0, 0, 1], "#, "unknown key `axis`"),
+        (
+            r#""spherical", "#,
+            r#""spherical", cone = ^0, "#,
+            "has the angle 0 deg, expected one above 0",
+        ),
+        (r#""spherical", "#, r#""spherical", cone = ^180, "#, "and below 180 deg"),
+        (r#""spherical", "#, r#""spherical", cone = ^[40], "#, "`cone` is an array"),
+        (
+            r#""spherical", "#,
+            r#""spherical", cone = { angle = 9, ^axes = 1 }, "#,
+            "did you mean `axis`",
+        ),
+        (r#""revolute", "#, r#""revolute", ^cone = 20, "#, "unknown key `cone`"),
+        (
+            r#"{ name = "s1", type = "spherical", "#,
+            r#"^{ name = "s1", type = "spherical", cone = { angle = 20, axis = [1, 0, 0] }, "#,
+            "the cone of s1 excludes home: the rod is 90 deg from its axis there, expected at most 20 deg",
+        ),
         ("name = \"left\"", "name = ^true", "`name` is a boolean, expected a string"),
         ("name = \"left\"", "^nome = \"left\"", "did you mean `name`?"),
     ] {

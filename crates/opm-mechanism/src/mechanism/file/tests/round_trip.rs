@@ -4,7 +4,7 @@ use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, wri
 use crate::mechanism::joint::{Joint, JointKind, MotionLimits};
 use crate::mechanism::leg::Leg;
 use crate::mechanism::{
-    BodyMasses, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape,
+    BodyMasses, Cone, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape,
     OrientationCoordinates, Shapes, TaskHints,
 };
 use nalgebra::{Point3, Unit, Vector3};
@@ -63,6 +63,9 @@ prop_compose! {
             coordinate.motion_limits = MotionLimits { max_rate, max_acceleration };
             coordinate.max_effort = max_effort;
         }
+        let tilts = matches!(joint.kind, JointKind::Universal { .. } | JointKind::Spherical);
+        let half_angle = room.filter(|_| tilts).map(|[below, above]| 0.2 + below + above);
+        joint.cone = half_angle.map(|half_angle| Cone { half_angle, axis: None });
         joint
     }
 }
@@ -155,13 +158,28 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
                     number += 1;
                     let mut named =
                         Joint::new(format!("{name}{number}"), joint.kind, joint.axis, joint.point);
-                    named.actuated = joint.actuated;
+                    (named.actuated, named.cone) = (joint.actuated, joint.cone);
                     for (to, from) in named.coordinates.iter_mut().zip(joint.coordinates) {
                         (to.home, to.limits) = (from.home, from.limits);
                     }
                     named
                 });
-                Leg::new(format!("{name} {i}"), named.collect())
+                let mut leg = Leg::new(format!("{name} {i}"), named.collect());
+                let rods: Vec<usize> = leg.cones().iter().map(|cone| cone.joint).collect();
+                for (number, joint) in leg.joints.iter_mut().enumerate() {
+                    joint.cone = joint.cone.filter(|_| rods.contains(&number));
+                    if let Some(cone) = joint.cone.as_mut().filter(|_| number % 2 == 1) {
+                        cone.half_angle = 3.0;
+                        cone.axis = Some(joint.axis);
+                    }
+                }
+                let inside = leg.cones();
+                let inside = inside.iter().filter(|cone| cone.admits(&[0.0; 3]));
+                let inside: Vec<usize> = inside.map(|cone| cone.joint).collect();
+                for (number, joint) in leg.joints.iter_mut().enumerate() {
+                    joint.cone = joint.cone.filter(|_| inside.contains(&number));
+                }
+                leg
             })
             .collect();
         legs[0].joints[0].actuated = true;
@@ -204,6 +222,10 @@ fn numbers(joint: &Joint) -> (Vec<f64>, impl PartialEq + std::fmt::Debug) {
     for coordinate in &joint.coordinates {
         numbers.push(coordinate.home);
         numbers.extend(coordinate.limits.into_iter().flatten());
+    }
+    if let Some(Cone { half_angle, axis }) = &joint.cone {
+        numbers.push(*half_angle);
+        numbers.extend(axis.iter().flat_map(|axis| axis.iter()));
     }
     let names: Vec<_> = joint.coordinates.iter().map(|c| (c.name.clone(), c.quantity)).collect();
     (numbers, (joint.name.clone(), kind, joint.actuated, names))
