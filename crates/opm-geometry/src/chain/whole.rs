@@ -336,7 +336,7 @@ impl WholeLeg {
             let given = self.elements.iter().filter(|element| element.is_given());
             let given: Vec<f64> = given.map(|element| sample.values[element.slot]).collect();
             self.branches().any(|branches| {
-                self.solve_given(&sample.target, &given, branches, &mut out).is_ok()
+                self.solve_once(&sample.target, &given, branches, &mut out).is_ok()
                     && self.elements.iter().filter(|element| !element.is_given()).all(|element| {
                         let (value, found) = (sample.values[element.slot], out[element.slot]);
                         match element.kind {
@@ -351,6 +351,18 @@ impl WholeLeg {
         };
         let lost = samples.iter().skip(1).filter(|sample| !found(sample)).count();
         samples.first().is_some_and(found) && lost as f64 <= MOST_LOST * (samples.len() - 1) as f64
+    }
+
+    /// The same as [`WholeLeg::solve_given`], where it takes no time: there is one copy of this code.
+    #[inline(never)]
+    fn solve_once(
+        &self,
+        target: &Isometry3<f64>,
+        given: &[f64],
+        branches: [Branch; 4],
+        out: &mut [JointDisplacement; MOST_FREEDOMS],
+    ) -> Result<(), ReachDeficit> {
+        self.solve_given(target, given, branches, out)
     }
 
     /// All branches: one for each combination of the signs of its choices.

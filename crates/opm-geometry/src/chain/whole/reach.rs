@@ -5,7 +5,6 @@ use super::equation::Roots;
 use super::program::{Program, Run, SIGNS};
 use super::roots::General;
 use super::{CLOSURE, MOST_FREEDOMS, WholeLeg};
-use crate::chain::Branch;
 use crate::numbers::Real;
 use crate::numbers::pack::{Pack, PackJoint, PackRotation};
 use nalgebra::Isometry3;
@@ -88,16 +87,16 @@ impl WholeLeg {
 
     /// Whether the loop closes at all targets at which roots are real, of which there are some.
     pub(super) fn closes_where_real(&self, targets: &[Isometry3<f64>]) -> bool {
-        let leg = (&self.elements[..], self.size);
         let mut real = 0;
         let closed = targets.iter().all(|target| {
             let g = (target.rotation.to_rotation_matrix().into_inner(), target.translation.vector);
             self.branches().all(|branches| {
-                let (mut roots, mut run) = (General::new(self.size), Run::new());
-                self.program.run::<f64>(leg, g, branches.map(Branch::sign), &mut roots, &mut run);
+                let (mut roots, [first, second, ..]) = (General::new(self.size), branches);
+                let signs = [first.sign(), second.sign()];
+                let run = self.run::<f64>(g, signs, &mut roots);
                 let general = roots.free + roots.negative <= CLOSURE * CLOSURE;
                 real += usize::from(general);
-                let open = roots.off + self.program.open::<f64>(&run, self.size);
+                let open = roots.off + run.open();
                 !general || open <= CLOSED * CLOSED
             })
         });
@@ -136,7 +135,9 @@ impl LegReach {
     }
 
     /// Decides some poses.
-    #[inline(always)]
+    // In the explorer's page, which has one set of instructions, there is one copy of this code.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
     pub fn decide(
         &self,
         (rotation, translation): (&PackRotation, &[Pack; 3]),
