@@ -43,6 +43,9 @@ use target::Coordinate;
 pub use crate::boxes::{Affine, MOST};
 pub use places::{BodyPoint, CarriedPoint, MovingBody, Place};
 
+/// So many sides at most have numbers of their own.
+const MIDDLE: usize = 5;
+
 /// One coordinate of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
@@ -129,7 +132,7 @@ impl Manipulator {
         match wide {
             0..=2 => self.enclose_in::<2>(request),
             3 => self.enclose_in::<3>(request),
-            4..=5 => self.enclose_in::<5>(request),
+            4..=MIDDLE if !self.is_whole() => self.enclose_in::<MIDDLE>(request),
             _ => self.enclose_in::<MOST>(request),
         }
     }

@@ -6,6 +6,7 @@
 
 mod assembly;
 mod complete;
+mod constrained;
 mod counts;
 mod displacement;
 mod forward;
@@ -62,9 +63,6 @@ pub struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     pub fn new(manipulator: &'a Manipulator) -> Result<Self, GenerateError> {
-        if manipulator.is_whole() && !manipulator.dependent_coordinates().is_empty() {
-            return Err(GenerateError::Whole);
-        }
         let choices = manipulator.choices();
         if choices > MOST_CHOICES {
             return Err(GenerateError::Choices { choices, most: MOST_CHOICES });

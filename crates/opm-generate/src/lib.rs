@@ -70,12 +70,6 @@ pub enum GenerateError {
         /// The most that there may be.
         most: u32,
     },
-    /// Legs are solved whole, and coordinates of the pose follow from others.
-    #[error(
-        "no code is written for a mechanism whose legs are each solved by itself where coordinates of its pose follow from \
-         others: compute joints with opm itself (`opm ik`, the crate or the Python module)"
-    )]
-    Whole,
     /// The closed forms have what the other languages do not know: this is a defect of opm.
     #[error("the closed forms cannot be written in this language, which is a defect of opm: {0}")]
     Unread(String),

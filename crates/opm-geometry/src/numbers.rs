@@ -117,6 +117,12 @@ pub trait Real:
     fn named(self, _: &'static str) -> Self {
         self
     }
+    /// Computes something, which is part of what is around it. Numbers whose operations are calls keep it apart: there is one copy
+    /// of its code for all places that it is part of.
+    #[inline(always)]
+    fn compute<R>(something: impl FnOnce() -> R) -> R {
+        something()
+    }
 }
 
 /// A vector of the plane, as a complex number.

@@ -1,7 +1,9 @@
 //! The closed forms of a manipulator as plain data, for programs that write them as code.
 
 pub use super::dependent::OBEYED;
-pub use super::dependent::form::{CheckForm, StepForm, StepKind};
+pub use super::dependent::form::{
+    CheckForm, RowForm, RowsForm, StemForm, StemPart, StepForm, StepKind, WholeStep,
+};
 pub use super::dependent::one_joint::SectionMotion;
 use super::leg::{CompiledLeg, Section};
 use super::section::CompiledSection;
@@ -16,6 +18,8 @@ use nalgebra::Matrix3;
 pub struct ClosedForms {
     /// How dependent coordinates follow from the others, in the order of solution.
     pub steps: Vec<StepForm>,
+    /// How they follow where legs that are solved whole constrain the platform; then there are no other steps.
+    pub whole: Option<WholeStep>,
     /// Constraints that the platform obeys already, and that are only checked.
     pub checks: Vec<CheckForm>,
     /// The choices on which the dependent coordinates depend, as bits of a mode, ascending.
@@ -140,6 +144,7 @@ impl Manipulator {
         let dependent = self.dependent.as_ref();
         ClosedForms {
             steps: dependent.map_or_else(Vec::new, Dependent::step_forms),
+            whole: dependent.and_then(Dependent::whole_step),
             checks: dependent.map_or_else(Vec::new, |d| d.check_forms(&self.task, &self.legs)),
             step_bits: dependent.map_or_else(Vec::new, |d| d.bits().to_vec()),
             independent: match dependent {

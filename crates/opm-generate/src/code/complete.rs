@@ -5,19 +5,20 @@ use super::leg::other;
 use super::*;
 use crate::library::*;
 use crate::trace::*;
+use crate::tree::visit;
 use opm_core::chain::condition::Condition;
 use opm_core::group::{MotionType, SubspaceKind};
-use opm_core::manipulator::form::{SectionMotion, StepForm, StepKind};
+use opm_core::manipulator::form::{SectionMotion, StepForm, StepKind, WholeStep};
 use opm_core::mechanism::OrientationCoordinates;
 use opm_core::numeric::Quantity;
 
 /// The parameters of the function, and the displacements that other sections write.
 #[derive(Clone, Copy)]
-struct Completed {
-    g: Any,
-    mode: Bits,
-    q: Array<Real>,
-    missed: Array<Real>,
+pub struct Completed {
+    pub g: Any,
+    pub mode: Bits,
+    pub q: Array<Real>,
+    pub missed: Array<Real>,
     scratch: Option<Any>,
 }
 
@@ -39,6 +40,9 @@ impl Writer<'_> {
             "Completes a pose by the coordinates that follow. It returns 0, or the number of the leg whose constraint no value of \
              them satisfies, with the deficits of its lower and its upper section.",
         );
+        if let Some(WholeStep::Rows(rows)) = &self.forms.whole {
+            self.rows_left(rows);
+        }
         self.add(function.body(|p| {
             let (g, pose, mode) = of_pose(p);
             let (q, missed) = (p.add::<Out<[Real]>>("q"), written(p, "missed", 2));
@@ -67,6 +71,15 @@ impl Writer<'_> {
                     _ => format!("{names}: from the constraint of leg {leg}"),
                 });
                 block(|| self.step(place, step, all));
+            }
+            match &self.forms.whole {
+                Some(WholeStep::Stem(stem)) => {
+                    let mut body = statements(|| self.stem_step(stem, all));
+                    visit::drop_unread(&mut body);
+                    body.into_iter().for_each(emit);
+                }
+                Some(WholeStep::Rows(rows)) => self.rows_step(rows, all),
+                None => {}
             }
             for (place, check) in (1..).zip(&self.forms.checks) {
                 let leg = leg_name(check.leg);

@@ -56,7 +56,7 @@ impl Writer<'_> {
 
     /// Whether coordinates follow from those of a pose.
     pub fn dependent(&self) -> bool {
-        !self.forms.steps.is_empty()
+        !self.forms.steps.is_empty() || self.forms.whole.is_some()
     }
 
     /// The height above home at the coordinates `q`.

@@ -163,8 +163,7 @@ impl Writer<'_> {
     /// at `first_lacking`. It gives how many these are.
     fn leg_rates(&self, leg: usize, first_lacking: usize) -> usize {
         if let Some(form) = &self.forms.legs[leg].whole {
-            self.whole_rates(leg, form);
-            return 0;
+            return self.whole_rates(leg, form, first_lacking);
         }
         let name = crate::names::comment(&self.manipulator.mechanism().legs[leg].name);
         let comment = format!(

@@ -7,8 +7,8 @@ use crate::library::*;
 use crate::trace::closed_forms::Displaced;
 use crate::trace::whole::RootsOfCode;
 use crate::trace::*;
-use crate::tree::visit;
-use opm_core::chain::whole::LegJoint;
+use crate::tree::{Expr, visit};
+use opm_core::chain::whole::{LegJoint, WholeLeg, WholeRun};
 use opm_core::manipulator::form::WholeForm;
 use opm_core::nalgebra::Vector3;
 use opm_core::numbers::{Plane as _, Real as _, Space as _};
@@ -39,10 +39,58 @@ fn freedoms(joint: &LegJoint) -> (usize, Given) {
     }
 }
 
-/// The joints of a leg with the number of the first freedom of each.
-fn numbered(form: &WholeForm) -> Vec<(usize, LegJoint)> {
+/// Returns a status where a loop is not closed.
+pub fn closed_or_return(run: &WholeRun<'_, Real>, missed: Real, status: i32) {
+    let open = run.open().named("open");
+    when(!open.le(CLOSED * CLOSED), || {
+        missed.set(Real::infinity());
+        give(status);
+    });
+}
+
+/// The rotations of the spherical joints of a leg, with the first freedom of each.
+pub fn balls(
+    run: &WholeRun<'_, Real>,
+    joints: &[(usize, LegJoint)],
+    body: Body,
+) -> Vec<(usize, Rotation)> {
+    let is_ball = |&number: &usize| matches!(joints[number].1, LegJoint::Ball { .. });
+    let all: Vec<usize> = (0..joints.len()).filter(is_ball).collect();
+    let (Some(&one), Some(&last)) = (all.first(), all.last()) else { return Vec::new() };
+    let back = |number: usize| match joints[number].1 {
+        LegJoint::Screw { axis, .. } => {
+            let turn = conjugate(run.turn(number).named("turn"));
+            Some(rotation_about(constant(&axis), turn))
+        }
+        LegJoint::Slide { .. } | LegJoint::Ball { .. } => None,
+    };
+    note("What is left of the rotation for spherical joints.");
+    let rest = Rotation::empty("rest");
+    rest.set(body.rotation);
+    for before in (0..one).filter_map(back) {
+        rest.set(product(before, rest));
+    }
+    for behind in (last + 1..joints.len()).rev().filter_map(back) {
+        rest.set(product(rest, behind));
+    }
+    let mut found = Vec::new();
+    if let Some([from, to]) = run.swing() {
+        let swung = swing(from.named("from"), to.named("to"));
+        let swung = crate::trace::named(&fresh("swung"), swung);
+        found.push((joints[one].0, swung));
+        rest.set(product(transposed(swung), rest));
+        for between in (one + 1..last).filter_map(back) {
+            rest.set(product(between, rest));
+        }
+    }
+    found.push((joints[last].0, rest));
+    found
+}
+
+/// The joints of a leg with the number of the first freedom of each that is not given.
+pub fn numbered(leg: &WholeLeg) -> Vec<(usize, LegJoint)> {
     let mut next = 0;
-    let joints = form.leg.joints().into_iter().map(|joint| {
+    let joints = leg.joints().into_iter().map(|joint| {
         let first = next;
         next += freedoms(&joint).0;
         (first, joint)
@@ -55,7 +103,7 @@ impl Writer<'_> {
     pub fn given_of_whole(&self, coordinate: usize) -> Option<Given> {
         self.forms.legs.iter().filter_map(|leg| leg.whole.as_ref()).find_map(|form| {
             let freedom = coordinate.checked_sub(form.first)?;
-            let joints = numbered(form);
+            let joints = numbered(&form.leg);
             let (_, joint) = joints
                 .iter()
                 .find(|(first, joint)| (*first..first + freedoms(joint).0).contains(&freedom))?;
@@ -95,16 +143,12 @@ impl Writer<'_> {
             None => Real::from(1.0),
         };
         let signs = [choice(Section::Lower), choice(Section::Upper)];
-        let mut roots = RootsOfCode { missed, size: form.leg.size() };
+        let mut roots = RootsOfCode { missed, status: 1, size: form.leg.size() };
         let target = (body.rotation, body.translation);
         let run = form.leg.run::<Real>(target, signs, &mut roots);
-        let open = run.open().named("open");
-        when(!open.le(CLOSED * CLOSED), || {
-            missed.set(Real::infinity());
-            give(1);
-        });
+        closed_or_return(&run, missed, 1);
         let field = |freedom: usize| &*self.fields[form.first + freedom];
-        let joints = numbered(form);
+        let joints = numbered(&form.leg);
         for (first, joint) in &joints {
             if !matches!(joint, LegJoint::Ball { .. }) {
                 match run.displacement(*first) {
@@ -113,46 +157,12 @@ impl Writer<'_> {
                 }
             }
         }
-        let is_ball = |&number: &usize| matches!(joints[number].1, LegJoint::Ball { .. });
-        let balls: Vec<usize> = (0..joints.len()).filter(is_ball).collect();
-        let (Some(&one), Some(&last)) = (balls.first(), balls.last()) else { return };
-        let back = |number: usize| match joints[number].1 {
-            LegJoint::Screw { axis, .. } => {
-                let turn = conjugate(run.turn(number).named("turn"));
-                Some(rotation_about(constant(&axis), turn))
-            }
-            LegJoint::Slide { .. } | LegJoint::Ball { .. } => None,
-        };
-        note("What is left of the rotation for spherical joints.");
-        let rest = Rotation::empty("rest");
-        rest.set(body.rotation);
-        for before in (0..one).filter_map(back) {
-            rest.set(product(before, rest));
-        }
-        for behind in (last + 1..joints.len()).rev().filter_map(back) {
-            rest.set(product(rest, behind));
-        }
-        let ball_fields = |number: usize| {
-            let (first, _) = joints[number];
-            let places = [0, 1, 2].map(|i| at.member::<Real>(field(first + i)));
-            let half = self.ball_of(form.first + first);
-            (places, at.member::<Complex>(&half.unwrap_or_default()))
-        };
-        let solve = |rotation: Rotation, number: usize| {
-            let ([x, y, z], half) = ball_fields(number);
+        for (first, rotation) in balls(&run, &joints, body) {
+            let [x, y, z] = [0, 1, 2].map(|i| at.member::<Real>(field(first + i)));
+            let half = self.ball_of(form.first + first).unwrap_or_default();
             let own = crate::trace::named(&fresh("ball"), SphericalS::made(identity()));
-            solve_spherical_s(own, rotation, x, y, z, half);
-        };
-        if let Some([from, to]) = run.swing() {
-            let swung =
-                crate::trace::named(&fresh("swung"), swing(from.named("from"), to.named("to")));
-            solve(swung, one);
-            rest.set(product(transposed(swung), rest));
-            for between in (one + 1..last).filter_map(back) {
-                rest.set(product(between, rest));
-            }
+            solve_spherical_s(own, rotation, x, y, z, at.member::<Complex>(&half));
         }
-        solve(rest, last);
     }
 
     /// Whether legs are solved whole.
@@ -171,7 +181,7 @@ impl Writer<'_> {
 
     /// The function of the rates of a leg that is solved whole: linear equations in the rates, which make the platform's twist
     /// about its reference point.
-    pub fn whole_rates(&self, leg: usize, form: &WholeForm) {
+    pub fn whole_rates(&self, leg: usize, form: &WholeForm, first_lacking: usize) -> usize {
         let name = crate::names::comment(&self.manipulator.mechanism().legs[leg].name);
         let comment = format!(
             "Leg {}, {name}: the rates of its joints for motions of the platform, whose reference point is given. It returns 1 \
@@ -183,10 +193,38 @@ impl Writer<'_> {
             let motions = p.add::<In<[Motion]>>("motions");
             let point = p.add::<Vector>("point");
             let all = p.add::<Out<[Real]>>("all");
-            self.whole_rates_body(form, (at, motions, point, all));
+            let locked = p.add::<Out<[Real]>>("locked");
+            let mut body = statements(|| {
+                self.whole_rates_body(form, (at, motions, point, all));
+                if self.dependent() {
+                    self.locked_rows(form, first_lacking, locked);
+                }
+            });
+            visit::drop_unread(&mut body);
+            body.into_iter().for_each(emit);
             done()
         });
-        self.add(function.without_unused(&["at", "motions", "point", "all"]));
+        self.add(function.without_unused(&["at", "motions", "point", "all", "locked"]));
+        self.lacking_of(form)
+    }
+
+    /// How many freedoms a leg lacks.
+    pub fn lacking_of(&self, form: &WholeForm) -> usize {
+        if self.dependent() { 6_usize.saturating_sub(form.leg.freedoms()) } else { 0 }
+    }
+
+    /// Writes what elimination leaves of the equations of a leg that lacks freedoms: it is zero where the platform moves as the leg
+    /// lets it.
+    fn locked_rows(&self, form: &WholeForm, first: usize, locked: Array<Real>) {
+        let (unknowns, sides) = (form.leg.freedoms(), self.task.coordinates.len());
+        let kind = Type::Array(Box::new(Type::Real), 0);
+        let a = Any::from_expr(Expr::variable("a", kind)).array::<Real>();
+        for row in 0..self.lacking_of(form) {
+            count("i", 0, number(sides), |i| {
+                let left = a.at(number((unknowns + row) * (unknowns + sides) + unknowns) + i);
+                locked.at(number((first + row) * sides) + i).set(left);
+            });
+        }
     }
 
     fn whole_rates_body(
@@ -194,7 +232,7 @@ impl Writer<'_> {
         form: &WholeForm,
         (at, motions, point, all): (Any, Array<Motion>, Vector, Array<Real>),
     ) {
-        let (joints, size) = (numbered(form), form.leg.size());
+        let (joints, size) = (numbered(&form.leg), form.leg.size());
         let unknowns = form.leg.freedoms();
         let sides = self.task.coordinates.len();
         let idle = form.leg.idle();
@@ -220,27 +258,31 @@ impl Writer<'_> {
                 column(first, axis, share);
             });
         };
-        // A rotation about a point of the leg at home, behind what is known.
-        let follows = |rotation: Rotation, about: &Vector3<f64>, is_last: bool| {
-            if !is_last {
+        // A rotation about a point of the leg at home, behind what is known; where it matters for places, too.
+        let follows = |rotation: Rotation, about: &Vector3<f64>, places: bool| {
+            if places {
                 let about = constant(about);
                 moved.set(add(
                     moved,
                     1.0,
                     rotated(turned, add(about, -1.0, rotated(rotation, about))),
                 ));
-                turned.set(product(turned, rotation));
             }
+            turned.set(product(turned, rotation));
         };
         let field = |freedom: usize| &*self.fields[form.first + freedom];
         let mut ball_rows: Vec<(usize, Screws)> = Vec::new();
         for (place, (first, joint)) in joints.iter().enumerate() {
             let is_last = place + 1 == joints.len();
+            // Sliders have no place.
+            let places = joints[place + 1..]
+                .iter()
+                .any(|(_, joint)| !matches!(joint, LegJoint::Slide { .. }));
             match joint {
                 LegJoint::Slide { axis } => {
                     let slid = crate::trace::named(&fresh("slid"), rotated(turned, constant(axis)));
                     column(*first, zero().named("still"), slid);
-                    if !is_last {
+                    if places {
                         moved.set(add(moved, at.member::<Real>(field(*first)), slid));
                     }
                 }
@@ -253,11 +295,11 @@ impl Writer<'_> {
                     if !is_last {
                         let by =
                             crate::trace::named(&fresh("by"), rotation_about(constant(axis), turn));
-                        if *pitch != 0.0 {
+                        if *pitch != 0.0 && places {
                             let advance = at.member::<Real>(field(*first)) * *pitch;
                             moved.set(add(moved, advance, rotated(turned, constant(axis))));
                         }
-                        follows(by, &about.coords, false);
+                        follows(by, &about.coords, places);
                     }
                 }
                 LegJoint::Ball { point: centre } => {
@@ -274,7 +316,7 @@ impl Writer<'_> {
                     ball_rows.push((*first, screws));
                     if !is_last {
                         let by = crate::trace::named(&fresh("by"), rotation_by(vector));
-                        follows(by, &centre.coords, false);
+                        follows(by, &centre.coords, places);
                     }
                 }
             }

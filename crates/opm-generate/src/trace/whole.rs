@@ -11,6 +11,8 @@ use opm_core::numbers::{Plane, Real as _};
 pub struct RootsOfCode {
     /// Where that is written.
     pub missed: Real,
+    /// What is returned.
+    pub status: i32,
     /// A length of the leg, metres.
     pub size: f64,
 }
@@ -28,7 +30,7 @@ impl RootsOfCode {
     fn miss(&self, reached: Truth, deficit: impl FnOnce() -> Real) {
         when(!reached, || {
             self.missed.set(deficit());
-            give(1);
+            give(self.status);
         });
     }
 }

@@ -446,7 +446,9 @@ pub fn float_closes_every_leg(program: &impl Program, manipulators: &[Manipulato
             }
         }
         println!("{}: {compared} poses, open by {worst:e}", m.mechanism().name);
-        assert!(compared > 10 && worst < FLOAT, "{}: {worst:e}", m.mechanism().name);
+        // Where two branches of a coordinate that follows meet, rounding shows as its root.
+        let most = if m.dependent_coordinates().is_empty() { FLOAT } else { FLOAT.sqrt() / 3.0 };
+        assert!(compared > 10 && worst < most, "{}: {worst:e}", m.mechanism().name);
     }
 }
 

@@ -8,17 +8,35 @@ use opm_core::mechanism::joint::JointKind;
 use opm_core::{Manipulator, Quantity};
 use opm_tests::random::{self, Options};
 use std::collections::HashSet;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
-/// The shipped mechanisms whose legs are split, and some whose legs are solved whole: with universal joints, with spherical ones,
-/// and with a height.
+/// The shipped mechanisms whose legs are split, and some whose legs are solved whole: with universal joints, with spherical ones and
+/// cones, with a height; with a stem that determines positions, with one that turns; with constraints of several legs.
 pub fn shipped() -> Vec<Manipulator> {
     let split = SPLIT.iter().filter_map(|example| Manipulator::read(example.text).ok());
-    let whole = ["delta", "stewart", "quadrupteron"];
-    let whole = whole.map(|name| Manipulator::example(name).expect("it is shipped"));
-    split
-        .chain(whole.map(|m| if m.mechanism().name == "stewart" { with_cones(&m) } else { m }))
-        .collect()
+    let example = |name: &str| Manipulator::example(name).expect("it is shipped");
+    let whole = ["delta", "quadrupteron", "tricept", "ankle"].map(example);
+    split.chain(whole).chain([with_cones(&example("stewart")), three_rps()]).collect()
+}
+
+/// Three legs of a hinge, a motor that slides, and a ball: the platform turns as it tilts.
+fn three_rps() -> Manipulator {
+    let leg = |i: u32| {
+        let (sin, cos) = (0.3 + f64::from(i) * TAU / 3.0).sin_cos();
+        let foot = [0.2 * cos, 0.2 * sin, 0.0];
+        let tip = [0.12 * cos, 0.12 * sin, 0.3];
+        let along = [tip[0] - foot[0], tip[1] - foot[1], 0.3];
+        let tangent = [-sin, cos, 0.0];
+        format!(
+            "[[leg]]\njoints = [{{ name = \"r{i}\", type = \"revolute\", axis = {tangent:?}, point = {foot:?} }}, \
+             {{ name = \"p{i}\", type = \"prismatic\", axis = {along:?}, actuated = true, limits = [-0.1, 0.1] }}, \
+             {{ name = \"s{i}\", type = \"spherical\", point = {tip:?} }}]\n"
+        )
+    };
+    let legs: String = (0..3).map(leg).collect();
+    let head = "format = 1\nname = \"three-rps\"\nunits = { length = \"m\", angle = \"rad\" }\n";
+    let text = format!("{head}[platform]\npoint = [0.0, 0.0, 0.3]\n{legs}");
+    Manipulator::read(&text).expect("its legs constrain the platform together")
 }
 
 /// The same mechanism, whose universal and spherical joints have cones.

@@ -108,6 +108,11 @@ impl<const N: usize> Real for Affine<N> {
     fn exceeds(self, _: Tolerance) -> Unasked {
         Unasked
     }
+
+    #[inline(never)]
+    fn compute<R>(something: impl FnOnce() -> R) -> R {
+        something()
+    }
 }
 
 impl<const N: usize> Neg for Plane<N> {

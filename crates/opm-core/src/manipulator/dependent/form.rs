@@ -2,10 +2,12 @@
 
 use super::constraint::{Constraint, follows};
 use super::one_joint::SectionMotion;
-use super::{Closed, Dependent};
+use super::{Closed, Dependent, Whole};
 use crate::chain::condition::Condition;
+use crate::chain::whole::WholeLeg;
 use crate::manipulator::leg::{CompiledLeg, Section};
 use crate::task::Task;
+use nalgebra::{Matrix3, Vector3};
 
 /// How coordinates follow from the others, because a leg constrains them.
 #[derive(Clone, Debug)]
@@ -47,6 +49,83 @@ pub enum StepKind {
     },
 }
 
+/// How coordinates follow where legs that are solved whole constrain the platform.
+#[derive(Clone, Debug)]
+pub enum WholeStep {
+    /// From the one leg that the platform moves as.
+    Stem(StemForm),
+    /// From the constraints of several legs.
+    Rows(RowsForm),
+}
+
+/// The loop of a stem and of the coordinates: `E(q) = T(x y z) · R(angles)`.
+#[derive(Clone, Debug)]
+pub struct StemForm {
+    /// The number of the leg.
+    pub leg: usize,
+    /// The loop, with the known rotations as given joints. Its target is the displacement with dependent lengths at home; also
+    /// with all angles at home, unless these are `turned`.
+    pub closure: WholeLeg,
+    /// The bits of its choices in a mode.
+    pub bits: [Option<u32>; 4],
+    /// Whether all angles are known.
+    pub turned: bool,
+    /// The given rotations, by their numbers among the three factors of the orientation.
+    pub given: Vec<usize>,
+    /// What is found, with the first freedom of it in the loop.
+    pub found: Vec<(StemPart, usize)>,
+    /// The dependent coordinates.
+    pub coordinates: Vec<usize>,
+    /// The number of the first angle among the coordinates, and how many there are.
+    pub angles: [usize; 2],
+}
+
+/// A part of the displacement that follows from a stem.
+#[derive(Clone, Copy, Debug)]
+pub enum StemPart {
+    /// The length with this number among the coordinates, from home.
+    Length(usize),
+    /// The factor of the orientation, from home.
+    Factor(usize),
+    /// The whole orientation, as the rotation back to home.
+    Orientation,
+}
+
+/// Equations `c · P + ⟨r, R⟩ + c₀ = 0` between the position of the reference point from home, over the size, and the orientation.
+#[derive(Clone, Debug)]
+pub struct RowsForm {
+    /// The number of the first leg that constrains.
+    pub leg: usize,
+    /// The equations. Those that have no position come first.
+    pub rows: Vec<RowForm>,
+    /// How many these are.
+    pub couples: usize,
+    /// The bit of the choice in a mode.
+    pub bit: Option<u32>,
+    /// The dependent positions.
+    pub lengths: Vec<usize>,
+    /// The factor of the orientation that follows and the coordinate that has it, its value at home, and the unit of the
+    /// function whose zero it is.
+    pub turn: Option<(usize, usize, f64, f64)>,
+    /// The size of the mechanism, metres.
+    pub size: f64,
+    /// The number of the first angle among the coordinates.
+    pub first_angle: usize,
+}
+
+/// One of the equations.
+#[derive(Clone, Debug)]
+pub struct RowForm {
+    /// Whether the direction turns with the platform.
+    pub carried: bool,
+    /// The direction `c`.
+    pub direction: Vector3<f64>,
+    /// The factors `r` of the orientation in base directions, from home.
+    pub turn: Matrix3<f64>,
+    /// The constant.
+    pub constant: f64,
+}
+
 /// A constraint that is only checked.
 #[derive(Clone, Copy, Debug)]
 pub struct CheckForm {
@@ -61,6 +140,14 @@ pub struct CheckForm {
 }
 
 impl Dependent {
+    /// How coordinates follow where legs are solved whole.
+    pub(in crate::manipulator) fn whole_step(&self) -> Option<WholeStep> {
+        Some(match self.whole.as_ref()? {
+            Whole::Stem(stem) => WholeStep::Stem(stem.form()),
+            Whole::Rows(rows) => WholeStep::Rows(rows.form()),
+        })
+    }
+
     /// The steps.
     pub(in crate::manipulator) fn step_forms(&self) -> Vec<StepForm> {
         let form = |step: &super::Step| StepForm {

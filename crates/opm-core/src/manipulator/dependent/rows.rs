@@ -10,6 +10,7 @@
 //! `A cos ψ + B sin ψ + C` for the mechanisms that are covered, and its sign of slope names the branch. The positions are linear.
 
 use super::determining;
+use super::form::{RowForm, RowsForm};
 use super::stem::{Rotations, rates};
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
@@ -274,6 +275,28 @@ impl Rows {
             2 => matrix.fixed_view::<2, 2>(0, 0).determinant(),
             3 => matrix.fixed_view::<3, 3>(0, 0).determinant(),
             _ => matrix.fixed_view::<4, 4>(0, 0).determinant(),
+        }
+    }
+
+    /// They as plain data.
+    pub fn form(&self) -> RowsForm {
+        let row = |Row { carried, direction, turn, constant, .. }: &Row| RowForm {
+            carried: *carried,
+            direction: *direction,
+            turn: *turn,
+            constant: *constant,
+        };
+        RowsForm {
+            leg: self.leg(),
+            rows: self.rows.iter().map(row).collect(),
+            couples: self.angles,
+            bit: self.bit,
+            lengths: self.lengths.clone(),
+            turn: self
+                .turn
+                .map(|(factor, angle, function)| (factor, angle, function.home, function.unit)),
+            size: self.size,
+            first_angle: self.rotations.angles.first,
         }
     }
 

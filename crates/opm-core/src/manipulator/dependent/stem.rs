@@ -4,6 +4,7 @@
 //! moves in a plane that is `T(x y) · R(theta)`, and where it only rotates about a centre, `R(angles)`. The independent coordinates are known joints of that loop, the dependent
 //! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
 
+use super::form::{StemForm, StemPart};
 use super::{UNDETERMINED, determining};
 use crate::chain::whole::{LegJoint, MOST_FREEDOMS, NoOrder, WholeLeg};
 use crate::chain::{Branch, ReachDeficit};
@@ -218,6 +219,25 @@ impl Stem {
             angles: rotations.angles,
             centre: rotations.centre,
         })
+    }
+
+    /// It as plain data.
+    pub fn form(&self) -> StemForm {
+        let part = |part: Part| match part {
+            Part::Length(i) => StemPart::Length(i),
+            Part::Factor(factor) => StemPart::Factor(factor),
+            Part::Orientation => StemPart::Orientation,
+        };
+        StemForm {
+            leg: self.leg,
+            closure: self.closure.clone(),
+            bits: self.bits,
+            turned: self.turned,
+            given: self.given.clone(),
+            found: self.found.iter().map(|&(of, place)| (part(of), place)).collect(),
+            coordinates: self.coordinates.clone(),
+            angles: [self.angles.first, self.angles.count],
+        }
     }
 
     /// The number of its two-valued choices.

@@ -19,7 +19,8 @@ impl Writer<'_> {
 
     /// Whether forward kinematics take steps that are no changes of the coordinates.
     pub fn turns(&self) -> bool {
-        self.has_forward() && self.oriented().is_some()
+        let tied = self.is_whole() && self.dependent();
+        self.has_forward() && self.oriented().is_some() && !tied
     }
 
     /// The number of the first Euler angle among all coordinates.
@@ -85,7 +86,8 @@ impl Writer<'_> {
     /// How many rows there are of joints that legs lack.
     pub fn lacking(&self) -> usize {
         if self.is_whole() {
-            return 0;
+            let forms = self.forms.legs.iter().filter_map(|leg| leg.whole.as_ref());
+            return forms.map(|form| self.lacking_of(form)).sum();
         }
         let legs = 0..self.forms.legs.len();
         let rows = |leg| SECTIONS.map(|section| self.lacking_in(leg, section).len());

@@ -3,7 +3,6 @@
 use super::{LegJoint, MOST_FREEDOMS};
 use crate::chain::kernel::Axis;
 use crate::numbers::{Plane, Real, Space};
-use crate::numeric::angle::unit;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// What a joint does.
@@ -93,11 +92,11 @@ impl Element {
     }
 
     /// The displacement of a joint, which is no ball, by a value.
-    pub fn moved(&self, value: f64) -> Moved<f64> {
+    pub fn moved_by<T: Real>(&self, value: T) -> Moved<T> {
         match self.kind {
-            Kind::Turn => Moved { unit: unit(value), shift: 0.0 },
-            Kind::Helix(pitch) => Moved { unit: unit(value), shift: pitch * value },
-            Kind::Slide => Moved { unit: unit(0.0), shift: value },
+            Kind::Turn => Moved { unit: value.unit(), ..Moved::home() },
+            Kind::Helix(pitch) => Moved { unit: value.unit(), shift: value * pitch },
+            Kind::Slide => Moved { shift: value, ..Moved::home() },
             Kind::Ball => Moved::home(),
         }
     }
@@ -124,13 +123,13 @@ impl Element {
             let shift = if back { -by.shift } else { by.shift };
             v.plus(shift, constant::<T>(&self.direction))
         };
-        match (self.kind, of) {
+        T::compute(|| match (self.kind, of) {
             (Kind::Turn, Vector::Point) => self.axis::<T>().moved(v, unit),
             (Kind::Turn | Kind::Helix(_), Vector::Direction) => self.axis::<T>().turned(v, unit),
             (Kind::Helix(_), Vector::Point) => along(self.axis::<T>().moved(v, unit)),
             (Kind::Slide, Vector::Point) => along(v),
             (Kind::Slide, Vector::Direction) | (Kind::Ball, _) => v,
-        }
+        })
     }
 
     /// The displacement by the values of its freedoms.

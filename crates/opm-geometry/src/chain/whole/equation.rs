@@ -84,7 +84,7 @@ impl<P: Copy> Scalar<P> {
     #[inline(always)]
     pub fn of<T: Real>(&self, read: impl Fn(P) -> T::Space) -> T {
         let minus = T::constant(-1.0);
-        match *self {
+        T::compute(|| match *self {
             Self::Known(value) => T::constant(value),
             Self::Square([a, b]) => {
                 let across = read(a).plus(minus, read(b)).named("span");
@@ -94,7 +94,7 @@ impl<P: Copy> Scalar<P> {
                 read(point).plus(minus, read(base)).inner(read(normal))
             }
             Self::Cosine([a, b]) => read(a).inner(read(b)),
-        }
+        })
     }
 
     fn map<Q>(self, f: &mut impl FnMut(P) -> Q) -> Scalar<Q> {
@@ -146,7 +146,7 @@ impl<P: Copy> Equation<P> {
         read: impl Fn(P) -> T::Space + Copy,
     ) -> (Row<T>, Invariant<T>) {
         let axis = element.axis::<T>();
-        match *self {
+        T::compute(|| match *self {
             Self::Distance { moved, fixed, square } => {
                 let square = square.of::<T>(read);
                 (axis.distance(read(moved), read(fixed), square), Invariant::Distance(square))
@@ -162,7 +162,7 @@ impl<P: Copy> Equation<P> {
                 let cosine = cosine.of::<T>(read);
                 (axis.angle(read(moved), read(fixed), cosine), Invariant::Angle(cosine))
             }
-        }
+        })
     }
 
     /// The rate and the constant of a height in the advance along the direction.

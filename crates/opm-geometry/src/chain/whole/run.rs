@@ -28,6 +28,23 @@ impl WholeLeg {
         WholeRun { leg: self, run }
     }
 
+    /// The same for a leg of which joints are given, with their displacements in the order of the joints; with four signs.
+    pub fn run_given<T: Real>(
+        &self,
+        target: (T::Rotation, T::Space),
+        given: &[T],
+        signs: [T::Sign; 4],
+        roots: &mut impl Roots<T>,
+    ) -> WholeRun<'_, T> {
+        let mut run = Run::new();
+        let known = self.elements.iter().enumerate().filter(|(_, element)| element.is_given());
+        for ((joint, element), value) in known.zip(given) {
+            run.give(joint, element.moved_by(*value));
+        }
+        self.program.run::<T>((&self.elements, self.size), target, signs, roots, &mut run);
+        WholeRun { leg: self, run }
+    }
+
     /// A length of the leg with which others are compared, metres.
     pub fn size(&self) -> f64 {
         self.size

@@ -50,7 +50,7 @@ impl Solved<'_> {
     fn give(&self, run: &mut Run<f64>) {
         let given = self.elements.iter().enumerate().filter(|(_, element)| element.is_given());
         for ((joint, element), value) in given.zip(self.given) {
-            run.give(joint, element.moved(*value));
+            run.give(joint, element.moved_by(*value));
         }
     }
 
