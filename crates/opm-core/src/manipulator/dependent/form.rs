@@ -53,7 +53,7 @@ pub enum StepKind {
 #[derive(Clone, Debug)]
 pub enum WholeStep {
     /// From the one leg that the platform moves as.
-    Stem(StemForm),
+    Stem(Box<StemForm>),
     /// From the constraints of several legs.
     Rows(RowsForm),
 }
@@ -143,7 +143,7 @@ impl Dependent {
     /// How coordinates follow where legs are solved whole.
     pub(in crate::manipulator) fn whole_step(&self) -> Option<WholeStep> {
         Some(match self.whole.as_ref()? {
-            Whole::Stem(stem) => WholeStep::Stem(stem.form()),
+            Whole::Stem(stem) => WholeStep::Stem(Box::new(stem.form())),
             Whole::Rows(rows) => WholeStep::Rows(rows.form()),
         })
     }
