@@ -33,9 +33,7 @@ impl Report<'_> {
 
     /// The joint with a cone that has a first coordinate.
     fn cone(&self, first: usize) -> Option<(&Joint, Cone)> {
-        let name = &self.workspace.manipulator().coordinates()[first].name;
-        let mut joints = self.workspace.manipulator().mechanism().joints();
-        let joint = joints.find(|joint| joint.coordinates[0].name == *name)?;
+        let joint = self.workspace.manipulator().mechanism().joint_from(first)?;
         Some((joint, joint.cone?))
     }
 

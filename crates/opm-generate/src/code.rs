@@ -28,6 +28,7 @@ use opm_core::Manipulator;
 use opm_core::chain::Chain;
 use opm_core::manipulator::Section;
 use opm_core::manipulator::form::ClosedForms;
+use opm_core::nalgebra::Vector3;
 use opm_core::task::Task;
 use std::cell::RefCell;
 
@@ -148,7 +149,7 @@ impl<'a> Writer<'a> {
                 add(format!("tau_{}", number + 1), tau.of_type());
             }
             for section in [Section::Lower, Section::Upper] {
-                if leg::is_ball(&leg.section(section).chain) {
+                if leg.section(section).chain.is_ball() {
                     add(leg::ball(number, section), Given::Direction.of_type());
                 }
             }
@@ -167,7 +168,7 @@ impl<'a> Writer<'a> {
         let legs = self.forms.legs.iter().enumerate();
         let sections =
             legs.flat_map(|(leg, form)| [Section::Lower, Section::Upper].map(|of| (leg, of, form)));
-        let mut balls = sections.filter(|(_, of, form)| leg::is_ball(&form.section(*of).chain));
+        let mut balls = sections.filter(|(_, of, form)| form.section(*of).chain.is_ball());
         let found =
             balls.find(|(_, of, form)| form.section(*of).coordinates.contains(&Some(coordinate)));
         found.map(|(leg, of, _)| leg::ball(leg, of))
@@ -202,6 +203,11 @@ impl<'a> Writer<'a> {
     fn joint(&self, g: Any, coordinate: usize) -> library::Joint {
         g.list("joint", self.fields.len()).at(number(coordinate))
     }
+}
+
+/// A vector of the mechanism.
+fn constant(v: &Vector3<f64>) -> library::Vector {
+    library::vector_of(v.x, v.y, v.z)
 }
 
 /// A whole number of code.

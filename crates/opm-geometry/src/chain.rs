@@ -242,6 +242,20 @@ impl Chain {
         }
     }
 
+    /// Whether its joints are those of a spherical joint.
+    pub fn is_ball(&self) -> bool {
+        match self {
+            Self::Ball(_) => true,
+            Self::Part(part) => part.ball,
+            Self::Rigid
+            | Self::Planar(_)
+            | Self::Spherical(_)
+            | Self::Cylindrical(_)
+            | Self::Translational(_)
+            | Self::Spatial(_) => false,
+        }
+    }
+
     /// Whether a target has two solutions.
     pub fn has_choice(&self) -> bool {
         match self {

@@ -268,16 +268,6 @@ pub trait Rotation: Copy + Debug + PartialEq {
             Real::products([g, x], [h, y]) + i * z,
         )
     }
-    /// What is rotated to a vector.
-    #[inline(always)]
-    fn image_back(self, v: <Self::Real as Real>::Space) -> <Self::Real as Real>::Space {
-        let ([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]) = (self.rows(), v.parts());
-        Space::new(
-            Real::products([a, x], [d, y]) + g * z,
-            Real::products([b, x], [e, y]) + h * z,
-            Real::products([c, x], [f, y]) + i * z,
-        )
-    }
     /// The product of this one, on the left, and a rotation about the third direction: the first two columns rotate.
     #[must_use]
     #[inline(always)]

@@ -68,6 +68,16 @@ impl Mechanism {
         self.legs.iter().flat_map(|leg| &leg.joints)
     }
 
+    /// The joint whose first coordinate has this number among all joint coordinates.
+    pub fn joint_from(&self, coordinate: usize) -> Option<&Joint> {
+        let mut first = 0;
+        self.joints().find(|joint| {
+            let own = first;
+            first += joint.coordinates.len();
+            own == coordinate
+        })
+    }
+
     /// The names of all bodies that move: the joint that carries a link, for each link, and the platform.
     pub fn body_names(&self) -> impl Iterator<Item = &str> {
         let links =

@@ -127,10 +127,7 @@ impl Sweep {
         let manipulator = self.workspace.manipulator();
         let name = |joint: usize| Some(manipulator.coordinates()[joint].name.clone());
         let joint_of = |first: usize| {
-            let mut joints = manipulator.mechanism().joints();
-            let first = name(first);
-            let found = joints.find(|joint| Some(&joint.coordinates[0].name) == first.as_ref());
-            found.map(|joint| joint.name.clone())
+            manipulator.mechanism().joint_from(first).map(|joint| joint.name.clone())
         };
         let rejections = found.rejections.iter().map(|rejection| {
             let (section, joint, limit) = match rejection.cause {

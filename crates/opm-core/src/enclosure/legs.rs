@@ -12,7 +12,6 @@ use crate::boxes::{Enclosed, Target};
 use crate::chain::limits::Limits;
 use crate::chain::partial::PartialChain;
 use crate::chain::{Branch, Chain};
-use crate::group::Placed;
 use crate::manipulator::{Choices, CompiledLeg, CompiledSection, Manipulator, Mode};
 use crate::mechanism::leg::Section;
 use crate::task::Task;
@@ -204,19 +203,8 @@ impl<const N: usize> LegConditions<'_, N> {
         }
         let (manipulator, task) = (self.manipulator, self.manipulator.task());
         let (lower, upper) = coordinates.split_at(task.lower_count);
-        let v = task.lower.placed(&target::task::lower(task, lower));
-        let b = task.upper.placed(&target::task::upper(task, upper));
-        let g = match &task.height {
-            None => v.after(b),
-            Some(height) => {
-                let rise = Placed::slid(&height.up, self.rise);
-                match height.section {
-                    Section::Lower => rise.after(v.after(b)),
-                    Section::Upper => v.after(b).after(rise),
-                }
-            }
-        };
-        let target = g.parts();
+        let v = target::task::lower(task, lower);
+        let target = task.placed(&v, &target::task::upper(task, upper), self.rise).parts();
         all(0..manipulator.legs.len(), |number| {
             let whole = self.leg(number).whole.as_ref();
             let Some((whole, reach)) = whole.and_then(|whole| Some((whole, whole.reach.as_ref()?)))

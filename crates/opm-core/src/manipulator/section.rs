@@ -201,16 +201,7 @@ impl CompiledSection {
 
     /// Whether its joints are those of a spherical joint.
     pub fn is_ball(&self) -> bool {
-        match &self.chain {
-            Chain::Ball(_) => true,
-            Chain::Part(part) => part.ball,
-            Chain::Rigid
-            | Chain::Planar(_)
-            | Chain::Spherical(_)
-            | Chain::Cylindrical(_)
-            | Chain::Translational(_)
-            | Chain::Spatial(_) => false,
-        }
+        self.chain.is_ball()
     }
 
     /// Whether a target has two solutions.

@@ -10,7 +10,7 @@ impl Reach<'_> {
     /// Whether many poses are decided together, which is several times as fast: chains are the same at all poses. Where they
     /// are not, [`Reach::decide_many`] decides one pose after the other.
     pub fn decides_many(self) -> bool {
-        self.manipulator.reaches_many()
+        self.manipulator.decides_reach()
     }
 
     /// Finds which of some poses, row after row, are in reach within all limits, in one working mode or (`None`) in any:
@@ -30,7 +30,7 @@ impl Reach<'_> {
         let manipulator = self.manipulator;
         let (width, rows) = (manipulator.task_coordinates().len(), reached.len());
         let Batch { arch, block, solution, all, .. } = batch;
-        let together = manipulator.reaches_many();
+        let together = manipulator.decides_reach();
         let mut alone = Lanes::all(u64::from(!together));
         reached.fill(false);
         if together {

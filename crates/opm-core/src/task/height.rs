@@ -2,9 +2,10 @@
 
 use super::{IntersectionAxis, Task};
 use crate::decomposition::Decomposition;
-use crate::group::JointDisplacement;
 use crate::group::subspace::{SubspaceClass, TOLERANCE};
+use crate::group::{Displacement, JointDisplacement, Placed};
 use crate::mechanism::leg::Section;
+use crate::numbers::Real;
 use nalgebra::{Isometry3, Translation3, Vector3};
 use std::ops::Range;
 
@@ -112,6 +113,22 @@ impl Task {
             None => g,
             Some(Height { section: Section::Lower, up, .. }) => Translation3::from(up * rise) * g,
             Some(Height { section: Section::Upper, up, .. }) => g * Translation3::from(up * rise),
+        }
+    }
+
+    /// The same over any numbers, in base coordinates.
+    #[inline(always)]
+    pub(crate) fn placed<T: Real>(
+        &self,
+        v: &Displacement<T>,
+        b: &Displacement<T>,
+        rise: T,
+    ) -> Placed<T> {
+        let g = self.lower.placed(v).after(self.upper.placed(b));
+        match &self.height {
+            None => g,
+            Some(Height { section: Section::Lower, up, .. }) => Placed::slid(up, rise).after(g),
+            Some(Height { section: Section::Upper, up, .. }) => g.after(Placed::slid(up, rise)),
         }
     }
 

@@ -9,16 +9,11 @@ use crate::library::*;
 use crate::trace::closed_forms::Displaced;
 use crate::trace::whole::RootsOfCode;
 use crate::trace::*;
-use opm_core::group::SubspaceKind;
 use opm_core::manipulator::form::{RowForm, RowsForm, StemForm, StemPart};
 use opm_core::mechanism::OrientationCoordinates;
 use opm_core::nalgebra::Vector3;
 use opm_core::numbers::Plane as _;
 use std::f64::consts::FRAC_PI_2;
-
-fn constant(v: Vector3<f64>) -> Vector {
-    vector_of(v.x, v.y, v.z)
-}
 
 /// What is returned for a leg.
 fn status(leg: usize) -> i32 {
@@ -28,21 +23,14 @@ fn status(leg: usize) -> i32 {
 impl Writer<'_> {
     /// The displacement of the platform at coordinates, in base coordinates.
     fn body_at(&self, g: Any, q: Array<Real>) -> Body {
-        let mut all: Option<Body> = None;
-        for section in SECTIONS {
-            if self.kind(section) != SubspaceKind::Identity {
-                let moved = self.displaced(section, g, q);
-                let kind = super::displacement::displacement_type(self.kind(section));
-                let name = fresh(symbol(section));
-                let moved = Any::variable(&name, &kind.unwrap_or(Type::Int), Some(moved.expr()));
-                let own = self.body_of(section, g, moved);
-                all = Some(match all {
-                    None => crate::trace::named(&fresh("body"), own),
-                    Some(body) => crate::trace::named(&fresh("body"), body_product(body, own)),
-                });
-            }
-        }
-        all.unwrap_or_else(|| Body::empty("body"))
+        let body = Body::empty("body");
+        let moved = SECTIONS.map(|section| {
+            let kind = super::displacement::displacement_type(self.kind(section))?;
+            let moved = self.displaced(section, g, q).expr();
+            Some(Any::variable(symbol(section), &kind, Some(moved)))
+        });
+        self.give_product(g, moved, body);
+        body
     }
 
     /// The angles of the rotations of coordinates, of which so many are angles from the first one on.
@@ -133,7 +121,7 @@ impl Writer<'_> {
 
     /// The angles nearest to home of the orientation that a rotation, in base coordinates, leads back to home.
     fn angles_near_home(&self, back: Rotation, g: Any, first: usize) -> [Real; 3] {
-        let Some(section) = self.oriented_section() else { return [Real::from(0.0); 3] };
+        let Some(section) = self.oriented() else { return [Real::from(0.0); 3] };
         let frame = self.frame(section, g);
         let axes = frame.axes;
         name!(local = product(product(transposed(axes), transposed(back)), axes));
@@ -153,11 +141,6 @@ impl Writer<'_> {
         [angles.x, angles.y, angles.z]
     }
 
-    /// The section that has an orientation.
-    fn oriented_section(&self) -> Option<Section> {
-        SECTIONS.into_iter().find(|&section| self.kind(section) == SubspaceKind::Spherical)
-    }
-
     /// What a row is without the dependent positions, and its factors of these.
     fn row_parts(
         &self,
@@ -166,7 +149,7 @@ impl Writer<'_> {
         q: Array<Real>,
         g: Any,
     ) -> (Vec<Real>, Real) {
-        let column = |j: usize| constant(row.turn.column(j).into_owned());
+        let column = |j: usize| constant(&row.turn.column(j).into_owned());
         let mut rest = Real::from(row.constant);
         for (j, of) in [r.x, r.y, r.z].into_iter().enumerate() {
             if row.turn.column(j).iter().any(|part| *part != 0.0) {
@@ -177,12 +160,12 @@ impl Writer<'_> {
             return (vec![Real::from(0.0); form.lengths.len()], rest);
         }
         let c = match row.carried {
-            true => rotated(r, constant(row.direction)),
-            false => constant(row.direction),
+            true => rotated(r, constant(&row.direction)),
+            false => constant(&row.direction),
         };
         let c = crate::trace::named(&fresh("along"), c);
         let axes = self.task.lower.axes;
-        let along = |i: usize| dot(c, constant(axes.column(i).into_owned()));
+        let along = |i: usize| dot(c, constant(&axes.column(i).into_owned()));
         for i in (0..3).filter(|i| !form.lengths.contains(i)) {
             rest = rest + along(i) * (q.at(number(i)) - self.home(g, i)) * (1.0 / form.size);
         }
@@ -196,7 +179,7 @@ impl Writer<'_> {
             Some(_) => product(turned, g.member::<Rotation>("home_orientation_inverse")),
             None => turned,
         };
-        let section = self.oriented_section().unwrap_or(Section::Upper);
+        let section = self.oriented().unwrap_or(Section::Upper);
         let axes = self.frame(section, g).axes;
         crate::trace::named("r", product(product(axes, local), transposed(axes)))
     }

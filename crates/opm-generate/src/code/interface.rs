@@ -6,7 +6,6 @@ use super::*;
 use crate::library::*;
 use crate::trace::*;
 use opm_core::group::SubspaceKind;
-use opm_core::nalgebra;
 
 /// Both sections.
 pub const SECTIONS: [Section; 2] = [Section::Lower, Section::Upper];
@@ -392,12 +391,7 @@ impl Writer<'_> {
 
     /// Gives the displacement of the platform.
     fn give_body(&self, g: Any, start: &Start, body: Body) {
-        if let Some(v) = start.get("v") {
-            body.set(self.body_of(Section::Lower, g, v));
-        }
-        if let Some(b) = start.get("b") {
-            body.set(body_product(body, self.body_of(Section::Upper, g, b)));
-        }
+        self.give_product(g, [start.get("v"), start.get("b")], body);
         if let (Some(height), Some(rise)) = (self.forms.height, start.get("rise")) {
             let up = self.frame(height.section, g).axes.z;
             let up = match height.section {
@@ -405,6 +399,16 @@ impl Writer<'_> {
                 Section::Upper => rotated(body.rotation, up),
             };
             body.translation.set(add(body.translation, rise.is::<Real>(), up));
+        }
+    }
+
+    /// Gives the product of the displacements of the two sections, in base coordinates.
+    pub fn give_product(&self, g: Any, [v, b]: [Option<Any>; 2], body: Body) {
+        if let Some(v) = v {
+            body.set(self.body_of(Section::Lower, g, v));
+        }
+        if let Some(b) = b {
+            body.set(body_product(body, self.body_of(Section::Upper, g, b)));
         }
     }
 
@@ -471,21 +475,20 @@ impl Writer<'_> {
             for cone in leg.cones() {
                 let first = firsts[cone.joint];
                 let off = |i: usize| joints.at(number(first + i)) - self.joint(g, first + i).home;
-                let of = |v: nalgebra::Unit<nalgebra::Vector3<f64>>| vector_of(v.x, v.y, v.z);
                 block(|| {
-                    name!(rod = of(cone.behind()));
+                    name!(rod = constant(&cone.behind()));
                     match cone.axes() {
                         Some([one, two]) => {
-                            rod.set(rotated_about(of(two), unit(off(1)), rod));
-                            rod.set(rotated_about(of(one), unit(off(0)), rod));
+                            rod.set(rotated_about(constant(&two), unit(off(1)), rod));
+                            rod.set(rotated_about(constant(&one), unit(off(0)), rod));
                         }
                         None => {
                             name!(vector = vector_of(off(0), off(1), off(2)));
                             rod.set(rotated(rotation_by(vector), rod));
                         }
                     }
-                    name!(cosine = dot(of(cone.before()), rod));
-                    name!(aside = cross(of(cone.before()), rod));
+                    name!(cosine = dot(constant(&cone.before()), rod));
+                    name!(aside = cross(constant(&cone.before()), rod));
                     name!(tilt = atan2(sqrt(dot(aside, aside)), cosine));
                     when(!tilt.le(cone.half_angle + REACH), || give(number(first + 1)));
                 });

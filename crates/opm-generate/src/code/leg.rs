@@ -61,20 +61,6 @@ pub fn ball(leg: usize, section: Section) -> String {
     format!("half_{}_{}", leg + 1, word(section))
 }
 
-/// Whether a section's chain is a spherical joint.
-pub fn is_ball(chain: &Chain) -> bool {
-    match chain {
-        Chain::Ball(_) => true,
-        Chain::Part(part) => part.ball,
-        Chain::Rigid
-        | Chain::Planar(_)
-        | Chain::Spherical(_)
-        | Chain::Cylindrical(_)
-        | Chain::Translational(_)
-        | Chain::Spatial(_) => false,
-    }
-}
-
 /// Whether a section may be out of reach.
 fn may_miss(section: &SectionForm) -> bool {
     section.locked.is_none() && matches!(section.chain, Chain::Planar(_) | Chain::Spherical(_))

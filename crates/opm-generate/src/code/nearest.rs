@@ -1,7 +1,7 @@
 //! The function of the mode nearest to a previous solution.
 
 use super::displacement::displacement_type;
-use super::leg::{Given, is_ball, other};
+use super::leg::{Given, other};
 use super::*;
 use crate::library::*;
 use crate::trace::*;
@@ -227,7 +227,7 @@ impl Writer<'_> {
         for of in [Section::Lower, Section::Upper] {
             let section = self.forms.legs[leg].section(of);
             let (true, [Some(x), Some(y), Some(z)]) =
-                (is_ball(&section.chain), section.coordinates)
+                (section.chain.is_ball(), section.coordinates)
             else {
                 continue;
             };

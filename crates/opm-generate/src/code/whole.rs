@@ -13,10 +13,6 @@ use opm_core::manipulator::form::WholeForm;
 use opm_core::nalgebra::Vector3;
 use opm_core::numbers::{Plane as _, Real as _, Space as _};
 
-fn constant(v: &Vector3<f64>) -> Vector {
-    vector_of(v.x, v.y, v.z)
-}
-
 /// The unit direction of an axis.
 fn axis(place: usize) -> Vector {
     constant(&Vector3::ith(place, 1.0))
@@ -312,7 +308,8 @@ impl Writer<'_> {
                     let vector = rotation_vector(along, at.member::<Complex>(&half));
                     let vector = crate::trace::named(&fresh("vector"), vector);
                     let screws = Screws::empty(&fresh("ball"));
-                    rotation_vector_rates(identity_named(), vector, screws);
+                    let axes = crate::trace::named(&fresh("axes"), identity());
+                    rotation_vector_rates(axes, vector, screws);
                     ball_rows.push((*first, screws));
                     if !is_last {
                         let by = crate::trace::named(&fresh("by"), rotation_by(vector));
@@ -369,8 +366,4 @@ impl Writer<'_> {
             }
         });
     }
-}
-
-fn identity_named() -> Rotation {
-    crate::trace::named(&fresh("axes"), identity())
 }

@@ -229,10 +229,6 @@ impl numbers::Rotation for Rotation {
     fn image(self, v: Vector) -> Vector {
         rotated(self, v)
     }
-
-    fn image_back(self, v: Vector) -> Vector {
-        rotated(transposed(self), v)
-    }
 }
 
 impl numbers::Joint for Displaced {

@@ -36,13 +36,13 @@ pub(crate) use roots::{General, scale};
 pub use run::WholeRun;
 
 use super::{Branch, ReachDeficit};
-use crate::numbers::{JointDisplacement, Real};
+use crate::numbers::JointDisplacement;
 use element::{Element, Kind};
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use nodes::Nodes;
 use objects::Leg;
 use order::Search;
-use program::{JOINTS, Program, Run, SIGNS};
+use program::{JOINTS, Program, SIGNS};
 use samples::Sample;
 use solve::{MOST_GIVEN, Solved, VALUES};
 use step::Candidate;
@@ -193,17 +193,6 @@ pub struct WholeLeg {
     real_closes: bool,
 }
 
-/// The result of a closed form's general case.
-#[derive(Clone, Copy, Debug)]
-pub struct WholeAttempt<T: Real = f64> {
-    /// The displacement of each freedom, base first; zero for those of spherical joints, which are not found here, and for
-    /// those that the leg does not have. They are valid only where `holds` is true.
-    pub displacements: [T::Joint; MOST_FREEDOMS],
-    /// Whether the loop is closed. Where it is not, the target may still be in reach: poses on the rim and special ones are
-    /// solved otherwise ([`WholeLeg::solve`]).
-    pub holds: T::Truth,
-}
-
 impl WholeLeg {
     /// The closed form of a leg. `actuated` says which joints have motors: these are found first where that is possible.
     /// `motions` are displacements of the platform from home, at random, from the set that it moves in: the closed form is
@@ -336,7 +325,7 @@ impl WholeLeg {
             let given = self.elements.iter().filter(|element| element.is_given());
             let given: Vec<f64> = given.map(|element| sample.values[element.slot]).collect();
             self.branches().any(|branches| {
-                self.solve_once(&sample.target, &given, branches, &mut out).is_ok()
+                self.solve_given(&sample.target, &given, branches, &mut out).is_ok()
                     && self.elements.iter().filter(|element| !element.is_given()).all(|element| {
                         let (value, found) = (sample.values[element.slot], out[element.slot]);
                         match element.kind {
@@ -351,18 +340,6 @@ impl WholeLeg {
         };
         let lost = samples.iter().skip(1).filter(|sample| !found(sample)).count();
         samples.first().is_some_and(found) && lost as f64 <= MOST_LOST * (samples.len() - 1) as f64
-    }
-
-    /// The same as [`WholeLeg::solve_given`], where it takes no time: there is one copy of this code.
-    #[inline(never)]
-    fn solve_once(
-        &self,
-        target: &Isometry3<f64>,
-        given: &[f64],
-        branches: [Branch; 4],
-        out: &mut [JointDisplacement; MOST_FREEDOMS],
-    ) -> Result<(), ReachDeficit> {
-        self.solve_given(target, given, branches, out)
     }
 
     /// All branches: one for each combination of the signs of its choices.
@@ -402,26 +379,6 @@ impl WholeLeg {
     /// How the joints are found, in the order in which they are.
     pub fn steps(&self) -> impl Iterator<Item = StepName> {
         self.names.iter().copied()
-    }
-
-    /// The general case, over any numbers: it has no branch. `rotation` and `translation` are the target's, `signs` those of
-    /// the choices.
-    #[inline(always)]
-    pub fn attempt<T: Real>(
-        &self,
-        rotation: T::Rotation,
-        translation: T::Space,
-        [first, second]: [T::Sign; 2],
-    ) -> WholeAttempt<T> {
-        let signs = [first, second, first, second];
-        let (elements, size) = (&self.elements, self.size);
-        let mut roots = General::new(size);
-        let g = (rotation, translation);
-        let mut run = Run::new();
-        self.program.run::<T>((elements, size), g, signs, &mut roots, &mut run);
-        let open = roots.doubt() + self.program.open::<T>(&run, size);
-        let holds = T::constant(CLOSURE * CLOSURE).at_least(open);
-        WholeAttempt { displacements: run.joints, holds }
     }
 
     /// Writes the freedoms' displacements from base to platform that move the platform by `target`; nothing where it is out of

@@ -42,7 +42,7 @@ impl Manipulator {
 
     /// Whether many poses are decided together: also where legs are solved whole, and decide without joints that are not
     /// limited.
-    pub(crate) fn reaches_many(&self) -> bool {
+    pub(crate) fn decides_reach(&self) -> bool {
         self.decides_many() || self.reaches_whole()
     }
 

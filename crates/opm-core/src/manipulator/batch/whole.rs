@@ -9,7 +9,6 @@ use crate::group::{
 use crate::manipulator::Manipulator;
 use crate::manipulator::leg::LegBranches;
 use crate::manipulator::whole::Whole;
-use crate::mechanism::leg::Section;
 use crate::numbers::Real;
 use crate::numbers::pack::{Pack, PackJoint, PackPlane, PackRotation};
 use nalgebra::Complex;
@@ -51,15 +50,13 @@ impl Block {
     #[inline(always)]
     fn placed(&self, manipulator: &Manipulator, from: usize) -> Placed<Pack> {
         let task = &manipulator.task;
-        let v = task.lower.placed(&displacement(task.lower.kind, &self.v, from));
-        let b = task.upper.placed(&displacement(task.upper.kind, &self.b, from));
-        let Some(height) = &task.height else { return v.after(b) };
-        let home = task.coordinates[height.coordinate].home;
-        let rise = Placed::slid(&height.up, pack(&self.pose[height.coordinate], from) - home);
-        match height.section {
-            Section::Lower => rise.after(v.after(b)),
-            Section::Upper => v.after(b).after(rise),
-        }
+        let v = displacement(task.lower.kind, &self.v, from);
+        let b = displacement(task.upper.kind, &self.b, from);
+        let rise = task.height.as_ref().map(|height| {
+            let home = task.coordinates[height.coordinate].home;
+            pack(&self.pose[height.coordinate], from) - home
+        });
+        task.placed(&v, &b, rise.unwrap_or(Pack::constant(0.0)))
     }
 
     /// Computes where the platform is.

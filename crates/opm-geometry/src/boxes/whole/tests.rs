@@ -1,7 +1,8 @@
 //! The closed form of a whole leg over a box of poses.
 
 use crate::boxes::{Affine, Enclosed, Rotation};
-use crate::chain::whole::{LegJoint, WholeLeg};
+use crate::chain::Branch;
+use crate::chain::whole::{LegJoint, MOST_FREEDOMS, WholeLeg};
 use crate::numbers::JointDisplacement;
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 
@@ -46,6 +47,11 @@ fn bounds_over_a_box_hold_its_poses() {
     for joints in legs() {
         let motions: Vec<_> = (0..12).map(|_| target(&mut random, 0.6)).collect();
         let leg = WholeLeg::new(&joints, &[true, false, false, false], &motions, 0.5).unwrap();
+        // All freedoms but those of spherical joints.
+        let turns = joints.iter().flat_map(|joint| vec![joint.freedoms() == 1; joint.freedoms()]);
+        let turns: Vec<bool> = turns.collect();
+        let asked = |freedom: usize| turns.get(freedom) == Some(&true);
+        let reach = leg.reach(asked).unwrap();
         for g in &motions {
             let half = 1e-3;
             let rotation = g.rotation.to_rotation_matrix().into_inner();
@@ -53,17 +59,24 @@ fn bounds_over_a_box_hold_its_poses() {
             let number = |i| Affine::<3>::coordinate(g.translation.vector[i], half, i);
             let over = (Rotation([row(0), row(1), row(2)]), [number(0), number(1), number(2)]);
             for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
-                let bounds = leg.attempt::<Affine<3>>(over.0, over.1, signs).displacements;
+                let (share, bounds) = super::enclose(&reach, over, signs);
                 for _ in 0..5 {
                     let off = Vector3::from([(); 3].map(|()| half * (2.0 * random.f64() - 1.0)));
                     let at = g.translation.vector + off;
-                    let found = leg.attempt::<f64>(rotation, at, signs);
-                    if !found.holds {
+                    let target = Isometry3::from_parts(at.into(), g.rotation);
+                    let branches = signs.map(|sign| Branch::BOTH[usize::from(sign < 0.0)]);
+                    let mut found = [JointDisplacement::Value(0.0); MOST_FREEDOMS];
+                    let reached = leg.solve(&target, branches, &mut found).is_ok();
+                    assert!(
+                        if reached { share.upper > 0.0 } else { share.lower < 1.0 },
+                        "{share:?}"
+                    );
+                    if !reached {
                         continue;
                     }
                     held += 1;
-                    for (one, bound) in found.displacements.iter().zip(&bounds) {
-                        let pairs = match (*one, *bound) {
+                    for (freedom, bound) in bounds.iter().enumerate().filter(|(i, _)| asked(*i)) {
+                        let pairs = match (found[freedom], *bound) {
                             (JointDisplacement::Value(q), Enclosed::Value(over)) => {
                                 vec![(q, over)]
                             }

@@ -131,9 +131,9 @@ impl Program {
                         (false, Vector::Point) => {
                             rotation.image(v).plus(T::constant(1.0), translation)
                         }
-                        (true, Vector::Direction) => rotation.image_back(v),
+                        (true, Vector::Direction) => rotation.inverse().image(v),
                         (true, Vector::Point) => {
-                            rotation.image_back(v.plus(T::constant(-1.0), translation))
+                            rotation.inverse().image(v.plus(T::constant(-1.0), translation))
                         }
                     };
                     (made, to)

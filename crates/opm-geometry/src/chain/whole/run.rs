@@ -22,10 +22,7 @@ impl WholeLeg {
         [first, second]: [T::Sign; 2],
         roots: &mut impl Roots<T>,
     ) -> WholeRun<'_, T> {
-        let mut run = Run::new();
-        let signs = [first, second, first, second];
-        self.program.run::<T>((&self.elements, self.size), target, signs, roots, &mut run);
-        WholeRun { leg: self, run }
+        self.run_given(target, &[], [first, second, first, second], roots)
     }
 
     /// The same for a leg of which joints are given, with their displacements in the order of the joints; with four signs.
