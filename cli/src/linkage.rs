@@ -74,8 +74,10 @@ fn resolve<'a>(
     };
     let name = given.map_or_else(actuated, |input| &input.name);
     let input = linkage.input(name).ok_or_else(|| {
-        let names: Vec<_> = linkage.coordinates().iter().map(|c| &*c.name).collect();
-        let problem = format!("no joint {name:?}, expected one of {}", names.join(", "));
+        let known = linkage.coordinates().iter().any(|c| c.name == name);
+        let what = if known { "cannot move the linkage" } else { "is no joint" };
+        let names: Vec<_> = linkage.inputs().collect();
+        let problem = format!("{name:?} {what}, expected one of {}", names.join(", "));
         Failure::flag("--input", problem)
     })?;
     let value = given.and_then(|input| input.value);

@@ -7,7 +7,7 @@ use crate::rows::{Rows, Tables};
 use crate::snap;
 use crate::solutions::{Names, Solutions};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use opm_core::linkage::{self as core, Input, InputRange, LinkageBranch};
+use opm_core::linkage::{self as core, Input, InputRange};
 use opm_core::mechanism::Mechanism;
 use opm_export::{Keyframes, mjcf};
 use pyo3::prelude::*;
@@ -139,10 +139,10 @@ impl Linkage {
         self.inner.coordinates().iter().map(|c| c.name.clone()).collect()
     }
 
-    /// Name of the imaginary joint.
+    /// Name of the imaginary joint, which two sections share; None of a loop that is traced.
     #[getter]
-    fn imaginary_name(&self) -> &str {
-        &self.inner.imaginary().name
+    fn imaginary_name(&self) -> Option<&str> {
+        self.inner.imaginary().first().map(|joint| &*joint.name)
     }
 
     /// (k,): every joint at home, radians and metres.
@@ -239,11 +239,11 @@ impl Linkage {
             let value = values.values()[number];
             return Err(wrong(format!("value {number} is {value}, expected a finite number")));
         }
-        let branches = LinkageBranch::ALL;
+        let branches = input.branches();
         let tables = Tables::fill(
             py,
             values.count * branches.len(),
-            [self.inner.coordinates().len(), 1],
+            [self.inner.coordinates().len(), self.inner.imaginary().len()],
             threads,
             || input.home(),
             |position, row, [joints, imaginary]| {
@@ -253,11 +253,11 @@ impl Linkage {
                     return Ok([false; 2]);
                 }
                 joints.copy_from_slice(&position.joints);
-                imaginary[0] = position.imaginary;
+                imaginary.iter_mut().zip(position.imaginary).for_each(|(to, from)| *to = from);
                 Ok([true, position.within_limits])
             },
         )?;
-        Solutions::of_all_modes(Names::of_branches(&self.inner), &values, tables)
+        Solutions::of_all_modes(Names::of_branches(&self.inner, &branches), &values, tables)
     }
 
     /// The mechanism as a model of MuJoCo (MJCF), with its closed loops: the text of an XML file.

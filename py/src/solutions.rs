@@ -152,17 +152,20 @@ impl Names {
         }
     }
 
-    /// The names and units of a linkage's joints in all branches.
-    pub fn of_branches(linkage: &Linkage) -> Self {
+    /// The names and units of a linkage's joints in all branches of its input.
+    pub fn of_branches(linkage: &Linkage, branches: &[LinkageBranch]) -> Self {
         let joints: Vec<_> = linkage.coordinates().iter().map(|c| c.name.clone()).collect();
-        let imaginary = linkage.imaginary().name.clone();
-        let unit = |name: &String| (name.clone(), Quantity::Angle.unit().to_owned());
+        let imaginary: Vec<_> = linkage.imaginary().iter().map(|j| j.name.clone()).collect();
+        let quantities = linkage.coordinates().iter().map(|c| c.quantity);
+        let quantities = quantities.chain(linkage.imaginary().iter().map(|j| j.quantity));
+        let names = joints.iter().chain(&imaginary).cloned();
+        let unit = |(name, quantity): (String, Quantity)| (name, quantity.unit().to_owned());
         Self {
-            units: joints.iter().chain([&imaginary]).map(unit).collect(),
+            units: names.zip(quantities).map(unit).collect(),
             joints,
-            imaginary: vec![imaginary],
+            imaginary,
             mode: "all".to_owned(),
-            modes: LinkageBranch::ALL.map(|branch| branch.to_string()).into(),
+            modes: branches.iter().map(ToString::to_string).collect(),
         }
     }
 }

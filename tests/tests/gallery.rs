@@ -365,8 +365,10 @@ fn every_working_mode_closes_every_leg() {
         let (grid, _) = default_grid(&manipulator, Modes::Any, &Progress::default()).unwrap();
         let mut all = manipulator.all_modes();
         let mut solution = manipulator.solution();
+        // A hexapod has thousands of modes at each pose.
+        let wanted = if manipulator.modes().nth(300).is_some() { REACHED / 20 } else { REACHED };
         let (mut tried, mut reached, mut worst) = (0, 0, 0.0_f64);
-        while reached < REACHED {
+        while reached < wanted {
             tried += 1;
             assert!(tried < 1_000 * REACHED, "{name}: {reached} of {tried} poses in reach");
             let within = |axis: &Axis| axis.min + (axis.max - axis.min) * rng.f64();

@@ -22,13 +22,14 @@ pub struct Run<'a> {
 impl Run<'_> {
     pub fn json(&self, value: f64, positions: &[Position]) -> Value {
         let coordinates = self.linkage.coordinates();
+        let imaginary = self.linkage.imaginary().iter().map(|joint| &*joint.name);
         let solution = |position: &Position| {
             let joints = coordinates.iter().map(|c| &*c.name).zip(position.joints.iter().copied());
             json!({
                 "branch": position.branch.to_string(),
                 "within_limits": position.within_limits,
                 "joints": named(joints),
-                "imaginary": named([(&*self.linkage.imaginary().name, position.imaginary)]),
+                "imaginary": named(imaginary.clone().zip(position.imaginary)),
             })
         };
         json!({
@@ -77,15 +78,34 @@ impl Run<'_> {
             self.input.home_branch()
         );
         let _ = write!(text, "{}", self.table(positions));
-        if self.linkage.platform_is_imaginary() {
-            let name = &self.linkage.imaginary().name;
-            let common = describe(&self.linkage.decomposition().intersection, units);
+        if self.linkage.platform_is_imaginary()
+            && let (Some(decomposition), [joint]) =
+                (self.linkage.decomposition(), self.linkage.imaginary())
+        {
+            let (name, common) = (&joint.name, describe(&decomposition.intersection, units));
             let _ = write!(text, "\n{name} is the motion of the platform: {common}\n");
+        }
+        if self.linkage.is_traced() {
+            text.push_str(&self.completeness());
         }
         if positions.iter().any(|position| !position.within_limits) {
             text.push_str("\n* beyond its limits\n");
         }
         text
+    }
+
+    /// Of a loop that is traced, which of its assemblies are known.
+    fn completeness(&self) -> String {
+        match self.linkage.assemblies() {
+            Some(1) => "\n1 assembly for each value of a joint, complex ones included\n".to_owned(),
+            Some(count) => format!(
+                "\n{count} assemblies, complex ones included, where the first revolute joint is held; branches are numbered \
+                 along the motion from home\n"
+            ),
+            None => "\nonly the motion through home is known: other assemblies of a loop with helical joints, or of more than \
+                     seven freedoms, are not looked for\n"
+                .to_owned(),
+        }
     }
 
     /// A table with a row for each joint and a column for each branch.
@@ -118,12 +138,15 @@ impl Run<'_> {
                 }
             }
         }
-        let imaginary = self.linkage.imaginary();
-        let leg = &self.linkage.mechanism().legs[imaginary.leg].name;
-        let quantity = imaginary.quantity;
-        let value = |position: &Position| text::number(position.imaginary, quantity, units);
-        let values = positions.iter().map(value).collect();
-        row(leg, &imaginary.name, "imaginary", quantity, values);
+        for imaginary in self.linkage.imaginary() {
+            let leg = &self.linkage.mechanism().legs[imaginary.leg].name;
+            let quantity = imaginary.quantity;
+            let value = |position: &Position| {
+                text::number(position.imaginary.unwrap_or(f64::NAN), quantity, units)
+            };
+            let values = positions.iter().map(value).collect();
+            row(leg, &imaginary.name, "imaginary", quantity, values);
+        }
         table
     }
 }

@@ -101,11 +101,12 @@ impl Sweep<'_> {
         let linkage = self.round.linkage;
         let mut rows = Rows::new(output);
         let joints = linkage.coordinates().iter().map(|c| &*c.name);
-        rows.header(joints.chain([&*linkage.imaginary().name, "branch", "within_limits"]))?;
+        let imaginary = linkage.imaginary().iter().map(|joint| &*joint.name);
+        rows.header(joints.chain(imaginary).chain(["branch", "within_limits"]))?;
         let row = |_: u32, position: &Position| -> Result<(), SweepStop> {
             let Position { joints, imaginary, branch, within_limits } = position;
             rows.numbers(joints)?;
-            rows.number(*imaginary)?;
+            imaginary.iter().try_for_each(|value| rows.number(*value))?;
             rows.text(&branch.to_string())?;
             rows.answer(*within_limits)?;
             Ok(rows.end()?)

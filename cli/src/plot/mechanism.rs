@@ -102,12 +102,14 @@ pub fn figure(loaded: &Loaded, at: &At<'_>, output: &Output) -> Result<ViewFigur
             };
             match Linkage::new(mechanism) {
                 Ok(linkage) => {
-                    let (decomposition, imaginary) =
-                        (linkage.decomposition(), std::slice::from_ref(linkage.imaginary()));
+                    let imaginary = linkage.imaginary();
                     let homes: Vec<f64> = imaginary.iter().map(|joint| joint.home).collect();
-                    let cuts = ImaginaryJoints { decomposition, imaginary };
-                    let lines = vec!["at home".to_owned(), split_line(decomposition)];
-                    assemble(loaded, Some(cuts), &home(&homes), lines, &BTreeSet::new())
+                    let decomposition = linkage.decomposition();
+                    let cuts = decomposition
+                        .map(|decomposition| ImaginaryJoints { decomposition, imaginary });
+                    let mut lines = vec!["at home".to_owned()];
+                    lines.extend(decomposition.map(split_line));
+                    assemble(loaded, cuts, &home(&homes), lines, &BTreeSet::new())
                 }
                 Err(_) => {
                     let why = "it does not decompose: `opm decompose` says why";

@@ -143,7 +143,9 @@ fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
         SourceSolver::Manipulator(m) => {
             m.imaginary().iter().find(|j| j.name == name).map(|j| j.quantity)
         }
-        SourceSolver::Linkage(l) => (l.imaginary().name == name).then(|| l.imaginary().quantity),
+        SourceSolver::Linkage(l) => {
+            l.imaginary().iter().find(|j| j.name == name).map(|j| j.quantity)
+        }
         SourceSolver::Other => None,
     }
 }

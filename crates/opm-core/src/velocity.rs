@@ -56,7 +56,7 @@ mod dependent;
 mod jacobian;
 mod many;
 mod pose;
-mod rotation_vector;
+pub(crate) mod rotation_vector;
 mod screws;
 mod section;
 mod serial;

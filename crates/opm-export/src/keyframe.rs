@@ -1,6 +1,6 @@
 //! Postures at the home pose, one for each working mode.
 
-use opm_core::linkage::Linkage;
+use opm_core::linkage::{Linkage, LinkageBranch};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::Mechanism;
 
@@ -131,12 +131,12 @@ impl<'a> Keyframes<'a> {
         let input = linkage.input(&first.coordinates[0].name)?;
         let positions = input.solve(input.coordinate().home);
         let reached = positions.into_iter().map(|position| Keyframe {
-            name: name(&position.branch.to_string()),
+            name: branch_name(position.branch),
             joints: position.joints,
             within_limits: position.within_limits,
             loose: false,
         });
-        let (reached, home) = (reached.collect(), name(&input.home_branch().to_string()));
+        let (reached, home) = (reached.collect(), branch_name(input.home_branch()));
         Some(Self { mechanism, reached, missed: Vec::new(), home, source: Source::Branches })
     }
 
@@ -146,6 +146,14 @@ impl<'a> Keyframes<'a> {
         let reached =
             vec![Keyframe { name: home.clone(), joints, within_limits: true, loose: false }];
         Self { mechanism, reached, missed: Vec::new(), home, source: Source::Home }
+    }
+}
+
+/// The name of a branch: its signs as letters, or `branch` and its number.
+fn branch_name(branch: LinkageBranch) -> String {
+    match branch {
+        LinkageBranch::Signs(signs) => name(&signs.to_string()),
+        LinkageBranch::Arc(number) => format!("branch{number}"),
     }
 }
 

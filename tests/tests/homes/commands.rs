@@ -27,7 +27,7 @@ fn ends(message: &str, of: &str) {
 }
 
 /// Of the commands that take longer, so many are run for each mechanism, in turn.
-const IN_TURN: usize = 3;
+const IN_TURN: usize = 2;
 
 /// What command lines are made of: two poses, a grid around the first one, and the actuated joints at home.
 struct Values {

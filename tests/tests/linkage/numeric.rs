@@ -53,16 +53,16 @@ impl<'a> Closure<'a> {
             if residual.norm() < SOLVED {
                 return Some(joints);
             }
-            // A column of zeros stays for each joint that is missing from five.
-            let mut jacobian = SMatrix::<f64, 6, 5>::zeros();
+            // A column of zeros stays for each joint that is missing from six.
+            let mut jacobian = SMatrix::<f64, 6, 6>::zeros();
             for (column, &joint) in passive.iter().enumerate() {
                 let before = joints[joint];
                 joints[joint] += STEP;
                 jacobian.set_column(column, &((self.residual(&joints) - residual) / STEP));
                 joints[joint] = before;
             }
-            let normal = jacobian.tr_mul(&jacobian) + SMatrix::<f64, 5, 5>::identity() * damping;
-            let step: SVector<f64, 5> = normal.lu().solve(&jacobian.tr_mul(&residual))?;
+            let normal = jacobian.tr_mul(&jacobian) + SMatrix::<f64, 6, 6>::identity() * damping;
+            let step: SVector<f64, 6> = normal.lu().solve(&jacobian.tr_mul(&residual))?;
             let mut tried = joints.clone();
             passive.iter().zip(step.iter()).for_each(|(&joint, step)| tried[joint] -= step);
             let after = self.residual(&tried);

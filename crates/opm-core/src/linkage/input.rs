@@ -1,39 +1,27 @@
 //! A linkage driven by one of its joints, and the resulting positions of the others.
 
-use super::{DrivenLoop, Linkage, LinkageSection};
-use crate::chain::Branch;
-use crate::group::JointDisplacement;
-use crate::mechanism::joint::{JointCoordinate, Quantity};
-use crate::numeric::angle::unit;
+use super::sections::{SectionInput, SectionSigns};
+use super::traced::TracedInput;
+use super::{Cycle, InputRange, Linkage, NoCycle, Solver};
+use crate::mechanism::joint::JointCoordinate;
 use std::fmt;
 
-/// The signs of a position's two choices, in the order of solution: first for the loop with the input
-/// joint, then for the other one. A sign is that of the chain of joints that follow the input (or the
-/// imaginary joint) in its loop: in a spherical loop it is `+` if the triple product of their three
-/// axes, in their directions at that position, is positive; for planar chains see
-/// [`PlanarChain`](crate::chain::planar::PlanarChain). A loop without a choice has `+`.
+/// Which of a linkage's positions it is, for a value of its input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct LinkageBranch {
-    /// The sign for the loop with the input.
-    pub first: Branch,
-    /// The sign for the other loop.
-    pub second: Branch,
-}
-
-impl LinkageBranch {
-    /// All four branches, in the order `+ +`, `+ -`, `- +`, `- -`.
-    pub const ALL: [Self; 4] = [
-        Self { first: Branch::Plus, second: Branch::Plus },
-        Self { first: Branch::Plus, second: Branch::Minus },
-        Self { first: Branch::Minus, second: Branch::Plus },
-        Self { first: Branch::Minus, second: Branch::Minus },
-    ];
+pub enum LinkageBranch {
+    /// The two choices of the loops of two sections.
+    Signs(SectionSigns),
+    /// The number of an arc of a traced loop, from 1: along an arc the input moves one way. Those of home's curve come first, in
+    /// the order of its motion from home with the input growing.
+    Arc(usize),
 }
 
 impl fmt::Display for LinkageBranch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sign = |branch| if branch == Branch::Plus { '+' } else { '-' };
-        write!(f, "{} {}", sign(self.first), sign(self.second))
+        match self {
+            Self::Signs(signs) => signs.fmt(f),
+            Self::Arc(number) => number.fmt(f),
+        }
     }
 }
 
@@ -45,8 +33,8 @@ pub struct Position {
     /// Every joint coordinate in radians or metres, in the order of [`Linkage::coordinates`]: the home
     /// value plus the displacement.
     pub joints: Vec<f64>,
-    /// The value of the imaginary joint, radians or metres.
-    pub imaginary: f64,
+    /// The value of the imaginary joint, radians or metres; of a loop that is traced there is none.
+    pub imaginary: Option<f64>,
     /// Whether every joint is within its limits.
     pub within_limits: bool,
 }
@@ -56,45 +44,72 @@ pub struct Position {
 pub struct Rates {
     /// The derivative of every joint coordinate by the input, in the order of [`Linkage::coordinates`].
     pub joints: Vec<f64>,
-    /// The derivative of the imaginary joint by the input.
-    pub imaginary: f64,
+    /// The derivative of the imaginary joint by the input, if there is one.
+    pub imaginary: Option<f64>,
 }
 
 /// A linkage driven by one of its joints.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
-    pub(super) linkage: &'a Linkage,
-    /// Index of the input's coordinate.
-    pub(super) coordinate: usize,
-    /// Index of the section with the input: 0 for the lower one, 1 for the upper one.
-    pub(super) section: usize,
-    /// Index of the input in that section's loop; the imaginary joint has the index 0.
-    pub(super) loop_index: usize,
+    linkage: &'a Linkage,
+    coordinate: usize,
+    solver: InputSolver<'a>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum InputSolver<'a> {
+    Sections(SectionInput<'a>),
+    Traced(TracedInput<'a>),
 }
 
 impl<'a> Input<'a> {
+    pub(super) fn new(linkage: &'a Linkage, coordinate: usize) -> Option<Self> {
+        let solver = match &linkage.solver {
+            Solver::Sections(sections) => InputSolver::Sections(sections.input(coordinate)?),
+            Solver::Traced(traced) => {
+                let joints = (&*linkage.coordinates, &*linkage.limits);
+                InputSolver::Traced(TracedInput::new(traced, joints, coordinate)?)
+            }
+        };
+        Some(Self { linkage, coordinate, solver })
+    }
+
     /// The input's joint coordinate.
     pub fn coordinate(&self) -> &'a JointCoordinate {
         &self.linkage.coordinates[self.coordinate]
     }
 
+    /// Every branch that there is for some value of the input.
+    pub fn branches(&self) -> Vec<LinkageBranch> {
+        match &self.solver {
+            InputSolver::Sections(_) => SectionSigns::ALL.map(LinkageBranch::Signs).to_vec(),
+            InputSolver::Traced(input) => (1..=input.count()).map(LinkageBranch::Arc).collect(),
+        }
+    }
+
     /// The branch in which the linkage is assembled.
     pub fn home_branch(&self) -> LinkageBranch {
-        LinkageBranch { first: self.first_loop().home(), second: self.second_loop().home() }
+        match &self.solver {
+            InputSolver::Sections(input) => LinkageBranch::Signs(input.home_branch()),
+            InputSolver::Traced(_) => LinkageBranch::Arc(1),
+        }
     }
 
     /// The home position, which [`Input::position`] can overwrite.
     pub fn home(&self) -> Position {
-        Position {
-            branch: self.home_branch(),
-            joints: self.linkage.coordinates.iter().map(|c| c.home).collect(),
-            imaginary: self.linkage.imaginary.home,
-            within_limits: true,
+        match &self.solver {
+            InputSolver::Sections(input) => input.home(),
+            InputSolver::Traced(_) => Position {
+                branch: self.home_branch(),
+                joints: self.linkage.coordinates.iter().map(|c| c.home).collect(),
+                imaginary: None,
+                within_limits: true,
+            },
         }
     }
 
-    /// Every position with the input at `value`, radians or metres, with the home value included: at
-    /// most four, and none if the loop does not close. Angles are within π of home, unless limits
+    /// Every position with the input at `value`, radians or metres, with the home value included: none
+    /// if the loop does not close. Angles are within π of home, unless limits
     /// require another revolution. Where links are folded, branches that meet are all listed.
     ///
     /// Coaxial joints count revolutions. With other numbers of revolutions, a linkage with screws has
@@ -105,14 +120,22 @@ impl<'a> Input<'a> {
             let mut position = self.home();
             self.position(value, branch, &mut position).then_some(position)
         };
-        LinkageBranch::ALL.into_iter().filter_map(solved).collect()
+        self.branches().into_iter().filter_map(solved).collect()
     }
 
-    /// Computes the position in one branch, without allocation. Returns `false`, and leaves
-    /// `position` unchanged, if the loop does not close.
+    /// Computes the position in one branch. Returns `false`, and leaves `position` unchanged, if the loop does not close.
+    /// Positions of two sections are computed without allocation.
     #[inline]
     pub fn position(&self, value: f64, branch: LinkageBranch, position: &mut Position) -> bool {
-        self.solve_at(value, branch, position, (|_, _| None, self.linkage.imaginary.home))
+        match (&self.solver, branch) {
+            (InputSolver::Sections(input), LinkageBranch::Signs(signs)) => {
+                input.position(value, signs, position)
+            }
+            (InputSolver::Traced(input), LinkageBranch::Arc(number)) => {
+                input.position(value, number, position, false)
+            }
+            _ => false,
+        }
     }
 
     /// As [`Input::position`], but every angle is the one nearest to its value in `position`,
@@ -124,144 +147,56 @@ impl<'a> Input<'a> {
         branch: LinkageBranch,
         position: &mut Position,
     ) -> bool {
-        let imaginary = position.imaginary;
-        let held = |coordinate: usize, position: &Position| Some(position.joints[coordinate]);
-        self.solve_at(value, branch, position, (held, imaginary))
-    }
-
-    fn solve_at(
-        &self,
-        value: f64,
-        branch: LinkageBranch,
-        position: &mut Position,
-        (held, imaginary): (impl Fn(usize, &Position) -> Option<f64>, f64),
-    ) -> bool {
-        let linkage = self.linkage;
-        let displacement = value - self.coordinate().home;
-        let near = linkage.imaginary.displacement(imaginary);
-        let near = if linkage.reversed { -near } else { near };
-        let Some([own, other]) = self.displacements(displacement, branch, near) else {
-            return false;
-        };
-        position.branch = branch;
-        position.within_limits =
-            linkage.limits[self.coordinate].admits(JointDisplacement::Value(displacement));
-        position.joints[self.coordinate] = value;
-        let mut put = |coordinate: usize, displacement: JointDisplacement| {
-            let home = linkage.coordinates[coordinate].home;
-            let held = held(coordinate, position).map(|held| held - home);
-            let (value, within) = linkage.limits[coordinate].place(displacement, held);
-            position.joints[coordinate] = home + value;
-            position.within_limits &= within;
-        };
-        let joints = self.own().closed.joints();
-        for (i, &displacement) in own.iter().enumerate().take(joints - 1) {
-            let index = (self.loop_index + 1 + i) % joints;
-            if index > 0 {
-                put(self.own().coordinates[index - 1], displacement);
+        match (&self.solver, branch) {
+            (InputSolver::Sections(input), LinkageBranch::Signs(signs)) => {
+                input.position_near(value, signs, position)
             }
+            (InputSolver::Traced(input), LinkageBranch::Arc(number)) => {
+                input.position(value, number, position, true)
+            }
+            _ => false,
         }
-        let others = self.other().closed.joints() - 1;
-        for (&coordinate, displacement) in self.other().coordinates[..others].iter().zip(other) {
-            put(coordinate, displacement);
-        }
-        let tau = own[self.imaginary_index()];
-        let tau = if linkage.reversed { tau.inverse() } else { tau };
-        position.imaginary = linkage.imaginary.value(tau, imaginary);
-        true
     }
 
-    /// The rates of all joints at a position, for a unit rate of the input. `None` at a dead point of
-    /// either loop, where they are infinite or free.
+    /// The rates of all joints at a position, for a unit rate of the input. `None` at a dead point, where they are infinite or
+    /// free.
     pub fn rates(&self, position: &Position) -> Option<Rates> {
-        let displacement = position.joints[self.coordinate] - self.coordinate().home;
-        let near = self.linkage.imaginary.displacement(position.imaginary);
-        let near = if self.linkage.reversed { -near } else { near };
-        let [own, other] = self.displacements(displacement, position.branch, near)?;
-        let own_rates = self.first_loop().rates(&own)?;
-        let tau = own_rates[self.imaginary_index()];
-        let mut joints = vec![0.0; position.joints.len()];
-        joints[self.coordinate] = 1.0;
-        let count = self.own().closed.joints();
-        for (i, rate) in own_rates.into_iter().enumerate().take(count - 1) {
-            let index = (self.loop_index + 1 + i) % count;
-            if index > 0 {
-                joints[self.own().coordinates[index - 1]] = rate;
-            }
+        match &self.solver {
+            InputSolver::Sections(input) => input.rates(position),
+            InputSolver::Traced(input) => input.rates(position),
         }
-        let others = self.other().closed.joints() - 1;
-        let other_rates = self.second_loop().rates(&other)?;
-        for (&coordinate, rate) in self.other().coordinates[..others].iter().zip(other_rates) {
-            joints[coordinate] = tau * rate;
+    }
+
+    /// The values of the input at which the loop closes in any branch.
+    pub fn range(&self) -> InputRange {
+        match &self.solver {
+            InputSolver::Sections(input) => input.range(),
+            InputSolver::Traced(input) => input.range(1..=input.count()),
         }
-        let sign = self.linkage.imaginary.sign * if self.linkage.reversed { -1.0 } else { 1.0 };
-        Some(Rates { joints, imaginary: sign * tau })
     }
 
-    /// The displacements of the joints after the input in its loop, and of those after the imaginary
-    /// joint in the other loop. Where revolutions of the imaginary joint count, it is the one nearest
-    /// to `near`.
-    #[inline]
-    fn displacements(
-        &self,
-        displacement: f64,
-        branch: LinkageBranch,
-        near: f64,
-    ) -> Option<[[JointDisplacement; 3]; 2]> {
-        let (first, second) = (self.first_loop(), self.second_loop());
-        let absent = |driven: &DrivenLoop, branch| branch == Branch::Minus && !driven.has_choice();
-        if absent(first, branch.first) || absent(second, branch.second) {
-            return None;
+    /// The values of the input at which the loop closes in a branch. Of two sections it is the first sign that counts: the two
+    /// branches of the second choice end where they meet.
+    pub fn branch_range(&self, branch: LinkageBranch) -> InputRange {
+        match (&self.solver, branch) {
+            (InputSolver::Sections(input), LinkageBranch::Signs(signs)) => {
+                input.branch_range(signs.first)
+            }
+            (InputSolver::Traced(input), LinkageBranch::Arc(number)) => {
+                input.range(number..=number)
+            }
+            _ => InputRange::Intervals { intervals: Vec::new(), period: None },
         }
-        let own = first.solve(self.driving(displacement)?, branch.first).ok()?;
-        let tau = own[self.imaginary_index()];
-        let tau = match tau {
-            JointDisplacement::Direction(_) if second.counts_revolutions() => {
-                JointDisplacement::Value(tau.nearest(near))
-            }
-            JointDisplacement::Direction(_) => JointDisplacement::Direction(tau.unit_direction()),
-            JointDisplacement::Value(_) => tau,
-        };
-        let other = second.solve(tau, branch.second).ok()?;
-        Some([own, other])
     }
 
-    /// The input's displacement as its loop takes it; `None` where it is not finite.
-    #[inline]
-    pub(super) fn driving(&self, displacement: f64) -> Option<JointDisplacement> {
-        let angle = self.coordinate().quantity == Quantity::Angle;
-        let direction = angle && !self.first_loop().counts_revolutions();
-        displacement.is_finite().then(|| {
-            if direction {
-                JointDisplacement::Direction(unit(displacement))
-            } else {
-                JointDisplacement::Value(displacement)
-            }
-        })
-    }
-
-    /// The index of the imaginary joint among the joints after the input.
-    pub(super) fn imaginary_index(&self) -> usize {
-        self.own().closed.joints() - 1 - self.loop_index
-    }
-
-    /// The section with the input.
-    pub(super) fn own(&self) -> &'a LinkageSection {
-        &self.linkage.sections[self.section]
-    }
-
-    /// The section driven by the imaginary joint.
-    pub(super) fn other(&self) -> &'a LinkageSection {
-        &self.linkage.sections[1 - self.section]
-    }
-
-    /// The loop of the section with the input, driven by the input.
-    pub(super) fn first_loop(&self) -> &'a DrivenLoop {
-        self.own().closed.driven_by(self.loop_index)
-    }
-
-    /// The loop of the other section, driven by the imaginary joint.
-    pub(super) fn second_loop(&self) -> &'a DrivenLoop {
-        self.other().closed.driven_by(0)
+    /// The motion that starts at home with the input increasing, until the linkage is home again.
+    ///
+    /// # Errors
+    /// The linkage goes to infinity instead.
+    pub fn cycle(&self) -> Result<Cycle, NoCycle> {
+        match &self.solver {
+            InputSolver::Sections(input) => input.cycle(),
+            InputSolver::Traced(input) => input.cycle(),
+        }
     }
 }

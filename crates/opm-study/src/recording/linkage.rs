@@ -27,16 +27,15 @@ pub fn record_linkage(
     let failed = |error: RecordError| StudyError::record(path.display(), error);
     let steps = u64::from(count - 1);
     let mechanism = linkage.mechanism();
-    let cuts = ImaginaryJoints {
-        decomposition: linkage.decomposition(),
-        imaginary: std::slice::from_ref(linkage.imaginary()),
-    };
+    let cuts = linkage
+        .decomposition()
+        .map(|decomposition| ImaginaryJoints { decomposition, imaginary: linkage.imaginary() });
     let mut scene = Scene::new(mechanism, cuts);
     let trajectory = Trajectory {
         pose: Vec::new(),
         dependent: Vec::new(),
         joints: joint_coordinates(mechanism),
-        imaginary: imaginary_coordinates(cuts.imaginary),
+        imaginary: imaginary_coordinates(linkage.imaginary()),
         rates: false,
         measures: Vec::new(),
         indices: Vec::new(),
@@ -55,7 +54,7 @@ pub fn record_linkage(
     let mut recorder = TrajectoryRecorder::create(path, &trajectory).map_err(failed)?;
     let summary = round.each(|number: u32, position: &Position| -> Result<(), StudyError> {
         let time = u64::from(number) * ROUND / steps;
-        let (joints, imaginary) = (&position.joints, &[position.imaginary]);
+        let (joints, imaginary) = (&position.joints, position.imaginary.as_slice());
         let frames = if recorder.shows(time) {
             let leg = &mechanism.legs[0];
             let own = &joints[..leg.coordinates().count()];

@@ -19,8 +19,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub fn new(mechanism: &Mechanism, cuts: ImaginaryJoints<'_>) -> Self {
-        let skeleton = Skeleton::new(mechanism, Some(cuts));
+    pub fn new(mechanism: &Mechanism, cuts: Option<ImaginaryJoints<'_>>) -> Self {
+        let skeleton = Skeleton::new(mechanism, cuts);
         let size = skeleton.size();
         let obstacles = mechanism.shapes.obstacles.iter().map(|obstacle| {
             let solids = Solid::of_obstacle(&obstacle.shape, size, &mechanism.platform);
@@ -38,7 +38,7 @@ impl Scene {
 
     pub fn of(manipulator: &Manipulator) -> Self {
         let (decomposition, imaginary) = (manipulator.decomposition(), manipulator.imaginary());
-        Self::new(manipulator.mechanism(), ImaginaryJoints { decomposition, imaginary })
+        Self::new(manipulator.mechanism(), Some(ImaginaryJoints { decomposition, imaginary }))
     }
 
     /// The shapes and colours of the bodies, and then of the obstacles.
