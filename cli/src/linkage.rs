@@ -21,7 +21,8 @@ pub fn run(args: &LinkageArgs, output: &Output) -> Result<(), Failure> {
     let linkage =
         Linkage::new(&loaded.file.mechanism).map_err(|error| Failure::at(&loaded.label, error))?;
     let (input, value) = resolve(args.input.as_ref(), &linkage)?;
-    let run = Run { loaded: &loaded, linkage: &linkage, input };
+    let coupler = args.coupler.map(|point| point.0);
+    let run = Run { loaded: &loaded, linkage: &linkage, input, coupler };
     match value {
         Some(_) if args.sweep => {
             let problem = "a sweep starts at home; give the name of the joint alone";

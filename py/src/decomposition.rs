@@ -29,7 +29,7 @@ pub struct Decomposition {
     /// The motion that both sections have in common; None where that is the identity alone.
     intersection: Option<Intersection>,
     /// The set in which the platform moves: ``"pair"`` of subgroups, one ``"subgroup"``, ``"free"``, as a leg that is its
-    /// ``"stem"``, or ``"constrained"`` by several legs.
+    /// ``"stem"``, ``"constrained"`` by several legs, or ``"symmetric"``, the mirror image of the base.
     platform: String,
     /// What the platform does, in words: ``"translations of space"``.
     motion: String,

@@ -111,3 +111,41 @@ def test_what_is_wrong_is_told():
         opm.Linkage.parse(opm.examples.text("plano-spherical-5dof"))
     with pytest.raises(FileNotFoundError, match="opm.examples.text"):
         opm.Linkage.load(NAME)
+
+
+FOUR_BAR = """
+format = 1
+name = "four-bar"
+units = { length = "mm", angle = "deg" }
+[platform]
+point = [50, 80, 0]
+[[leg]]
+name = "crank"
+joints = [
+  { name = "a", type = "revolute", axis = [0, 0, 1], point = [0, 0, 0], actuated = true },
+  { name = "b", type = "revolute", axis = [0, 0, 1], point = [0, 40, 0] },
+]
+[[leg]]
+name = "rocker"
+joints = [
+  { name = "d", type = "revolute", axis = [0, 0, 1], point = [100, 0, 0] },
+  { name = "c", type = "revolute", axis = [0, 0, 1], point = [100, 80, 0] },
+]
+"""
+
+
+def test_a_four_bar_is_traced():
+    linkage = opm.Linkage.parse(FOUR_BAR)
+    assert linkage.imaginary_name is None and linkage.home_branch() == "1"
+    turns = np.linspace(0, 2 * np.pi, 60)
+    found = linkage.positions(turns)
+    assert found.modes == ["1", "2"] and found.imaginary.shape == (60, 2, 0)
+    assert linkage.range() == pytest.approx(np.array([[-np.pi, np.pi]]))
+    rod = np.hypot(0.1, 0.04)
+    for turn, branches, rocker in zip(turns, found.joints, found["d"], strict=True):
+        pin = 0.04 * np.array([-np.sin(turn), np.cos(turn)])
+        for joints, angle in zip(branches, rocker, strict=True):
+            other = np.array([0.1, 0]) + 0.08 * np.array([-np.sin(angle), np.cos(angle)])
+            assert np.linalg.norm(other - pin) == pytest.approx(rod, abs=1e-12)
+            assert joints[0] == turn
+        assert abs(np.sin((rocker[0] - rocker[1]) / 2)) > 0.1

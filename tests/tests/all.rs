@@ -21,6 +21,7 @@ mod limits;
 mod linkage;
 mod locate;
 mod measure;
+mod mirrors;
 mod one_subspace;
 mod paper;
 mod paths;

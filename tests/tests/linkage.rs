@@ -108,7 +108,10 @@ fn every_position_closes_the_original_loop() {
                         worst = worst.max(off);
                         assert!(off < CLOSURE, "{round} {pattern:?} {number}: {off:e}");
                         let tau = imaginary(&linkage, &position);
-                        assert!(distance(&[tau], position.imaginary.as_slice()) < 1e-9, "{pattern:?}");
+                        assert!(
+                            distance(&[tau], position.imaginary.as_slice()) < 1e-9,
+                            "{pattern:?}"
+                        );
                         for (c, q) in linkage.coordinates().iter().zip(&position.joints) {
                             assert!(*q == value || (q - c.home).abs() <= PI + 1e-9);
                         }
@@ -307,7 +310,8 @@ fn a_cycle_is_one_motion() {
                     assert!(open(linkage.mechanism(), &position) < CLOSURE);
                     let pairs = position.joints.iter().zip(&before.joints);
                     let step = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                    let step = step.max((position.imaginary.unwrap() - before.imaginary.unwrap()).abs());
+                    let step =
+                        step.max((position.imaginary.unwrap() - before.imaginary.unwrap()).abs());
                     longest = longest.max(step);
                     assert!(step < 0.5, "{pattern:?} {i}: {step} {cycle:?}");
                 }

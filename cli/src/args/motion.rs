@@ -1,7 +1,7 @@
 //! Arguments of the commands that follow a motion: of a platform, or of a single loop.
 
 use super::{MechanismArgs, MotionTableArgs, SetupArgs};
-use crate::linkage::input::InputValue;
+use crate::linkage::input::{CouplerPoint, InputValue};
 use crate::pose::{GridAxis, Number};
 use clap::{ValueEnum, ValueHint};
 use opm_core::motion::Ends;
@@ -12,16 +12,17 @@ const HIGHEST_RATE: f64 = 1e9;
 
 /// Positions of a linkage: every joint for one value of its input, or for a revolution of it
 ///
-/// The linkage is a single loop that decomposes into the loops of two sections, which share an imaginary
-/// joint: planar or spherical four-bars, slider-cranks, coaxial joints (Sarrus' linkage, Bennett's double
-/// spherical and plano-spherical 6R). Any joint can be the input; without --input it is the actuated one,
-/// at home. The answer has every branch, named by its signs, and the range of the input; in JSON, a range
-/// without an end has null there. An input out of its range is an answer (exit status 0).
+/// The linkage is a single loop of two legs with one freedom: four-bars, slider-cranks, RSSR, Bennett's, Bricard's, any. Loops of
+/// two sections that share an imaginary joint (Sarrus' linkage, Bennett's double spherical and plano-spherical 6R) are solved in
+/// closed form, and a branch is named by its two signs. All others are traced, and all their assemblies are looked for: a branch
+/// is an arc along which the input moves one way, with a number, 1 for home's. Any joint that moves can be the input; without
+/// --input it is the actuated one, at home. The answer has every branch, and the range of the input; in JSON, a range without an
+/// end has null there. An input out of its range is an answer (exit status 0).
 ///
 /// --sweep follows the branch of home for one round. An input that can make a revolution makes one.
 /// Otherwise it goes to the end of its range, back in the branch that meets the first one there, and so on
-/// until the linkage is home. CSV: all joints, the imaginary joint, `branch`, `within_limits` (1 or 0), in
-/// radians and metres. MCAP: `/joints` and `/imaginary_joints`; a round takes ten seconds.
+/// until the linkage is home. CSV: all joints, the imaginary joint if there is one, `branch`, `within_limits` (1 or 0), in
+/// radians and metres, and with --coupler the columns `coupler.x`, `coupler.y` and `coupler.z`. MCAP: `/joints` and `/imaginary_joints`; a round takes ten seconds.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -29,6 +30,7 @@ Examples:
   opm linkage bennett-double-spherical-6r --input b3=10deg --format json
   opm linkage sarrus --input a1=45deg
   opm linkage bennett-double-spherical-6r --input a1 --sweep > round.csv
+  opm linkage sarrus --sweep --coupler 0,0,160mm > curve.csv
   opm linkage bennett-double-spherical-6r --sweep --count 1001 -o round.mcap")]
 pub struct LinkageArgs {
     /// The mechanism.
@@ -49,8 +51,12 @@ pub struct LinkageArgs {
         value_parser = clap::value_parser!(u32).range(2..=10_000_000)
     )]
     pub count: u32,
+    /// A point of the platform, where it is at home, in base coordinates: its place at each position, in a sweep its coupler
+    /// curve
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub coupler: Option<CouplerPoint>,
     /// Solve for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["sweep"])]
+    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["sweep", "coupler"])]
     pub vary: Option<GridAxis>,
     /// Output file, in the format of its ending; CSV on standard output if it is - or not given
     #[arg(

@@ -17,14 +17,15 @@ impl Way<'_> {
             PlatformSet::Pair => None,
             PlatformSet::Subgroup => Some(d.lower.name()),
             PlatformSet::Free => Some(SubspaceClass::Full.name()),
-            PlatformSet::Stem(_) | PlatformSet::Constrained => None,
+            PlatformSet::Stem(_) | PlatformSet::Constrained | PlatformSet::Symmetric => None,
         };
         let stem = match kind {
             PlatformSet::Stem(leg) => Some(self.legs[leg].name),
             PlatformSet::Pair
             | PlatformSet::Subgroup
             | PlatformSet::Free
-            | PlatformSet::Constrained => None,
+            | PlatformSet::Constrained
+            | PlatformSet::Symmetric => None,
         };
         let motion = self.motion();
         json!({ "kind": kind.name(), "subspace": subspace, "stem": stem, "motion": motion })
@@ -52,7 +53,8 @@ impl Way<'_> {
             PlatformSet::Pair
             | PlatformSet::Subgroup
             | PlatformSet::Free
-            | PlatformSet::Constrained => motion,
+            | PlatformSet::Constrained
+            | PlatformSet::Symmetric => motion,
         }
     }
 
@@ -60,7 +62,9 @@ impl Way<'_> {
     pub(super) fn solved_whole(&self) -> String {
         let could = match self.decomposition.platform() {
             PlatformSet::Free => "each leg lets the platform do everything",
-            PlatformSet::Constrained => "some legs let the platform do less than it could",
+            PlatformSet::Constrained | PlatformSet::Symmetric => {
+                "some legs let the platform do less than it could"
+            }
             PlatformSet::Pair | PlatformSet::Subgroup | PlatformSet::Stem(_) => {
                 "each leg lets the platform do that, or more"
             }

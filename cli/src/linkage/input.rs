@@ -1,6 +1,9 @@
 //! The joint that moves a linkage, in the syntax of the command line: `a1=30deg`.
 
+use crate::analyze::load::numbers;
 use crate::pose::{Misread, Number};
+use nalgebra::Point3;
+use opm_core::Quantity;
 use std::str::FromStr;
 
 /// A joint and its value.
@@ -24,10 +27,23 @@ impl FromStr for InputValue {
     }
 }
 
+/// A point of the platform at home, in base coordinates: `100mm,0,20mm`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CouplerPoint(pub Point3<f64>);
+
+impl FromStr for CouplerPoint {
+    type Err = Misread;
+
+    fn from_str(text: &str) -> Result<Self, Misread> {
+        let of = |axis: &str, number: Number| number.value_of(axis, Quantity::Length);
+        let at: [f64; 3] = numbers(text, ["X", "Y", "Z"], of)?;
+        Ok(Self(at.into()))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use opm_core::Quantity;
     use std::f64::consts::PI;
 
     #[test]

@@ -4,6 +4,8 @@ use crate::decompose::describe;
 use crate::load::Loaded;
 use crate::output::named;
 use crate::text::{self, Table};
+use nalgebra::Point3;
+use opm_core::Quantity;
 use opm_core::chain::limits::Limits;
 use opm_core::group::JointDisplacement;
 use opm_core::linkage::{Input, Linkage, Position};
@@ -17,20 +19,34 @@ pub struct Run<'a> {
     pub loaded: &'a Loaded,
     pub linkage: &'a Linkage,
     pub input: Input<'a>,
+    /// A point of the platform, where it is at home.
+    pub coupler: Option<Point3<f64>>,
 }
 
 impl Run<'_> {
+    /// Where the point of the platform is, if one is asked for.
+    pub fn coupler_at(&self, position: &Position) -> Option<Point3<f64>> {
+        let leg = &self.linkage.mechanism().legs[0];
+        let own = &position.joints[..leg.coordinates().count()];
+        let platform = leg.displacement(own).expect("a position has a value for every joint");
+        self.coupler.map(|point| platform * point)
+    }
+
     pub fn json(&self, value: f64, positions: &[Position]) -> Value {
         let coordinates = self.linkage.coordinates();
         let imaginary = self.linkage.imaginary().iter().map(|joint| &*joint.name);
         let solution = |position: &Position| {
             let joints = coordinates.iter().map(|c| &*c.name).zip(position.joints.iter().copied());
-            json!({
+            let mut answer = json!({
                 "branch": position.branch.to_string(),
                 "within_limits": position.within_limits,
                 "joints": named(joints),
                 "imaginary": named(imaginary.clone().zip(position.imaginary)),
-            })
+            });
+            if let Some(at) = self.coupler_at(position) {
+                answer["coupler"] = json!([at.x, at.y, at.z]);
+            }
+            answer
         };
         json!({
             "name": self.linkage.mechanism().name,
@@ -146,6 +162,14 @@ impl Run<'_> {
             };
             let values = positions.iter().map(value).collect();
             row(leg, &imaginary.name, "imaginary", quantity, values);
+        }
+        for (axis, name) in ["coupler.x", "coupler.y", "coupler.z"].into_iter().enumerate() {
+            let place = |position: &Position| self.coupler_at(position).map(|at| at[axis]);
+            let places: Option<Vec<f64>> = positions.iter().map(place).collect();
+            if let Some(places) = places {
+                let shown = |value: &f64| text::number(*value, Quantity::Length, units);
+                row("", name, "point", Quantity::Length, places.iter().map(shown).collect());
+            }
         }
         table
     }

@@ -102,13 +102,17 @@ impl Sweep<'_> {
         let mut rows = Rows::new(output);
         let joints = linkage.coordinates().iter().map(|c| &*c.name);
         let imaginary = linkage.imaginary().iter().map(|joint| &*joint.name);
-        rows.header(joints.chain(imaginary).chain(["branch", "within_limits"]))?;
+        let point = ["coupler.x", "coupler.y", "coupler.z"];
+        let point = point.into_iter().filter(|_| self.run.coupler.is_some());
+        rows.header(joints.chain(imaginary).chain(["branch", "within_limits"]).chain(point))?;
         let row = |_: u32, position: &Position| -> Result<(), SweepStop> {
             let Position { joints, imaginary, branch, within_limits } = position;
             rows.numbers(joints)?;
             imaginary.iter().try_for_each(|value| rows.number(*value))?;
             rows.text(&branch.to_string())?;
             rows.answer(*within_limits)?;
+            let at = self.run.coupler_at(position);
+            at.iter().flat_map(|at| at.iter()).try_for_each(|value| rows.number(*value))?;
             Ok(rows.end()?)
         };
         let summary = self.round.each(row)?;

@@ -256,12 +256,72 @@ fn wrong_usage_names_the_flag() {
 fn what_is_no_linkage_is_told_so_and_a_linkage_its_command() {
     for (name, legs) in [(PLANO, "4 legs"), (HELICAL, "3 legs")] {
         opm(&["linkage", name])
-            .fails_with_one_line(1, &[name, legs, "expected a linkage of two legs"]);
+            .fails_with_one_line(1, &[name, legs, "expected two, which form one loop"]);
     }
-    opm(&["linkage", "five-bar"]).fails_with_one_line(1, &["a single section, which is planar"]);
+    opm(&["linkage", "five-bar"])
+        .fails_with_one_line(1, &["it has 2 freedoms at home, expected one"]);
     let hint = format!("use `opm linkage {BENNETT}`");
     opm(&["ik", BENNETT, "--pose", ""]).fails_with_one_line(1, &["closed-form", &hint]);
     opm(&["workspace", BENNETT]).fails_with_one_line(1, &["closed-form", &hint]);
     let run = opm(&["decompose", BENNETT]);
     assert!(run.stderr.contains(&hint), "{}", run.stderr);
+}
+
+const FOUR_BAR: &str = r#"
+format = 1
+name = "four-bar"
+units = { length = "mm", angle = "deg" }
+[platform]
+point = [50, 80, 0]
+[[leg]]
+name = "crank"
+joints = [
+  { name = "a", type = "revolute", axis = [0, 0, 1], point = [0, 0, 0], actuated = true },
+  { name = "b", type = "revolute", axis = [0, 0, 1], point = [0, 40, 0] },
+]
+[[leg]]
+name = "rocker"
+joints = [
+  { name = "d", type = "revolute", axis = [0, 0, 1], point = [100, 0, 0] },
+  { name = "c", type = "revolute", axis = [0, 0, 1], point = [100, 80, 0] },
+]
+"#;
+
+/// A loop without sections: branches are numbers, there is no imaginary joint, and a point of the coupler is where the links have
+/// it.
+#[test]
+fn a_loop_without_sections_is_traced() {
+    let folder = Folder::new();
+    let path = folder.write("four-bar.toml", FOUR_BAR);
+    let run = |args: &[&str]| opm(&[&["linkage", &*path], args].concat());
+    let found = run(&["--input", "a=20deg", "--coupler", "0,40mm,0", "--format", "json"]).json();
+    assert_eq!((&found["home_branch"], &found["full_turn"]), (&json!("1"), &json!(true)));
+    let solutions = found["solutions"].as_array().unwrap();
+    assert_eq!(solutions.len(), 2);
+    let (sin, cos) = (PI / 9.0).sin_cos();
+    for solution in solutions {
+        assert_eq!(keys(solution), ["branch", "within_limits", "joints", "imaginary", "coupler"]);
+        assert_eq!(solution["imaginary"], json!({}));
+        // The pin b is a point of the crank, too.
+        let at: Vec<f64> = solution["coupler"].as_array().unwrap().iter().map(number).collect();
+        let expected = [-0.04 * sin, 0.04 * cos, 0.0];
+        assert!(at.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{at:?}");
+    }
+    let run_text = run(&["--input", "a=20deg"]);
+    let text = run_text.text();
+    assert!(text.contains("2 assemblies, complex ones included"), "{text}");
+    let swept = run(&["--sweep", "--count", "91", "--coupler", "50mm,80mm,0"]);
+    let curve = swept.text();
+    let header = "a,b,d,c,branch,within_limits,coupler.x,coupler.y,coupler.z";
+    assert!(curve.starts_with(header), "{curve}");
+    let rows = rows(curve);
+    for row in &rows {
+        // Its distance from the pin b stays.
+        let pin = [-0.04 * row[0].sin(), 0.04 * row[0].cos()];
+        let away = (row[6] - pin[0]).hypot(row[7] - pin[1]);
+        assert!((away - 0.05_f64.hypot(0.04)).abs() < 1e-12);
+    }
+    assert_eq!(rows.len(), 91);
+    let parts = ["--input", "\"nothing\" is no joint, expected one of a, b, d, c"];
+    run(&["--input", "nothing"]).fails_with_one_line(2, &parts);
 }

@@ -1,6 +1,14 @@
-//! Position analysis of single-loop linkages that decompose, as input-output linkages (Selvi,
-//! "Kinematic analysis of overconstrained manipulators with partial subspaces using decomposition
-//! method", Robotica, on Bennett's double spherical 6R linkage of Fig. 1).
+//! Linkages: single loops of two legs with one freedom, moved by one of their joints.
+//!
+//! Loops that divide into the loops of two sections are solved in closed form: see below. All others are traced: they move along
+//! curves in the space of their joints, which steps along the tangent follow, corrected onto the equations of closure. The
+//! positions with one revolute held are found, all of them, by continuation from a generic loop of the same kinds of joints
+//! (Sommese and Wampler, "The numerical solution of systems of polynomials", 2005), and lie on all curves that there are.
+//!
+//! ## Two sections
+//!
+//! Input-output linkages by decomposition (Selvi, "Kinematic analysis of overconstrained manipulators with partial subspaces
+//! using decomposition method", Robotica, on Bennett's double spherical 6R linkage of Fig. 1).
 //!
 //! Two legs form one loop, `L₁U₁ = L₂U₂`. The lower parts move in one subspace and the upper parts in
 //! another one, and the two share a one-parameter group: a rotation or a translation. Then

@@ -55,6 +55,7 @@ mod condition;
 mod dependent;
 mod jacobian;
 mod many;
+mod mirror;
 mod pose;
 pub(crate) mod rotation_vector;
 mod screws;

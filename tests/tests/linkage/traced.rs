@@ -39,7 +39,10 @@ fn of_links(links: &[Link]) -> Mechanism {
     let mut frames = vec![Isometry3::identity()];
     for Link { a, alpha, d, theta } in links {
         let turn = |axis: Vector3<f64>, angle: f64| {
-            Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_scaled_axis(axis * angle))
+            Isometry3::from_parts(
+                Translation3::identity(),
+                UnitQuaternion::from_scaled_axis(axis * angle),
+            )
         };
         let last = frames[frames.len() - 1];
         frames.push(
@@ -53,7 +56,8 @@ fn of_links(links: &[Link]) -> Mechanism {
     let joint = |i: usize, sign: f64| {
         let axis = nalgebra::Unit::new_normalize(frames[i].rotation * Vector3::z() * sign);
         let name = format!("r{}", i + 1);
-        let joint = Joint::new(name, JointKind::Revolute, axis, frames[i].translation.vector.into());
+        let joint =
+            Joint::new(name, JointKind::Revolute, axis, frames[i].translation.vector.into());
         if i == 0 { joint.actuated() } else { joint }
     };
     let half = links.len() / 2;
@@ -295,7 +299,10 @@ fn the_numeric_solver_finds_no_other_position() {
             }
             for found in closure.all(value, 60, &mut rng) {
                 let far = found.iter().zip(linkage.coordinates());
-                if far.clone().any(|(q, c)| c.quantity == opm_core::Quantity::Length && q.abs() > 100.0) {
+                if far
+                    .clone()
+                    .any(|(q, c)| c.quantity == opm_core::Quantity::Length && q.abs() > 100.0)
+                {
                     continue;
                 }
                 let near = |p: &&Position| closure.distance(&p.joints, &found) < SAME;
@@ -399,7 +406,9 @@ fn loops_that_one_joint_does_not_move_are_refused() {
     assert_eq!(stuck(&random(&mut rng, "RRR RRR")), Stuck::Rigid);
     assert_eq!(stuck(&random(&mut rng, "RRR RRRRR")), Stuck::Several(2));
     // Three parallel axes in a plane: a flat triangle moves at first order only.
-    let at = |name: &str, x| Joint::new(name, JointKind::Revolute, Vector3::z_axis(), Point3::new(x, 0.0, 0.0));
+    let at = |name: &str, x| {
+        Joint::new(name, JointKind::Revolute, Vector3::z_axis(), Point3::new(x, 0.0, 0.0))
+    };
     let flat = of_legs([vec![at("a", 0.0).actuated(), at("b", 1.0)], vec![at("c", 3.0)]]);
     assert_eq!(stuck(&flat), Stuck::FirstOrder);
 }

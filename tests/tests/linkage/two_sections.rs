@@ -1,9 +1,9 @@
 //! Random linkages of every pair of subspaces and every kind of loop.
 
-use super::{first, signs};
 use super::numeric::Closure;
 use super::open;
 use super::sections::{COMBINATIONS, Section, Shared, linkage, near};
+use super::{first, signs};
 use fastrand::Rng;
 use opm_core::chain::Branch;
 use opm_core::linkage::{Input, InputRange, Linkage, Position};
@@ -228,7 +228,10 @@ fn rates_are_the_derivatives() {
                 };
                 let (after, before) = (side(STEP), side(-STEP));
                 let pairs = after.joints.iter().zip(&before.joints).zip(&rates.joints);
-                let last = ((after.imaginary.as_ref().unwrap(), before.imaginary.as_ref().unwrap()), rates.imaginary.as_ref().unwrap());
+                let last = (
+                    (after.imaginary.as_ref().unwrap(), before.imaginary.as_ref().unwrap()),
+                    rates.imaginary.as_ref().unwrap(),
+                );
                 for ((after, before), rate) in pairs.chain([last]) {
                     let off = ((after - before) / (2.0 * STEP) - rate).abs();
                     assert!(off < 1e-6 * fastest.powi(3), "{combination:?} {off:e} {rates:?}");

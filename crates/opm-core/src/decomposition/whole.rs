@@ -33,6 +33,8 @@ pub enum PlatformSet {
     Stem(usize),
     /// The displacements that several legs allow together, which are no group.
     Constrained,
+    /// The images of the base in a plane that moves: products of two reflections.
+    Symmetric,
 }
 
 /// What constrains a platform whose motion is no group.
@@ -45,10 +47,15 @@ pub enum Constrained {
         /// The number of freedoms of the platform.
         freedoms: usize,
     },
+    /// Several legs, each of which is its own mirror image in a plane between base and platform.
+    Mirror {
+        /// The number of freedoms of the platform.
+        freedoms: usize,
+    },
 }
 
 impl PlatformSet {
-    /// A short name: `pair`, `subgroup`, `free`, `stem` or `constrained`.
+    /// A short name: `pair`, `subgroup`, `free`, `stem`, `constrained` or `symmetric`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pair => "pair",
@@ -56,6 +63,7 @@ impl PlatformSet {
             Self::Free => "free",
             Self::Stem(_) => "stem",
             Self::Constrained => "constrained",
+            Self::Symmetric => "symmetric",
         }
     }
 }
@@ -63,6 +71,9 @@ impl PlatformSet {
 /// The largest distance of a twist of the platform from what a leg can do, as a sine, lengths over the size. Legs close to
 /// within [`CLOSURE`](crate::chain::whole::CLOSURE), to which six joints add up.
 const EXACT: f64 = 1e-10;
+
+/// Displacements are products of two reflections to within this, in radians or shares of the size.
+const MIRRORED: f64 = 1e-8;
 
 /// Why legs are not solved whole.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -134,6 +145,7 @@ impl Decomposition {
         match (self.is_whole(), self.upper) {
             _ if self.constrained.is_some() => match self.constrained {
                 Some(Constrained::Stem(leg)) => PlatformSet::Stem(leg),
+                Some(Constrained::Mirror { .. }) => PlatformSet::Symmetric,
                 Some(Constrained::Legs { .. }) | None => PlatformSet::Constrained,
             },
             (_, SubspaceClass::Identity) => PlatformSet::Subgroup,
@@ -154,6 +166,7 @@ impl Decomposition {
             PlatformSet::Subgroup => words(&self.lower).to_owned(),
             PlatformSet::Free => words(&SubspaceClass::Full).to_owned(),
             PlatformSet::Constrained => "what several legs allow together".to_owned(),
+            PlatformSet::Symmetric => "mirror images of the base in a plane that moves".to_owned(),
             PlatformSet::Stem(stem) => match (self.upper, self.lower) {
                 (_, SubspaceClass::Planar { normal: axis }) if self.legs[stem].lower.len() == 1 => {
                     words(&SubspaceClass::Rotation { axis, point: Point3::origin() }).to_owned()
@@ -177,7 +190,12 @@ pub(super) fn split_or_whole(
     report: &Mobility,
 ) -> Result<Vec<Decomposition>, DecomposeError> {
     let mut error = match ranked(mechanism, report) {
-        Ok(found) => return Ok(found),
+        Ok(found) => {
+            let reflected =
+                is_held(mechanism, report, &found[0]) && mirrored(&assembled(mechanism)).is_some();
+            let whole = reflected.then(|| whole(mechanism, report).ok()).flatten();
+            return Ok(whole.into_iter().chain(found).collect());
+        }
         Err(error) => error,
     };
     match whole(mechanism, report) {
@@ -189,6 +207,43 @@ pub(super) fn split_or_whole(
             Err(error)
         }
     }
+}
+
+/// Whether every leg lets the platform do less than two sections would, so that it may be a symmetric one.
+fn is_held(mechanism: &Mechanism, report: &Mobility, found: &Decomposition) -> bool {
+    let of_pair = found.lower.dimension() + found.upper.dimension();
+    let all = of_pair - found.intersection.dimension();
+    let held = |leg: &Leg| Freedom::of_leg(leg).len() < all;
+    (2..=3).contains(&report.mobility) && mechanism.legs.iter().all(held)
+}
+
+/// The plane of home, as a normal and a distance from the origin, if displacements are products of two reflections, the first one in
+/// this plane: rotations about lines in it.
+pub(crate) fn mirrored(motions: &[Isometry3<f64>]) -> Option<(Unit<Vector3<f64>>, f64)> {
+    let lines: Vec<(Vector3<f64>, Vector3<f64>)> = motions
+        .iter()
+        .filter(|g| g.rotation.angle() > 0.01)
+        .map(|g| {
+            let (turned, p) = (g.rotation.scaled_axis(), g.translation.vector);
+            let (angle, axis) = (turned.norm(), turned.normalize());
+            (axis, (p + axis.cross(&p) / (0.5 * angle).tan()) * 0.5)
+        })
+        .collect();
+    let size = lines.iter().map(|(_, point)| point.norm()).fold(0.0, f64::max);
+    let across = lines.iter().flat_map(|(a, _)| lines.iter().map(move |(b, _)| a.cross(b)));
+    let across = across.max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    let normal = Unit::try_new(across, 1e-3)?;
+    let distance = normal.dot(&lines[0].1);
+    let moves_along = |g: &Isometry3<f64>| {
+        let turned = g.rotation.scaled_axis();
+        turned.dot(&g.translation.vector).abs() > MIRRORED * turned.norm() * size
+    };
+    let in_plane = |(axis, point): &(Vector3<f64>, Vector3<f64>)| {
+        normal.dot(axis).abs() <= MIRRORED
+            && (normal.dot(point) - distance).abs() <= MIRRORED * size
+    };
+    let holds = lines.len() > 3 && lines.iter().all(in_plane) && !motions.iter().any(moves_along);
+    holds.then_some((normal, distance))
 }
 
 /// The decomposition of a mechanism whose legs are solved whole.
@@ -233,12 +288,17 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
     match mechanism.legs.iter().position(is_stem) {
         Some(stem) => Found::of_stem(mechanism, stem, frame.length).solved(mechanism, report),
         None if miss == no_group && !is_doubtful(mechanism, report) => {
+            let motions = assembled(mechanism);
+            let constrained = match mirrored(&motions) {
+                Some(_) => Constrained::Mirror { freedoms: dimension },
+                None => Constrained::Legs { freedoms: dimension },
+            };
             let found = Found {
                 lower: SubspaceClass::TranslationalSpace,
                 upper: SubspaceClass::Spherical { centre: mechanism.platform },
-                constrained: Some(Constrained::Legs { freedoms: dimension }),
+                constrained: Some(constrained),
                 twists: common.screws(),
-                motions: assembled(mechanism),
+                motions,
             };
             found.solved(mechanism, report)
         }
@@ -399,7 +459,7 @@ impl Decomposition {
             PlatformSet::Free => motions(&SubspaceClass::Full, length),
             PlatformSet::Pair | PlatformSet::Subgroup => motions(&self.lower, length),
             PlatformSet::Stem(stem) => Found::of_stem(mechanism, stem, length).motions,
-            PlatformSet::Constrained => assembled(mechanism),
+            PlatformSet::Constrained | PlatformSet::Symmetric => assembled(mechanism),
         };
         Some(solved(leg, &motions, length).map(Cow::Owned))
     }

@@ -23,6 +23,7 @@ mod complete;
 pub(crate) mod constraint;
 pub(super) mod form;
 mod many;
+mod mirror;
 pub(crate) mod one_joint;
 mod rows;
 mod stem;
@@ -32,8 +33,9 @@ use super::Mode;
 use super::leg::{CompiledLeg, Section};
 use super::mode::{Choices, ModeLayout};
 use crate::chain::whole::NoOrder;
-use crate::decomposition::mobility::assembled;
+use crate::decomposition::mobility::{assembled, frame};
 use crate::decomposition::whole::Constrained;
+use crate::group::subspace::MotionSubspace;
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::mechanism::Mechanism;
 use crate::numeric::Quantity;
@@ -41,6 +43,7 @@ use crate::numeric::svd::singular_values;
 use crate::task::{CoordinateKind, Task};
 use constraint::{Constraint, constraints, follows, order, target_of};
 pub(super) use many::Complete;
+use mirror::Mirror;
 use nalgebra::DMatrix;
 use one_joint::OneJoint;
 use rows::{NoRows, Rows};
@@ -94,6 +97,11 @@ pub enum ConstraintError {
     /// The constraints of several legs that are solved whole have no closed form.
     #[error(transparent)]
     Rows(NoRows),
+    /// A platform is the image of its base in a plane that is not level in its coordinates.
+    #[error(
+        "the platform is the image of its base in a plane, expected one that is at home across the third axis of the base, and roll,          pitch and yaw as coordinates, zero there"
+    )]
+    Mirror,
     /// The constraints of several legs differ, or those of one have no closed form in this order.
     #[error(
         "legs {} constrain the platform in more ways than closed-form inverse kinematics covers: the mobility is \
@@ -118,7 +126,7 @@ impl ConstraintError {
             Self::Singular { leg, .. } | Self::Stem { leg, .. } | Self::Poles { leg } => Some(leg),
             Self::Several { legs, .. } => legs.first().map(String::as_str),
             Self::Rows(NoRows::Leg { leg, .. }) => Some(leg),
-            Self::Rows(_) => None,
+            Self::Rows(_) | Self::Mirror => None,
         }
     }
 }
@@ -148,6 +156,8 @@ pub(crate) enum Whole {
     Stem(Stem),
     /// From the constraints of several legs.
     Rows(Rows),
+    /// From the plane in which the platform is the image of its base.
+    Mirror(Mirror),
 }
 
 impl Whole {
@@ -156,6 +166,7 @@ impl Whole {
         match self {
             Self::Stem(stem) => stem.leg,
             Self::Rows(rows) => rows.leg(),
+            Self::Mirror(mirror) => mirror.form.leg,
         }
     }
 
@@ -163,6 +174,7 @@ impl Whole {
         match self {
             Self::Stem(stem) => stem.choices(),
             Self::Rows(rows) => rows.choices(),
+            Self::Mirror(_) => 0,
         }
     }
 
@@ -171,6 +183,7 @@ impl Whole {
         match self {
             Self::Stem(stem) => stem.bits,
             Self::Rows(rows) => [rows.bit, None, None, None],
+            Self::Mirror(_) => [None; 4],
         }
     }
 }
@@ -271,6 +284,13 @@ impl Dependent {
                 let (independent, rows) = found.map_err(ConstraintError::Rows)?;
                 (independent, Whole::Rows(rows))
             }
+            Constrained::Mirror { freedoms } => {
+                let motions = assembled(mechanism);
+                let legs = (holding(mechanism, 6 - freedoms), freedoms);
+                let found = Mirror::new(task, mechanism.platform, legs, &motions, size);
+                let (independent, mirror) = found.ok_or(ConstraintError::Mirror)?;
+                (independent, Whole::Mirror(mirror))
+            }
         };
         independent.sort_unstable();
         let all = 0..task.coordinates.len();
@@ -308,7 +328,7 @@ impl Dependent {
                 stem.bits.iter_mut().zip(given).for_each(|(to, bit)| *to = Some(bit));
             }
             Some(Whole::Rows(rows)) => rows.bit = layout.pose_bits(rows.leg()).next(),
-            None => {}
+            Some(Whole::Mirror(_)) | None => {}
         }
         let mut bits: Vec<u32> = self.own_bits().collect();
         let used = self.steps.iter().map(|step| (step.solution.leg(), step.solution.section()));
@@ -379,13 +399,13 @@ impl Dependent {
     /// The legs and sections whose constraints determine the dependent coordinates.
     /// A leg that is solved whole constrains as a whole.
     pub fn constraining(&self) -> impl Iterator<Item = (usize, Option<Section>)> + '_ {
-        let (stem, rows) = match &self.whole {
-            Some(Whole::Stem(stem)) => (Some(stem.leg), None),
-            Some(Whole::Rows(rows)) => (None, Some(rows)),
-            None => (None, None),
+        let legs: Vec<usize> = match &self.whole {
+            Some(Whole::Stem(stem)) => vec![stem.leg],
+            Some(Whole::Rows(rows)) => rows.legs().collect(),
+            Some(Whole::Mirror(mirror)) => mirror.legs.clone(),
+            None => Vec::new(),
         };
-        let of_whole = stem.into_iter().chain(rows.into_iter().flat_map(Rows::legs));
-        let of_whole = of_whole.map(|leg| (leg, None));
+        let of_whole = legs.into_iter().map(|leg| (leg, None));
         let of_step = |step: &Step| (step.solution.leg(), Some(step.solution.section()));
         self.steps.iter().map(of_step).chain(of_whole)
     }
@@ -536,6 +556,28 @@ impl Closed {
 const DETERMINED: f64 = 0.3;
 /// Below this they do not determine it.
 const UNDETERMINED: f64 = 1e-6;
+
+/// The first legs whose wrenches at home, together, hold the platform in so many directions.
+fn holding(mechanism: &Mechanism, directions: usize) -> Vec<usize> {
+    let frame = frame(mechanism);
+    let spans = mechanism.legs.iter().map(|leg| MotionSubspace::span(frame, &leg.screws()));
+    let (mut legs, mut left) = (Vec::new(), None::<MotionSubspace>);
+    for (leg, span) in spans.enumerate() {
+        let held = |of: &Option<MotionSubspace>| of.as_ref().map_or(0, |of| 6 - of.dimension());
+        let next = match &left {
+            Some(left) => Some(left.intersection(&span)),
+            None => Some(span),
+        };
+        if held(&next) > held(&left) {
+            legs.push(leg);
+            left = next;
+        }
+        if held(&left) == directions {
+            break;
+        }
+    }
+    legs
+}
 
 /// The sets of coordinates that determine the platform's motion at home and suit, those first that do so well, and of these
 /// those that are not `late`. Otherwise they are in the order in which the coordinates are `preferred`. `rates` has a row for

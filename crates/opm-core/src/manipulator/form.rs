@@ -2,7 +2,8 @@
 
 pub use super::dependent::OBEYED;
 pub use super::dependent::form::{
-    CheckForm, RowForm, RowsForm, StemForm, StemPart, StepForm, StepKind, WholeStep,
+    CheckForm, MirrorForm, Mirrored, RowForm, RowsForm, StemForm, StemPart, StepForm, StepKind,
+    WholeStep,
 };
 pub use super::dependent::one_joint::SectionMotion;
 use super::leg::{CompiledLeg, Section};

@@ -30,7 +30,7 @@ type Row = SVector<f64, MOST>;
 #[derive(Clone, Debug)]
 pub(super) struct WholeDifferential {
     /// How many freedoms it has.
-    count: usize,
+    pub count: usize,
     /// For each freedom, the platform's twist for a unit rate, rad/s or m/s.
     columns: [Row; MOST],
     /// For each freedom, what is reciprocal to all columns but its own, where it is one. Zeros where the leg is singular.
@@ -131,7 +131,7 @@ const STILL: Screw =
     Screw { angular: Vector3::new(0.0, 0.0, 0.0), linear: Vector3::new(0.0, 0.0, 0.0) };
 
 /// A twist `(ω; v)` about a point, lengths over the size.
-fn about(screw: &Screw, point: &Vector3<f64>, size: f64) -> Vector6<f64> {
+pub(super) fn about(screw: &Screw, point: &Vector3<f64>, size: f64) -> Vector6<f64> {
     let (w, v) = (&screw.angular, (screw.linear + screw.angular.cross(point)) / size);
     Vector6::new(w.x, w.y, w.z, v.x, v.y, v.z)
 }
@@ -257,7 +257,7 @@ impl DisplacedLeg {
 
 impl SectionTwists {
     /// The twist of the platform in base coordinates, and its derivative: `V_v + Ad(v) V_b`.
-    fn of_platform(&self, task: &Task, v: &crate::group::Displacement) -> [Screw; 2] {
+    pub(super) fn of_platform(&self, task: &Task, v: &crate::group::Displacement) -> [Screw; 2] {
         let embedded = |subspace: &Subspace, twist: &LocalTwist| {
             let [angular, linear] = subspace.embedded(twist);
             Screw { angular, linear: linear + subspace.origin.coords.cross(&angular) }
@@ -371,10 +371,11 @@ impl Manipulator {
 
     /// The wrenches by which a stem holds the platform: unit rows that its joints do no work on, as many as there are dependent
     /// coordinates, among the twists that all coordinates together describe. `point` is the platform's reference point.
-    fn stem_wrenches(
+    pub(super) fn stem_wrenches(
         &self,
         stem: &WholeDifferential,
         point: &Vector3<f64>,
+        most: usize,
     ) -> impl Iterator<Item = Vector6<f64>> + use<> {
         let (task, size) = (self.task(), self.characteristic_length());
         let (mut basis, mut known) = ([Row::zeros(); 2 * MOST], 0);
@@ -405,7 +406,7 @@ impl Manipulator {
         });
         let described = &described[..count];
         let start = known;
-        for _ in 0..self.dependent_coordinates().len() {
+        for _ in 0..most {
             let rests = described.iter().map(|twist| without(*twist, &basis[..known]));
             let Some(longest) = rests.max_by(|a, b| a.norm().total_cmp(&b.norm())) else { break };
             basis[known] = longest.normalize();
@@ -443,12 +444,17 @@ impl Manipulator {
         };
         match self.dependent.as_ref().and_then(Dependent::whole) {
             Some(Constraining::Stem(stem)) => {
-                let wrenches = self.stem_wrenches(&differential(stem.leg), point);
+                let most = self.dependent_coordinates().len();
+                let wrenches = self.stem_wrenches(&differential(stem.leg), point, most);
                 wrenches.for_each(|wrench| add(stem.leg, wrench));
             }
             Some(Constraining::Rows(rows)) => {
                 let g = at.displacement(self);
                 rows.wrenches(&g).for_each(|(leg, wrench)| add(leg, wrench));
+            }
+            Some(Constraining::Mirror(mirror)) => {
+                let wrenches = self.mirror_wrenches(at, &mirror.legs, point, differential);
+                wrenches.into_iter().flatten().for_each(|(leg, wrench)| add(leg, wrench));
             }
             None => {}
         }

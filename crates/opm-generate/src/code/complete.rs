@@ -79,6 +79,7 @@ impl Writer<'_> {
                     body.into_iter().for_each(emit);
                 }
                 Some(WholeStep::Rows(rows)) => self.rows_step(rows, all),
+                Some(WholeStep::Mirror(mirror)) => self.mirror_step(mirror, all),
                 None => {}
             }
             for (place, check) in (1..).zip(&self.forms.checks) {

@@ -9,11 +9,14 @@ use crate::library::*;
 use crate::trace::closed_forms::Displaced;
 use crate::trace::whole::RootsOfCode;
 use crate::trace::*;
-use opm_core::manipulator::form::{RowForm, RowsForm, StemForm, StemPart};
+use opm_core::manipulator::form::{MirrorForm, RowForm, RowsForm, StemForm, StemPart};
 use opm_core::mechanism::OrientationCoordinates;
 use opm_core::nalgebra::Vector3;
 use opm_core::numbers::Plane as _;
 use std::f64::consts::FRAC_PI_2;
+
+/// Below this a symmetric platform counts as upside down.
+const UPRIGHT: f64 = 1e-6;
 
 /// What is returned for a leg.
 fn status(leg: usize) -> i32 {
@@ -257,6 +260,23 @@ impl Writer<'_> {
         });
         for (place, &i) in form.lengths.iter().enumerate() {
             at(i).set(self.home(g, i) + x.at(number(place)) * form.size);
+        }
+    }
+
+    /// The dependent coordinates of a platform that is the image of its base.
+    pub fn mirror_step(&self, form: &MirrorForm, all: Completed) {
+        let Completed { g, q, missed, .. } = all;
+        let at = |i: usize| q.at(number(i));
+        let [roll, pitch, yaw] = [0, 1, 2].map(|i| at(form.first_angle + i));
+        let found = form.follow::<Real>([roll, pitch], at(2) - self.home(g, 2));
+        when(found.upright.lt(UPRIGHT), || {
+            missed.at(0).set(FRAC_PI_2);
+            give(status(form.leg));
+        });
+        yaw.set(near(angle(found.yaw.named("turn")), yaw));
+        let kept = if form.sphere.is_some() { 3 } else { 2 };
+        for i in 0..kept {
+            at(i).set(self.home(g, i) + found.moved[i]);
         }
     }
 }

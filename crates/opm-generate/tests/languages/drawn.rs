@@ -11,12 +11,12 @@ use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
 /// The shipped mechanisms whose legs are split, and some whose legs are solved whole: with universal joints, with spherical ones and
-/// cones, with a height; with a stem that determines positions, with one that turns; with constraints of several legs.
+/// cones, with a height; with a stem that determines positions, with one that turns; with constraints of several legs; a symmetric one.
 pub fn shipped() -> Vec<Manipulator> {
     let split = SPLIT.iter().filter_map(|example| Manipulator::read(example.text).ok());
     let example = |name: &str| Manipulator::example(name).expect("it is shipped");
     let whole = ["delta", "quadrupteron", "tricept", "ankle"].map(example);
-    split.chain(whole).chain([with_cones(&example("stewart")), three_rps()]).collect()
+    split.chain(whole).chain([with_cones(&example("stewart")), three_rps(), omni_wrist()]).collect()
 }
 
 /// Three legs of a hinge, a motor that slides, and a ball: the platform turns as it tilts.
@@ -37,6 +37,31 @@ fn three_rps() -> Manipulator {
     let head = "format = 1\nname = \"three-rps\"\nunits = { length = \"m\", angle = \"rad\" }\n";
     let text = format!("{head}[platform]\npoint = [0.0, 0.0, 0.3]\n{legs}");
     Manipulator::read(&text).expect("its legs constrain the platform together")
+}
+
+/// Four legs of two axes through a centre of the base, and their mirror images through one of the platform (Omni-Wrist III).
+fn omni_wrist() -> Manipulator {
+    let leg = |i: u32| {
+        let (sin, cos) = (f64::from(i) * TAU / 4.0).sin_cos();
+        let [x, y] = [0.55 * cos - 0.7 * sin, 0.55 * sin + 0.7 * cos];
+        let joint = |name: &str, axis: [f64; 3], height: f64| {
+            let driven = if name == "a" && i < 2 { ", actuated = true" } else { "" };
+            format!(
+                "{{ name = \"{name}{i}\", type = \"revolute\", axis = {axis:?}, point = [0.0, 0.0, {height:?}]{driven} }}"
+            )
+        };
+        let joints = [
+            joint("a", [cos, sin, 0.0], 0.0),
+            joint("b", [x, y, 0.45], 0.0),
+            joint("c", [x, y, -0.45], 0.12),
+            joint("d", [cos, sin, 0.0], 0.12),
+        ];
+        format!("[[leg]]\njoints = [{}]\n", joints.join(", "))
+    };
+    let legs: String = (0..4).map(leg).collect();
+    let head = "format = 1\nname = \"omni-wrist\"\nunits = { length = \"m\", angle = \"rad\" }\n";
+    let text = format!("{head}[platform]\npoint = [0.0, 0.0, 0.12]\n{legs}");
+    Manipulator::read(&text).expect("its platform is the image of its base")
 }
 
 /// The same mechanism, whose universal and spherical joints have cones.

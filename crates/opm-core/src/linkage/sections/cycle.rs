@@ -61,7 +61,11 @@ impl SectionInput<'_> {
     }
 
     fn arcs(&self, span: Span, mut branch: SectionSigns) -> Result<Vec<CycleArc>, NoCycle> {
-        let arc = |[from, to]: [f64; 2], branch| CycleArc { from, to, branch: LinkageBranch::Signs(branch) };
+        let arc = |[from, to]: [f64; 2], branch| CycleArc {
+            from,
+            to,
+            branch: LinkageBranch::Signs(branch),
+        };
         let (home, start) = (span.ends, branch);
         let (mut span, mut forward) = (span, true);
         let mut arcs = vec![arc(home, start)];
@@ -78,8 +82,7 @@ impl SectionInput<'_> {
             forward = !forward;
             let [low, high] = span.ends;
             let run = if forward { [low, high] } else { [high, low] };
-            if forward && branch == start && (run[0] - home[0]).abs() <= MEET * self.unit()
-            {
+            if forward && branch == start && (run[0] - home[0]).abs() <= MEET * self.unit() {
                 break;
             }
             arcs.push(arc(run, branch));

@@ -81,12 +81,7 @@ impl<'a> SectionInput<'a> {
     /// As [`SectionInput::position`], but every angle is the one nearest to its value in `position`,
     /// modulo 2π. Along a motion in small steps no angle jumps, not even to stay within its limits.
     #[inline]
-    pub fn position_near(
-        &self,
-        value: f64,
-        branch: SectionSigns,
-        position: &mut Position,
-    ) -> bool {
+    pub fn position_near(&self, value: f64, branch: SectionSigns, position: &mut Position) -> bool {
         let imaginary = position.imaginary.unwrap_or(self.linkage.imaginary.home);
         let held = |coordinate: usize, position: &Position| Some(position.joints[coordinate]);
         self.solve_at(value, branch, position, (held, imaginary))

@@ -82,12 +82,7 @@ impl Arcs {
     }
 
     /// The position in an arc with the input displaced so, and the motion there. `None` outside the arc.
-    pub fn position(
-        &self,
-        of: &ClosedLoop,
-        arc: usize,
-        displacement: f64,
-    ) -> Option<Posture> {
+    pub fn position(&self, of: &ClosedLoop, arc: usize, displacement: f64) -> Option<Posture> {
         let [low, high] = self.interval(arc);
         let mut value = displacement;
         let inside = |value: f64| (low - ROUNDING..=high + ROUNDING).contains(&value);
@@ -101,7 +96,8 @@ impl Arcs {
         let knots = &self.all[arc].knots;
         let of_knot = |knot: &Knot| knot.at.values[input];
         let grows = of_knot(&knots[0]) <= of_knot(&knots[knots.len() - 1]);
-        let before = |knot: &Knot| if grows { of_knot(knot) <= value } else { of_knot(knot) >= value };
+        let before =
+            |knot: &Knot| if grows { of_knot(knot) <= value } else { of_knot(knot) >= value };
         let next = knots.partition_point(before).clamp(1, knots.len() - 1);
         let (a, b) = (&knots[next - 1], &knots[next]);
         for end in [a, b] {
@@ -167,8 +163,7 @@ fn split(of: &ClosedLoop, curve: &Curve, input: usize) -> Vec<Arc> {
         }
         parts.last_mut().expect("there is a first one").push(pair[1].clone());
     }
-    let (start, end) =
-        (knots[0].at.values.clone(), knots[knots.len() - 1].at.values.clone());
+    let (start, end) = (knots[0].at.values.clone(), knots[knots.len() - 1].at.values.clone());
     match (curve.closed, parts.len()) {
         (true, 1) => turns(of, knots, input, end[input] - start[input]),
         (true, _) => {
@@ -226,7 +221,8 @@ fn turns(of: &ClosedLoop, knots: Vec<Knot>, input: usize, by: f64) -> Vec<Arc> {
         let value = |knot: &Knot| knot.at.values[input];
         let inside = |knot: &&Knot| (value(&pair[0])..value(&pair[1])).contains(&value(knot));
         let middle = arcs.all[0].knots.iter().filter(inside).cloned();
-        let knots = std::iter::once(pair[0].clone()).chain(middle).chain([pair[1].clone()]).collect();
+        let knots =
+            std::iter::once(pair[0].clone()).chain(middle).chain([pair[1].clone()]).collect();
         Arc { knots, ends: [ArcEnd::Turn; 2] }
     };
     ends.windows(2).map(part).collect()

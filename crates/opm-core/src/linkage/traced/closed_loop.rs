@@ -312,7 +312,8 @@ impl ClosedLoop {
                     if passed != ball {
                         // The rotation about the centre, which all three axes pass.
                         let turned = at.balls[number].scaled_axis();
-                        let (first, mut about) = (self.balls[number].first, Screw::from_vector(&Vector6::zeros()));
+                        let (first, mut about) =
+                            (self.balls[number].first, Screw::from_vector(&Vector6::zeros()));
                         for j in first..first + 3 {
                             let axis = &self.freedoms[j].screw;
                             let share = axis.angular.dot(&turned);

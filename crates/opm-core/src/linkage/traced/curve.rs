@@ -37,10 +37,14 @@ pub enum Stuck {
     #[error("it does not move: no rates of its joints keep the loop closed")]
     Rigid,
     /// The loop has several motions.
-    #[error("it has {0} freedoms at home, expected one (of a rod between two balls, make one ball a universal joint)")]
+    #[error(
+        "it has {0} freedoms at home, expected one (of a rod between two balls, make one ball a universal joint)"
+    )]
     Several(usize),
     /// The loop moves at first order only.
-    #[error("its joints have rates at home that keep the loop closed, but it closes nowhere near home: it is rigid")]
+    #[error(
+        "its joints have rates at home that keep the loop closed, but it closes nowhere near home: it is rigid"
+    )]
     FirstOrder,
     /// The curve has more knots than are kept.
     #[error("its motion does not come back within {MOST_KNOTS} steps")]
@@ -49,11 +53,7 @@ pub enum Stuck {
 
 impl Knot {
     /// A position with its tangent, in the direction of `along` if that is given.
-    pub fn new(
-        of: &ClosedLoop,
-        at: Posture,
-        along: Option<&DVector<f64>>,
-    ) -> Result<Self, Stuck> {
+    pub fn new(of: &ClosedLoop, at: Posture, along: Option<&DVector<f64>>) -> Result<Self, Stuck> {
         let tangent = match (of.motions(&at), along) {
             (Motions::None, _) => return Err(Stuck::Rigid),
             (Motions::One(tangent), Some(along)) if tangent.dot(along) < 0.0 => -tangent,
@@ -156,7 +156,8 @@ fn arrived(of: &ClosedLoop, last: &Knot, start: &Knot, length: f64) -> Option<Kn
         return None;
     }
     let (met, off) = last.towards(of, &start.at)?;
-    let same_way = of.without_rods(met.tangent.clone()).dot(&of.without_rods(start.tangent.clone()));
+    let same_way =
+        of.without_rods(met.tangent.clone()).dot(&of.without_rods(start.tangent.clone()));
     (off <= SAME && same_way > 0.0).then(|| {
         let mut end = met;
         let rods = end.at.clone();

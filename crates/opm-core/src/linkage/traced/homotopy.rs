@@ -26,10 +26,7 @@ pub enum Before {
     /// Any: a quaternion and a translation.
     Free([([C; 4], V); 2]),
     /// A joint whose factor moves.
-    Joint {
-        axis: DualQuaternion,
-        factors: [[C; 2]; 2],
-    },
+    Joint { axis: DualQuaternion, factors: [[C; 2]; 2] },
 }
 
 /// Six joints between two loops.

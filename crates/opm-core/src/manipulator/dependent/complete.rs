@@ -48,6 +48,7 @@ impl Dependent {
             let found = match whole {
                 Whole::Stem(stem) => stem.complete(manipulator.task(), mode, pose),
                 Whole::Rows(rows) => rows.complete(manipulator.task(), mode, pose),
+                Whole::Mirror(mirror) => mirror.complete(manipulator.task(), pose),
             };
             return found.map_err(missed);
         }

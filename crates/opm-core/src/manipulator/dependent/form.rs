@@ -6,6 +6,7 @@ use super::{Closed, Dependent, Whole};
 use crate::chain::condition::Condition;
 use crate::chain::whole::WholeLeg;
 use crate::manipulator::leg::{CompiledLeg, Section};
+use crate::numbers::{Plane as _, Real};
 use crate::task::Task;
 use nalgebra::{Matrix3, Vector3};
 
@@ -56,6 +57,8 @@ pub enum WholeStep {
     Stem(Box<StemForm>),
     /// From the constraints of several legs.
     Rows(RowsForm),
+    /// From the plane in which the platform is the image of its base.
+    Mirror(MirrorForm),
 }
 
 /// The loop of a stem and of the coordinates: `E(q) = T(x y z) · R(angles)`.
@@ -113,6 +116,52 @@ pub struct RowsForm {
     pub first_angle: usize,
 }
 
+/// A platform that is the image of its base in a plane.
+#[derive(Clone, Debug)]
+pub struct MirrorForm {
+    /// The number of the first leg that constrains.
+    pub leg: usize,
+    /// The number of the roll among the coordinates; the pitch and the yaw follow it.
+    pub first_angle: usize,
+    /// The height of home's mid-plane above the reference point, metres.
+    pub height: f64,
+    /// Of two freedoms, the sphere that the mid-plane is tangent to: its centre from the reference point, and its radius.
+    pub sphere: Option<(Vector3<f64>, f64)>,
+}
+
+/// What follows from the orientation of a mid-plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Mirrored<T: Real> {
+    /// The direction of the yaw, of no particular length.
+    pub yaw: T::Plane,
+    /// The position of the reference point from home, metres.
+    pub moved: [T; 3],
+    /// Zero where the platform is upside down, and nothing follows.
+    pub upright: T,
+}
+
+impl MirrorForm {
+    /// What follows from the roll, the pitch, and the height of the reference point above home.
+    pub fn follow<T: Real>(&self, [roll, pitch]: [T; 2], height: T) -> Mirrored<T> {
+        let (roll, pitch) = (roll.unit(), pitch.unit());
+        let ([c, s], [k, t]) = ([roll.re(), roll.im()], [pitch.re(), pitch.im()]);
+        let upright = k * c + 1.0;
+        let normal = [t, -(s * k), upright];
+        let twice = 2.0 * self.height;
+        // How far the reference point is moved along the normal.
+        let along = match self.sphere {
+            None => (height - twice).over(upright),
+            Some((centre, radius)) => {
+                let towards = normal[0] * centre.x + normal[1] * centre.y + normal[2] * centre.z;
+                let root = (upright * 2.0).root();
+                towards.over(upright) + T::constant(2.0 * radius).over(root) - twice
+            }
+        };
+        let moved = [normal[0] * along, normal[1] * along, normal[2] * along + twice];
+        Mirrored { yaw: T::Plane::new(k + c, t * s), moved, upright }
+    }
+}
+
 /// One of the equations.
 #[derive(Clone, Debug)]
 pub struct RowForm {
@@ -145,6 +194,7 @@ impl Dependent {
         Some(match self.whole.as_ref()? {
             Whole::Stem(stem) => WholeStep::Stem(Box::new(stem.form())),
             Whole::Rows(rows) => WholeStep::Rows(rows.form()),
+            Whole::Mirror(mirror) => WholeStep::Mirror(mirror.form.clone()),
         })
     }
 
