@@ -199,3 +199,55 @@ fn rates_are_differences() {
         assert!(checked > 10, "{checked}");
     }
 }
+
+/// In every mode: the platform's twist for each coordinate is that of differences of its displacements.
+#[test]
+fn twists_are_differences() {
+    let mut rng = Rng::with_seed(403);
+    for mechanism in [canfield(), omni_wrist()] {
+        let m = Manipulator::new(mechanism).unwrap();
+        let count = m.task_coordinates().len();
+        let (mut all, mut at, mut jacobians) = (m.all_modes(), m.solution(), m.jacobians());
+        let mut checked = 0;
+        for _ in 0..30 {
+            let mut pose = m.home_pose();
+            pose[count - 2..].iter_mut().for_each(|angle| *angle = 1.6 * (rng.f64() - 0.5));
+            if m.inverse_all(&pose, &mut all).unwrap().is_none() {
+                continue;
+            }
+            let modes: Vec<_> = all.modes(&m).collect();
+            for mode in modes {
+                assert!(m.solution_in_mode(&all, mode, &mut at).is_some());
+                if !m.differentiate(&at, &mut jacobians).unwrap() {
+                    continue;
+                }
+                let found = m.twist_by_pose(&jacobians);
+                for column in 0..count {
+                    let step = 1e-6;
+                    let [less, more] = [-step, step].map(|by| {
+                        let mut moved = pose.clone();
+                        moved[column] += by;
+                        m.displacement_in(&moved, mode).unwrap()
+                    });
+                    let turned = (more.rotation * less.rotation.inverse()).scaled_axis();
+                    let point = Point3::new(0.0, 0.0, HEIGHT);
+                    let moved = more * point - less * point;
+                    for i in 0..3 {
+                        let pairs =
+                            [(turned[i], found[(i, column)]), (moved[i], found[(i + 3, column)])];
+                        for (difference, rate) in pairs {
+                            let off = (difference / (2.0 * step) - rate).abs();
+                            assert!(
+                                off < 1e-6,
+                                "{count} {pose:?} {}: {i} {column} {off:e}",
+                                m.format_mode(mode)
+                            );
+                        }
+                    }
+                    checked += 1;
+                }
+            }
+        }
+        assert!(checked > 40, "{checked}");
+    }
+}

@@ -136,7 +136,8 @@ pub fn linkage(rng: &mut Rng, (shared, sections): (Shared, [Section; 2])) -> Lin
     for _ in 0..MOST_TRIES {
         let mechanism = mechanism(rng, shared, sections);
         let linkage = match Linkage::new(&mechanism) {
-            Ok(linkage) => linkage,
+            Ok(linkage) if !linkage.is_traced() => linkage,
+            Ok(_) => continue,
             // Nearly parallel sliders, or nearly singular at home.
             Err(LinkageError::Decompose(_)) => continue,
             Err(error) => panic!("{shared:?} {sections:?}: {error}\n{mechanism:?}"),

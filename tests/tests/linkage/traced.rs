@@ -199,7 +199,7 @@ fn threefold_symmetric_bricard() {
     }
 }
 
-/// Hooke's joint: `tan φ = tan θ / cos β` between shafts at an angle β.
+/// Hooke's joint: `tan φ = tan θ cos β` between shafts at an angle β, where the first pin is across both at home.
 #[test]
 fn hookes_joint() {
     let beta: f64 = 0.6;
@@ -219,7 +219,7 @@ fn hookes_joint() {
         let out = input.solve(theta).iter().map(|p| p.joints[2]).collect::<Vec<_>>();
         assert!(!out.is_empty());
         for phi in out {
-            let off = (phi.tan() * beta.cos() - theta.tan()).abs();
+            let off = (phi.tan() - theta.tan() * beta.cos()).abs();
             assert!(off < 1e-8 * (1.0 + theta.tan().powi(2)), "{theta} {phi}");
         }
     }

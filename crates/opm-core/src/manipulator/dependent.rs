@@ -33,9 +33,8 @@ use super::Mode;
 use super::leg::{CompiledLeg, Section};
 use super::mode::{Choices, ModeLayout};
 use crate::chain::whole::NoOrder;
-use crate::decomposition::mobility::{assembled, frame};
+use crate::decomposition::mobility::assembled;
 use crate::decomposition::whole::Constrained;
-use crate::group::subspace::MotionSubspace;
 use crate::group::{JointDisplacement, SubspaceKind};
 use crate::mechanism::Mechanism;
 use crate::numeric::Quantity;
@@ -286,7 +285,9 @@ impl Dependent {
             }
             Constrained::Mirror { freedoms } => {
                 let motions = assembled(mechanism);
-                let legs = (holding(mechanism, 6 - freedoms), freedoms);
+                let lacks = |leg: &usize| mechanism.legs[*leg].screws().len() < 6;
+                let legs = (0..mechanism.legs.len()).filter(lacks).collect();
+                let legs = (legs, freedoms);
                 let found = Mirror::new(task, mechanism.platform, legs, &motions, size);
                 let (independent, mirror) = found.ok_or(ConstraintError::Mirror)?;
                 (independent, Whole::Mirror(mirror))
@@ -556,28 +557,6 @@ impl Closed {
 const DETERMINED: f64 = 0.3;
 /// Below this they do not determine it.
 const UNDETERMINED: f64 = 1e-6;
-
-/// The first legs whose wrenches at home, together, hold the platform in so many directions.
-fn holding(mechanism: &Mechanism, directions: usize) -> Vec<usize> {
-    let frame = frame(mechanism);
-    let spans = mechanism.legs.iter().map(|leg| MotionSubspace::span(frame, &leg.screws()));
-    let (mut legs, mut left) = (Vec::new(), None::<MotionSubspace>);
-    for (leg, span) in spans.enumerate() {
-        let held = |of: &Option<MotionSubspace>| of.as_ref().map_or(0, |of| 6 - of.dimension());
-        let next = match &left {
-            Some(left) => Some(left.intersection(&span)),
-            None => Some(span),
-        };
-        if held(&next) > held(&left) {
-            legs.push(leg);
-            left = next;
-        }
-        if held(&left) == directions {
-            break;
-        }
-    }
-    legs
-}
 
 /// The sets of coordinates that determine the platform's motion at home and suit, those first that do so well, and of these
 /// those that are not `late`. Otherwise they are in the order in which the coordinates are `preferred`. `rates` has a row for

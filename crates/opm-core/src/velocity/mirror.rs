@@ -10,8 +10,8 @@ use nalgebra::{Vector3, Vector6};
 const MOST: usize = 6;
 
 impl Manipulator {
-    /// As many wrenches as there are dependent coordinates, each with the number of its leg. Legs share wrenches: of each leg,
-    /// those combinations count that the legs before it do not have.
+    /// As many wrenches as there are dependent coordinates, each with the number of its leg. Where legs share
+    /// some, those combinations count that are known least from the ones before.
     pub(super) fn mirror_wrenches(
         &self,
         at: &Solution,
@@ -20,35 +20,54 @@ impl Manipulator {
         differential: impl Fn(usize) -> WholeDifferential,
     ) -> [Option<(usize, Vector6<f64>)>; MOST] {
         let wanted = self.dependent_coordinates().len().min(MOST);
-        let (mut found, mut known, mut all) = ([None; MOST], 0, 0);
-        let mut basis = [Vector6::zeros(); MOST];
-        for &leg in legs {
+        let (mut found, mut known) = ([None; MOST], 0);
+        let of_leg = |leg: usize| {
             let own = differential(leg);
             let mut given = self.stem_wrenches(&own, point, MOST - own.count);
             let wrenches: [Vector6<f64>; MOST] =
                 std::array::from_fn(|_| given.next().unwrap_or_default());
-            all += MOST - own.count;
-            while known < wanted {
-                let without = |wrench: Vector6<f64>| {
-                    basis[..known].iter().fold(wrench, |rest, unit| rest - unit * unit.dot(&rest))
-                };
+            (wrenches, MOST - own.count)
+        };
+        let all: usize = legs.iter().map(|&leg| of_leg(leg).1).sum();
+        if all == wanted {
+            for &leg in legs {
+                let (wrenches, count) = of_leg(leg);
+                for wrench in wrenches.into_iter().take(count) {
+                    found[known] = Some((leg, wrench));
+                    known += 1;
+                }
+            }
+            return found;
+        }
+        let mut basis = [Vector6::zeros(); MOST];
+        while known < wanted {
+            let without = |wrench: Vector6<f64>| {
+                basis[..known].iter().fold(wrench, |rest, unit| rest - unit * unit.dot(&rest))
+            };
+            // Of the leg with the wrench that is least known, the combination that is.
+            let mut best = (0.0, 0, Vector6::zeros());
+            for &leg in legs {
+                let (wrenches, _) = of_leg(leg);
                 let rests = wrenches.map(without);
                 let longest = rests.into_iter().max_by(|a, b| a.norm().total_cmp(&b.norm()));
-                let Some(longest) = longest.filter(|rest| rest.norm() > SINGULAR.sqrt()) else {
-                    break;
-                };
-                let unit = longest.normalize();
-                let shares = wrenches.iter().zip(&rests).map(|(w, rest)| w * rest.dot(&unit));
-                let wrench = shares.sum::<Vector6<f64>>().normalize();
-                let rest = without(wrench).normalize();
-                (basis[known], found[known]) = (rest, Some((leg, wrench)));
-                known += 1;
+                let longest = longest.unwrap_or_default();
+                if longest.norm() > best.0 + SINGULAR {
+                    let unit = longest.normalize();
+                    let shares = wrenches.iter().zip(&rests).map(|(w, rest)| w * rest.dot(&unit));
+                    best = (longest.norm(), leg, shares.sum::<Vector6<f64>>().normalize());
+                }
             }
+            let (_, leg, wrench) = best;
+            let rest = without(wrench);
+            if rest.norm() < SINGULAR {
+                break;
+            }
+            (basis[known], found[known]) = (rest.normalize(), Some((leg, wrench)));
+            known += 1;
         }
         // Combinations have no sense of their own. Theirs is that in which dependent coordinates grow, so that measures change
         // their sign at singularities alone.
-        if all > wanted
-            && self.sense(at, point, &found) < 0.0
+        if self.sense(at, point, &found) < 0.0
             && let Some((_, last)) = found[..known].last_mut().and_then(Option::as_mut)
         {
             *last = -*last;

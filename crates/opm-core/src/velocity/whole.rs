@@ -490,6 +490,8 @@ impl Manipulator {
         let (point, size) = (self.reference(at), self.characteristic_length());
         let lower = self.task().lower.isometry(&at.solved.v).rotation;
         let (wrenches, count) = self.holding(at, &point, |leg| out.whole[leg].clone());
+        // Where too few hold, dependent coordinates have no rates.
+        out.locked.fill(0.0);
         for (row, (_, wrench)) in wrenches.iter().enumerate().take(count) {
             for (column, twist) in out.platform.column_iter().enumerate() {
                 let angular: Vector3<f64> = lower * twist.fixed_rows::<3>(0);

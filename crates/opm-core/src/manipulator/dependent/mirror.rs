@@ -32,7 +32,7 @@ const LEVEL: f64 = 1e-6;
 /// How coordinates follow from the mid-plane.
 #[derive(Clone, Debug)]
 pub(crate) struct Mirror {
-    /// The legs that constrain, so many that their wrenches hold the platform.
+    /// The legs that constrain.
     pub legs: Vec<usize>,
     /// The numbers.
     pub form: MirrorForm,
