@@ -48,7 +48,7 @@
 //! let crank = linkage.input("a1").unwrap();
 //! assert!(crank.range().is_full_turn());
 //! for position in crank.solve(30_f64.to_radians()) {
-//!     println!("{}: {:?}, tau = {}", position.branch, position.joints, position.imaginary);
+//!     println!("{}: {:?}, tau = {:?}", position.branch, position.joints, position.imaginary);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

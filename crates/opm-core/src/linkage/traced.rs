@@ -65,7 +65,11 @@ impl Traced {
                 let at = FIRST_SAMPLE + sample as f64 * TAU / SAMPLES as f64;
                 for found in all.at(at) {
                     let known = |curve| passes(&closed, curve, &found);
-                    if closed.farthest(&found) > curve::FAR || curves.iter().any(known) {
+                    let traced: usize = curves.iter().map(|curve| curve.knots.len()).sum();
+                    if closed.farthest(&found) > curve::FAR
+                        || traced > curve::MOST_KNOTS
+                        || curves.iter().any(known)
+                    {
                         continue;
                     }
                     // A single position, or where curves cross, is on no curve of its own.

@@ -11,7 +11,7 @@ const SHORTEST: f64 = 1e-9;
 const STRAIGHT: f64 = 0.995;
 /// A slider that is so many sizes from home goes to infinity.
 pub const FAR: f64 = 1000.0;
-const MOST_KNOTS: usize = 100_000;
+pub const MOST_KNOTS: usize = 100_000;
 const MOST_CORRECTIONS: usize = 8;
 /// How near positions are the same, in radians and sizes.
 pub const SAME: f64 = 1e-6;
@@ -37,9 +37,7 @@ pub enum Stuck {
     #[error("it does not move: no rates of its joints keep the loop closed")]
     Rigid,
     /// The loop has several motions.
-    #[error(
-        "it has {0} freedoms at home, expected one (of a rod between two balls, make one ball a universal joint)"
-    )]
+    #[error("it has {0} freedoms at home, expected one")]
     Several(usize),
     /// The loop moves at first order only.
     #[error(
