@@ -16,7 +16,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-/// A single loop that decomposes into the loops of two sections, which share an imaginary joint.
+/// A single loop of two legs with one freedom, moved by one of its joints: four-bars, RSSR, Bennett's linkage, any.
+///
+/// Loops of two sections, which share an imaginary joint, are solved in closed form. All others are traced.
 ///
 /// Immutable; it can be pickled, and shared between threads.
 ///
@@ -57,7 +59,7 @@ impl Linkage {
     /// OSError
     ///     The file cannot be read. If it does not exist, this is a FileNotFoundError with its name.
     /// OpmError
-    ///     Lists every problem of the file with its line and column, or says why it is not a single loop of two sections.
+    ///     Lists every problem of the file with its line and column, or says why it is not a single loop with one freedom.
     #[staticmethod]
     #[pyo3(signature = (path, *, tolerance = None))]
     fn load(
@@ -90,7 +92,7 @@ impl Linkage {
     /// Raises
     /// ------
     /// OpmError
-    ///     Lists every problem of the text with its line and column, or says why it is not a single loop of two sections.
+    ///     Lists every problem of the text with its line and column, or says why it is not a single loop with one freedom.
     #[staticmethod]
     #[pyo3(signature = (text, label = None, *, tolerance = None))]
     fn parse(
@@ -161,12 +163,13 @@ impl Linkage {
     /// Returns
     /// -------
     /// str
-    ///     Two signs: the first for the loop with the input, the second for the other one. A loop without a choice has +.
+    ///     Two signs, of a loop of two sections: the first for the loop with the input, the second for the other one. A loop
+    ///     without a choice has +. Of a traced loop it is "1": branches are numbered along the motion from home.
     ///
     /// Raises
     /// ------
     /// OpmError
-    ///     There is no joint of this name.
+    ///     There is no joint of this name that can move the linkage.
     #[pyo3(signature = (input = None))]
     fn home_branch(&self, input: Option<&str>) -> PyResult<String> {
         Ok(self.input(input)?.home_branch().to_string())
@@ -188,7 +191,7 @@ impl Linkage {
     /// Raises
     /// ------
     /// OpmError
-    ///     There is no joint of this name.
+    ///     There is no joint of this name that can move the linkage.
     #[pyo3(signature = (input = None))]
     fn range(&self, py: Python<'_>, input: Option<&str>) -> PyResult<Py<PyArray2<f64>>> {
         let input = self.input(input)?;
@@ -201,7 +204,7 @@ impl Linkage {
         frozen(ends.reshape([parts.len(), 2])?)
     }
 
-    /// Every position for many values of one joint, in all four branches.
+    /// Every position for many values of one joint, in all branches.
     ///
     /// Parameters
     /// ----------
@@ -216,8 +219,8 @@ impl Linkage {
     /// Returns
     /// -------
     /// Solutions
-    ///     The arrays have the shapes ``(n, 4, k)``, ``(n, 4, 1)`` and ``(n, 4)``, with the four branches as modes. NaN where the
-    ///     loop does not close. Angles are within π of their home values, unless the joint limits allow another revolution;
+    ///     The arrays have the shapes ``(n, b, k)``, ``(n, b, i)`` and ``(n, b)``, with the b branches as modes: four of a loop
+    ///     of two sections, which has i = 1 imaginary joint; a traced loop has none. NaN where the loop does not close. Angles are within π of their home values, unless the joint limits allow another revolution;
     ///     ``np.unwrap`` along the first axis makes angles over full revolutions continuous.
     ///
     /// Raises
@@ -264,7 +267,7 @@ impl Linkage {
     ///
     /// Joints have the names and the values of `joints`; the platform is the body ``platform``. Each actuated joint has a
     /// position servo of its name, and each branch with the input at home a keyframe, named by its
-    /// signs: ``p_m`` is ``+ -``. It is the file that ``opm export mjcf`` writes.
+    /// signs or its number: ``p_m`` is ``+ -``, ``branch1`` is 1. It is the file that ``opm export mjcf`` writes.
     ///
     /// Parameters
     /// ----------
@@ -307,7 +310,7 @@ impl Linkage {
             joint.map_or("", |joint| &joint.coordinates[0].name)
         };
         let name = name.unwrap_or_else(actuated);
-        let known = || self.joint_names().join(", ");
+        let known = || self.inner.inputs().collect::<Vec<_>>().join(", ");
         let unknown = || wrong(format!("input is {name:?}, expected one of {}", known()));
         self.inner.input(name).ok_or_else(unknown)
     }

@@ -68,6 +68,7 @@ pub use traced::Stuck;
 use crate::chain::limits::Limits;
 use crate::decomposition::mobility::{frame, mobility};
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
+use crate::group::JointDisplacement;
 use crate::manipulator::ImaginaryJoint;
 use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
@@ -98,9 +99,37 @@ pub enum LinkageError {
 #[derive(Clone, Debug)]
 pub struct Linkage {
     mechanism: Mechanism,
+    joints: Joints,
+    solver: Solver,
+}
+
+/// The joints of a linkage.
+#[derive(Clone, Debug)]
+struct Joints {
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
-    solver: Solver,
+    /// The mechanism's size, metres.
+    size: f64,
+}
+
+impl Joints {
+    fn new(mechanism: &Mechanism) -> Self {
+        let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
+        let size = frame(mechanism).length;
+        let limits = coordinates.iter().map(|c| c.displacement_limits(size)).collect();
+        Self { coordinates, limits, size }
+    }
+
+    fn home(&self) -> Vec<f64> {
+        self.coordinates.iter().map(|c| c.home).collect()
+    }
+
+    /// The value of a coordinate for its displacement, near `held` if that is given, and whether it is within limits.
+    fn value(&self, i: usize, displacement: JointDisplacement, held: Option<f64>) -> (f64, bool) {
+        let home = self.coordinates[i].home;
+        let (value, within) = self.limits[i].place(displacement, held.map(|held| held - home));
+        (home + value, within)
+    }
 }
 
 /// How positions are found.
@@ -128,12 +157,9 @@ impl Linkage {
             ) => Vec::new(),
             Err(error) => return Err(error.into()),
         };
-        let (coordinates, limits, size) = parts(mechanism);
         for way in ways {
-            let own = (coordinates.clone(), limits.clone(), size);
-            if let Some(sections) = Sections::new(mechanism, way, own)? {
-                let solver = Solver::Sections(Box::new(sections));
-                return Ok(Self { mechanism: mechanism.clone(), coordinates, limits, solver });
+            if let Some(sections) = Sections::new(mechanism, way)? {
+                return Ok(Self::with(mechanism, Solver::Sections(Box::new(sections))));
             }
         }
         Self::traced(mechanism)
@@ -149,9 +175,11 @@ impl Linkage {
         }
         // Says what is wrong with the joints first.
         mobility(mechanism).map_err(DecomposeError::from)?;
-        let (coordinates, limits, _) = parts(mechanism);
-        let solver = Solver::Traced(Box::new(Traced::new(mechanism)?));
-        Ok(Self { mechanism: mechanism.clone(), coordinates, limits, solver })
+        Ok(Self::with(mechanism, Solver::Traced(Box::new(Traced::new(mechanism)?))))
+    }
+
+    fn with(mechanism: &Mechanism, solver: Solver) -> Self {
+        Self { mechanism: mechanism.clone(), joints: Joints::new(mechanism), solver }
     }
 
     /// The mechanism.
@@ -169,12 +197,12 @@ impl Linkage {
 
     /// Every joint coordinate, leg by leg. [`Position::joints`] has this order.
     pub fn coordinates(&self) -> &[JointCoordinate] {
-        &self.coordinates
+        &self.joints.coordinates
     }
 
     /// The limits of every joint coordinate, in the order of [`Linkage::coordinates`].
     pub fn limits(&self) -> &[Limits] {
-        &self.limits
+        &self.joints.limits
     }
 
     /// The imaginary joint: one that two sections share, none of a loop that is traced.
@@ -211,21 +239,13 @@ impl Linkage {
     /// The linkage driven by the joint coordinate with this name; `None` if there is none, or if it cannot move the others: a
     /// coordinate of a ball, or a joint that stands still.
     pub fn input(&self, name: &str) -> Option<Input<'_>> {
-        let coordinate = self.coordinates.iter().position(|c| c.name == name)?;
+        let coordinate = self.coordinates().iter().position(|c| c.name == name)?;
         Input::new(self, coordinate)
     }
 
     /// The names of the joints that can move the linkage.
     pub fn inputs(&self) -> impl Iterator<Item = &str> {
         let moves = |&i: &usize| Input::new(self, i).is_some();
-        (0..self.coordinates.len()).filter(moves).map(|i| &*self.coordinates[i].name)
+        (0..self.coordinates().len()).filter(moves).map(|i| &*self.coordinates()[i].name)
     }
-}
-
-/// What a linkage knows of its joints: coordinates, limits and size.
-fn parts(mechanism: &Mechanism) -> (Vec<JointCoordinate>, Vec<Limits>, f64) {
-    let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-    let size = frame(mechanism).length;
-    let limits = coordinates.iter().map(|c| c.displacement_limits(size)).collect();
-    (coordinates, limits, size)
 }

@@ -158,6 +158,76 @@ fn bennett() {
     }
 }
 
+/// Goldberg's 5R (1943): two of Bennett's linkages on one link, with the links beside it joined, and the common link taken out. With
+/// the joined links at the angle φ of one, the other joints turn as in the two.
+#[test]
+fn goldberg() {
+    let (alpha, sides) = (0.5_f64, [1.2_f64, 2.0]);
+    let other = |beta: f64, theta: f64| {
+        let product = f64::sin(0.5 * (beta + alpha)) / f64::sin(0.5 * (beta - alpha));
+        2.0 * (product / f64::tan(0.5 * theta)).atan()
+    };
+    let homes = [1.1, 1.7];
+    // The axes B C D of each, seen from the common link: A B C D are the axes of a loop, and the common link is A B.
+    let axes = |number: usize| -> Vec<(Vector3<f64>, Vector3<f64>)> {
+        let (beta, home) = (sides[number], homes[number]);
+        let across = other(beta, home);
+        let links = [(alpha, home), (beta, across), (alpha, -home), (beta, -across)];
+        let mut frame = Isometry3::identity();
+        let mut frames = Vec::new();
+        for (twist, theta) in links {
+            frames.push(frame);
+            let turn =
+                |axis: Vector3<f64>, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
+            frame = frame
+                * turn(Vector3::z(), theta)
+                * Translation3::new(0.7 * twist.sin(), 0.0, 0.0)
+                * turn(Vector3::x(), twist);
+        }
+        // Turned back by the first joint, the common link stands still.
+        let back = UnitQuaternion::from_scaled_axis(Vector3::z() * -homes[number]);
+        let axis = |frame: &Isometry3<f64>| {
+            let seen = back * frame;
+            (seen.rotation * Vector3::z(), seen.translation.vector)
+        };
+        frames.iter().map(axis).collect()
+    };
+    let [one, two] = [axes(0), axes(1)];
+    assert!((one[1].1 - two[1].1).norm() < 1e-12, "the common link is one");
+    let joint = |name: &str, (axis, at): &(Vector3<f64>, Vector3<f64>), sign: f64| {
+        let axis = nalgebra::Unit::new_normalize(axis * sign);
+        Joint::new(name, JointKind::Revolute, axis, Point3::from(*at))
+    };
+    // From the joined links: D C B of the first linkage, and D C of the second one.
+    let first = vec![
+        joint("d1", &one[3], 1.0).actuated(),
+        joint("c1", &one[2], 1.0),
+        joint("b", &one[1], 1.0),
+    ];
+    let second = vec![joint("d2", &two[3], 1.0), joint("c2", &two[2], 1.0)];
+    let linkage = traced(&of_legs([first, second]));
+    let input = linkage.input("d1").unwrap();
+    let (mut position, mut moved) = (input.home(), 0);
+    for step in -20..=20 {
+        // Both angles at A change by the same.
+        let by = 0.04 * f64::from(step);
+        let [a, b] = [0, 1].map(|i| {
+            let (beta, home) = (sides[i], homes[i]);
+            other(beta, home + by) - other(beta, home)
+        });
+        // Opposite joints turn alike: at C as at A, at D as at B.
+        if !input.position(a, input.home_branch(), &mut position) {
+            continue;
+        }
+        let turned = |i: usize| position.joints[i].abs();
+        let expected = [a.abs(), by.abs(), (a - b).abs(), b.abs(), by.abs()];
+        let off = expected.iter().enumerate().map(|(i, e)| (turned(i) - e).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-8, "{by}: {:?} {expected:?}", position.joints);
+        moved += 1;
+    }
+    assert!(moved > 30, "{moved}");
+}
+
 /// `cos²α + sin²α (cos θ + cos φ) + (1 + cos²α) cos θ cos φ − 2 cos α sin θ sin φ = 0` for alternating angles (Chen, You and Tarnai,
 /// "Threefold-symmetric Bricard linkages for deployable structures", Int. J. Solids and Structures 42, 2005).
 #[test]

@@ -6,11 +6,10 @@ use std::f64::consts::PI;
 
 /// The closed motion of a linkage that starts at home with its input growing.
 ///
-/// An input that can make a full revolution does so once, in the home branch; so does a slider that is
-/// moved by the revolutions of a screw. Any other input comes to an end of its range, where one of the
-/// two loops folds. The linkage then moves back in the
-/// other branch that meets there, and so on until it is home again. A loop that is traced may be home only after several
-/// revolutions.
+/// An input that can make a full revolution does so, in the home branch; so does a slider that is
+/// moved by the revolutions of a screw. A traced loop may be home only after several revolutions. Any other input comes to an end
+/// of its range, where the loop folds. The linkage then moves back in the other branch that meets there, and so on until it is
+/// home again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
     pub(super) home: f64,
@@ -67,7 +66,7 @@ impl Cycle {
         }
     }
 
-    /// Arcs, ascending or descending by turns, of which home is in the first one.
+    /// A cycle from fold to fold and back, with home in the first arc.
     pub(super) fn arcs(home: f64, arcs: Vec<CycleArc>) -> Self {
         let CycleArc { from, to, .. } = arcs[0];
         let half = 0.5 * (to - from);

@@ -65,10 +65,11 @@ enum InputSolver<'a> {
 impl<'a> Input<'a> {
     pub(super) fn new(linkage: &'a Linkage, coordinate: usize) -> Option<Self> {
         let solver = match &linkage.solver {
-            Solver::Sections(sections) => InputSolver::Sections(sections.input(coordinate)?),
+            Solver::Sections(sections) => {
+                InputSolver::Sections(sections.input(&linkage.joints, coordinate)?)
+            }
             Solver::Traced(traced) => {
-                let joints = (&*linkage.coordinates, &*linkage.limits);
-                InputSolver::Traced(TracedInput::new(traced, joints, coordinate)?)
+                InputSolver::Traced(TracedInput::new(traced, &linkage.joints, coordinate)?)
             }
         };
         Some(Self { linkage, coordinate, solver })
@@ -76,7 +77,7 @@ impl<'a> Input<'a> {
 
     /// The input's joint coordinate.
     pub fn coordinate(&self) -> &'a JointCoordinate {
-        &self.linkage.coordinates[self.coordinate]
+        &self.linkage.coordinates()[self.coordinate]
     }
 
     /// Every branch that there is for some value of the input.
@@ -101,7 +102,7 @@ impl<'a> Input<'a> {
             InputSolver::Sections(input) => input.home(),
             InputSolver::Traced(_) => Position {
                 branch: self.home_branch(),
-                joints: self.linkage.coordinates.iter().map(|c| c.home).collect(),
+                joints: self.linkage.joints.home(),
                 imaginary: None,
                 within_limits: true,
             },

@@ -9,13 +9,13 @@ mod section_loop;
 pub use input::{SectionInput, SectionSigns};
 pub use section_loop::{DeadPoint, DrivenLoop, SectionLoop};
 
+use super::Joints;
 use crate::chain::ChainJoint;
-use crate::chain::limits::Limits;
 use crate::decomposition::{Decomposition, Freedom, LegSplit};
 use crate::group::Subspace;
 use crate::manipulator::{ImaginaryJoint, Section, chain_joints, coordinate_number};
 use crate::mechanism::Mechanism;
-use crate::mechanism::joint::{JointCoordinate, JointKind};
+use crate::mechanism::joint::JointKind;
 use crate::mechanism::leg::Leg;
 use crate::task::{IntersectionAxis, Task, TaskError};
 
@@ -27,10 +27,6 @@ pub struct Sections {
     /// Whether the imaginary joint belongs to the second leg, so that its displacement is `-τ`.
     reversed: bool,
     sections: [LinkageSection; 2],
-    coordinates: Vec<JointCoordinate>,
-    limits: Vec<Limits>,
-    /// The mechanism's size, metres.
-    size: f64,
 }
 
 /// A section of the linkage. The first joint of its loop is the imaginary one.
@@ -49,7 +45,6 @@ impl Sections {
     pub fn new(
         mechanism: &Mechanism,
         decomposition: Decomposition,
-        (coordinates, limits, size): (Vec<JointCoordinate>, Vec<Limits>, f64),
     ) -> Result<Option<Self>, TaskError> {
         let ([one, two], [split_one, split_two]) = (&*mechanism.legs, &*decomposition.legs) else {
             return Ok(None);
@@ -78,9 +73,6 @@ impl Sections {
             reversed: owner == 1,
             decomposition,
             sections: [lower, upper],
-            coordinates,
-            limits,
-            size,
         }))
     }
 
@@ -92,11 +84,11 @@ impl Sections {
     }
 
     /// The loop driven by the joint coordinate with this number; `None` if it is in neither section.
-    pub fn input(&self, coordinate: usize) -> Option<SectionInput<'_>> {
+    pub fn input<'a>(&'a self, joints: &'a Joints, coordinate: usize) -> Option<SectionInput<'a>> {
         self.sections.iter().enumerate().find_map(|(section, of)| {
             let own = &of.coordinates[..of.closed.joints() - 1];
             let loop_index = own.iter().position(|&c| c == coordinate)? + 1;
-            Some(SectionInput { linkage: self, coordinate, section, loop_index })
+            Some(SectionInput { linkage: self, joints, coordinate, section, loop_index })
         })
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A loop with one freedom moves along curves in the space of its joints. They are [traced](curve) by steps along the tangent, and
 //! corrected onto the loop's equations of closure, whatever its joints are: what is traced is closed in finite motion, which is the
-//! certificate of an overconstrained loop (Bennett, Goldberg, Myard, Bricard, Altmann, Schatz). The curve through home is traced
+//! certificate of an overconstrained loop (Bennett, Goldberg, Myard, Bricard, Altmann). The curve through home is traced
 //! from home; others from [every assembly](assemblies) at some values of each revolute.
 
 mod arcs;
@@ -14,17 +14,14 @@ mod homotopy;
 mod input;
 
 pub use arcs::{ArcEnd, Arcs};
-pub use closed_loop::FreedomKind;
 pub use curve::Stuck;
 pub use input::TracedInput;
 
-use crate::chain::limits::Limits;
 use crate::group::JointDisplacement;
 use crate::mechanism::Mechanism;
-use crate::mechanism::joint::JointCoordinate;
 use crate::numeric::angle::unit;
 use assemblies::Assemblies;
-use closed_loop::{ClosedLoop, Motions, Posture};
+use closed_loop::{ClosedLoop, FreedomKind, Motions, Posture};
 use curve::{Curve, Knot, SAME};
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
@@ -65,11 +62,9 @@ impl Traced {
                 let at = FIRST_SAMPLE + sample as f64 * TAU / SAMPLES as f64;
                 for found in all.at(at) {
                     let known = |curve| passes(&closed, curve, &found);
-                    let traced: usize = curves.iter().map(|curve| curve.knots.len()).sum();
-                    if closed.farthest(&found) > curve::FAR
-                        || traced > curve::MOST_KNOTS
-                        || curves.iter().any(known)
-                    {
+                    let knots: usize = curves.iter().map(|curve| curve.knots.len()).sum();
+                    let too_far = closed.farthest(&found) > curve::FAR;
+                    if too_far || knots > curve::MOST_KNOTS || curves.iter().any(known) {
                         continue;
                     }
                     // A single position, or where curves cross, is on no curve of its own.
@@ -161,16 +156,4 @@ fn passes(of: &ClosedLoop, curve: &Curve, at: &Posture) -> bool {
         }
         knot.towards(of, at).is_some_and(|(_, off)| off <= SAME)
     })
-}
-
-/// The limits of a coordinate decide what its displacement is reported as.
-pub fn place(
-    coordinate: &JointCoordinate,
-    limits: &Limits,
-    displacement: JointDisplacement,
-    held: Option<f64>,
-) -> (f64, bool) {
-    let held = held.map(|held| held - coordinate.home);
-    let (value, within) = limits.place(displacement, held);
-    (coordinate.home + value, within)
 }

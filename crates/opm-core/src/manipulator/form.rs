@@ -3,7 +3,7 @@
 pub use super::dependent::OBEYED;
 pub use super::dependent::form::{
     CheckForm, MirrorForm, Mirrored, RowForm, RowsForm, StemForm, StemPart, StepForm, StepKind,
-    WholeStep,
+    UPRIGHT, WholeStep,
 };
 pub use super::dependent::one_joint::SectionMotion;
 use super::leg::{CompiledLeg, Section};

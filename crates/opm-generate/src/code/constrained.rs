@@ -9,14 +9,11 @@ use crate::library::*;
 use crate::trace::closed_forms::Displaced;
 use crate::trace::whole::RootsOfCode;
 use crate::trace::*;
-use opm_core::manipulator::form::{MirrorForm, RowForm, RowsForm, StemForm, StemPart};
+use opm_core::manipulator::form::{MirrorForm, RowForm, RowsForm, StemForm, StemPart, UPRIGHT};
 use opm_core::mechanism::OrientationCoordinates;
 use opm_core::nalgebra::Vector3;
 use opm_core::numbers::Plane as _;
 use std::f64::consts::FRAC_PI_2;
-
-/// Below this a symmetric platform counts as upside down.
-const UPRIGHT: f64 = 1e-6;
 
 /// What is returned for a leg.
 fn status(leg: usize) -> i32 {

@@ -139,12 +139,7 @@ impl<'a> Comparison<'a> {
                 let found = answer.jacobian[i * columns + j];
                 let unit = unit(m, c.quantity) / unit(m, of_pose.quantity);
                 let off = (found - expected[(i, j)]).abs() / unit;
-                // Of each coordinate that follows, both solve for the rates in their own way.
-                let solved = 1.0 + m.dependent_coordinates().len() as f64;
-                assert!(
-                    off <= ROUNDING * gain * gain * solved,
-                    "{place}: {i} {j} {off:e} {gain:e}"
-                );
+                assert!(off <= ROUNDING * gain * gain, "{place}: {i} {j} {off:e} {gain:e}");
                 let off = (found - differences[i * columns + j]).abs() / unit;
                 assert!(off <= 1e-5 * gain.powi(3), "{place}: {i} {j} {off:e} {gain:e}");
                 rate += found * question.next[j];

@@ -8,7 +8,7 @@
 //! enough for the sizes met here, a few dozen columns. Demmel and Veselić, "Jacobi's method is more
 //! accurate than QR", SIAM J. Matrix Anal. Appl. 13 (1992).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// The largest number of sweeps over all pairs of columns. Regular matrices need about eight.
 const MAX_SWEEPS: usize = 40;
@@ -43,6 +43,17 @@ impl Svd {
     /// The rank: the number of singular values above `tolerance` times the largest.
     pub fn rank(&self, tolerance: f64) -> usize {
         count_above(&self.values, tolerance)
+    }
+
+    /// The shortest vector that the matrix maps nearest to `wanted`. Singular values that do not count for the rank, within
+    /// `tolerance`, are zero.
+    pub fn solve(&self, wanted: &DVector<f64>, tolerance: f64) -> DVector<f64> {
+        let mut solution = DVector::zeros(self.right.nrows());
+        for i in 0..self.rank(tolerance) {
+            let share = self.image.column(i).dot(wanted) / (self.values[i] * self.values[i]);
+            solution += self.right.column(i) * share;
+        }
+        solution
     }
 
     /// Orthonormal columns that the matrix maps to zero, within `tolerance` (as for the rank).
@@ -177,6 +188,18 @@ mod tests {
             alone.sort_by(|x, y| y.total_cmp(x));
             alone.resize(n, 0.0);
             prop_assert!(alone.iter().zip(&svd.values).all(|(x, y)| (x - y).abs() < ROUNDING));
+        }
+
+        /// The rest is across all columns, and the solution across the kernel, so that none is shorter.
+        #[test]
+        fn a_solution_is_the_nearest_and_the_shortest(a in matrix(), all in prop::collection::vec(-1.0..1.0, 8)) {
+            let wanted = DVector::from_column_slice(&all[..a.nrows()]);
+            let svd = Svd::new(a.clone());
+            let smallest = svd.values[svd.rank(1e-9) - 1];
+            prop_assume!(smallest > 1e-2);
+            let solution = svd.solve(&wanted, 1e-9);
+            prop_assert!(a.tr_mul(&(&a * &solution - &wanted)).amax() < 1e-10);
+            prop_assert!(svd.kernel(1e-9).tr_mul(&solution).amax() < 1e-10 || a.ncols() == svd.rank(1e-9));
         }
 
         #[test]

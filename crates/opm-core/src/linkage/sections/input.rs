@@ -3,7 +3,7 @@
 use super::{DrivenLoop, LinkageSection, Sections};
 use crate::chain::Branch;
 use crate::group::JointDisplacement;
-use crate::linkage::{LinkageBranch, Position, Rates};
+use crate::linkage::{Joints, LinkageBranch, Position, Rates};
 use crate::mechanism::joint::{JointCoordinate, Quantity};
 use crate::numeric::angle::unit;
 use std::fmt;
@@ -42,6 +42,7 @@ impl fmt::Display for SectionSigns {
 #[derive(Clone, Copy, Debug)]
 pub struct SectionInput<'a> {
     pub(super) linkage: &'a Sections,
+    pub(super) joints: &'a Joints,
     /// Index of the input's coordinate.
     pub(super) coordinate: usize,
     /// Index of the section with the input: 0 for the lower one, 1 for the upper one.
@@ -53,7 +54,7 @@ pub struct SectionInput<'a> {
 impl<'a> SectionInput<'a> {
     /// The input's joint coordinate.
     pub fn coordinate(&self) -> &'a JointCoordinate {
-        &self.linkage.coordinates[self.coordinate]
+        &self.joints.coordinates[self.coordinate]
     }
 
     /// The branch in which the linkage is assembled.
@@ -65,7 +66,7 @@ impl<'a> SectionInput<'a> {
     pub fn home(&self) -> Position {
         Position {
             branch: LinkageBranch::Signs(self.home_branch()),
-            joints: self.linkage.coordinates.iter().map(|c| c.home).collect(),
+            joints: self.joints.home(),
             imaginary: Some(self.linkage.imaginary.home),
             within_limits: true,
         }
@@ -103,13 +104,12 @@ impl<'a> SectionInput<'a> {
         };
         position.branch = LinkageBranch::Signs(branch);
         position.within_limits =
-            linkage.limits[self.coordinate].admits(JointDisplacement::Value(displacement));
+            self.joints.limits[self.coordinate].admits(JointDisplacement::Value(displacement));
         position.joints[self.coordinate] = value;
         let mut put = |coordinate: usize, displacement: JointDisplacement| {
-            let home = linkage.coordinates[coordinate].home;
-            let held = held(coordinate, position).map(|held| held - home);
-            let (value, within) = linkage.limits[coordinate].place(displacement, held);
-            position.joints[coordinate] = home + value;
+            let held = held(coordinate, position);
+            let (value, within) = self.joints.value(coordinate, displacement, held);
+            position.joints[coordinate] = value;
             position.within_limits &= within;
         };
         let joints = self.own().closed.joints();

@@ -106,7 +106,7 @@ impl SectionInput<'_> {
 
     /// The unit in which displacements of the input are near or far: a radian, or the mechanism's size.
     pub(super) fn unit(&self) -> f64 {
-        if self.is_angle() { 1.0 } else { self.linkage.size }
+        if self.is_angle() { 1.0 } else { self.joints.size }
     }
 
     /// The displacements at which the first loop closes in any of these branches, and the second one

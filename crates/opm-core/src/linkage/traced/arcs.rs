@@ -44,13 +44,6 @@ pub struct Arcs {
     pub of_home: usize,
 }
 
-impl Arc {
-    /// The input's displacement at the first and the last knot.
-    fn ends_of(&self, input: usize) -> [f64; 2] {
-        [self.knots[0].at.values[input], self.knots[self.knots.len() - 1].at.values[input]]
-    }
-}
-
 impl Arcs {
     /// The arcs of the curves, home's first. `None` if the input stands still.
     pub fn new(of: &ClosedLoop, curves: &[Curve], input: usize) -> Option<Self> {
@@ -72,16 +65,17 @@ impl Arcs {
 
     /// The lowest and the highest displacement of the input in an arc.
     pub fn interval(&self, arc: usize) -> [f64; 2] {
-        let [a, b] = self.all[arc].ends_of(self.input);
+        let [a, b] = self.run(arc);
         [a.min(b), a.max(b)]
     }
 
     /// The displacement of the input at the start and the end of an arc, as the loop moves.
     pub fn run(&self, arc: usize) -> [f64; 2] {
-        self.all[arc].ends_of(self.input)
+        let knots = &self.all[arc].knots;
+        [&knots[0], &knots[knots.len() - 1]].map(|knot| knot.at.values[self.input])
     }
 
-    /// The position in an arc with the input displaced so, and the motion there. `None` outside the arc.
+    /// The position in an arc with the input displaced so. `None` outside the arc.
     pub fn position(&self, of: &ClosedLoop, arc: usize, displacement: f64) -> Option<Posture> {
         let [low, high] = self.interval(arc);
         let mut value = displacement;
@@ -155,9 +149,8 @@ fn split(of: &ClosedLoop, curve: &Curve, input: usize) -> Vec<Arc> {
     }
     let mut parts = vec![vec![knots[0].clone()]];
     for pair in knots.windows(2) {
-        if grows(&pair[0]) != grows(&pair[1])
-            && let Some(fold) = fold(of, &pair[0], &pair[1], input)
-        {
+        if grows(&pair[0]) != grows(&pair[1]) {
+            let fold = fold(of, &pair[0], &pair[1], input);
             parts.last_mut().expect("there is a first one").push(fold.clone());
             parts.push(vec![fold]);
         }
@@ -229,16 +222,17 @@ fn turns(of: &ClosedLoop, knots: Vec<Knot>, input: usize, by: f64) -> Vec<Arc> {
 }
 
 /// The position between two knots where the input turns back.
-fn fold(of: &ClosedLoop, a: &Knot, b: &Knot, input: usize) -> Option<Knot> {
+fn fold(of: &ClosedLoop, a: &Knot, b: &Knot, input: usize) -> Knot {
     let along = of.step(&a.at, &b.at).norm();
     let (mut low, mut high) = (0.0, along);
     let (mut at_low, mut at_high) = (a.tangent[input], b.tangent[input]);
-    let mut best = a.clone();
+    let mut best = if at_low.abs() < at_high.abs() { a.clone() } else { b.clone() };
     for round in 0..HALVINGS {
         // The secant, and every third time the middle, so that both ends come nearer.
         let secant = low - at_low * (high - low) / (at_high - at_low);
         let at = if round % 3 == 2 || !secant.is_finite() { 0.5 * (low + high) } else { secant };
-        let knot = a.step(of, at)?;
+        // Where curves cross, the nearest knot has to do.
+        let Some(knot) = a.step(of, at) else { break };
         let slope = knot.tangent[input];
         best = knot;
         if slope == 0.0 || high - low <= 1e-13 {
@@ -250,5 +244,5 @@ fn fold(of: &ClosedLoop, a: &Knot, b: &Knot, input: usize) -> Option<Knot> {
             (high, at_high) = (at, slope);
         }
     }
-    Some(best)
+    best
 }

@@ -72,8 +72,11 @@ impl Generic {
         }
         let count = expected(slides.iter().filter(|&&s| s).count())?;
         let found = Arc::new(Self::search(slides, count));
-        known.insert(slides, found.clone());
-        Some(found)
+        // With fewer, nothing could be said of all assemblies.
+        (found.solutions.len() == count).then(|| {
+            known.insert(slides, found.clone());
+            found
+        })
     }
 
     fn search(slides: [bool; 6], count: usize) -> Self {
@@ -252,5 +255,24 @@ impl<'a> Assemblies<'a> {
     /// The number of complex assemblies.
     pub fn count(&self) -> usize {
         self.solutions.len() / self.of.multiplicity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As many solutions as are published, and no more when the search goes on.
+    #[test]
+    fn generic_loops_have_as_many_solutions_as_are_published() {
+        for (slides, count) in [(0, 16), (1, 16), (2, 8), (3, 2)] {
+            let mut kinds = [false; 6];
+            (0..slides).for_each(|i| kinds[2 * i] = true);
+            assert_eq!(
+                Generic::search(kinds, usize::MAX).solutions.len(),
+                count,
+                "{slides} slides"
+            );
+        }
     }
 }

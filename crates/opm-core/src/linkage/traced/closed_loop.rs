@@ -60,7 +60,7 @@ pub struct ClosedLoop {
     /// The freedoms in the order of the loop, and the sign of each.
     pub order: Vec<(usize, f64)>,
     balls: Vec<Ball>,
-    /// The rotations of rods between two balls about themselves: they are held, for nothing else moves with them.
+    /// The rotations of rods between two balls about themselves. They are held: nothing else moves with them.
     idle: Vec<usize>,
     /// The size of the mechanism, metres.
     pub length: f64,
@@ -141,10 +141,7 @@ impl ClosedLoop {
 
     /// Of each rod between two balls, the first ball in the order of the loop does not turn it about itself.
     fn hold_rods(&mut self, centres: &[Point3<f64>]) {
-        let ball_at = |place: usize| {
-            let (i, _) = self.order[place % self.order.len()];
-            self.balls.iter().position(|ball| (ball.first..ball.first + 3).contains(&i))
-        };
+        let ball_at = |place: usize| self.ball_of(self.order[place % self.order.len()].0);
         let pairs: Vec<(usize, usize)> = (0..self.order.len())
             .filter_map(|place| ball_at(place).zip(ball_at(place + 1)))
             .filter(|(one, two)| one != two)
@@ -302,7 +299,7 @@ impl ClosedLoop {
         let mut passed = None;
         for &(i, sign) in &self.order {
             let screw = &self.freedoms[i].screw;
-            let ball = self.balls.iter().position(|ball| (ball.first..ball.first + 3).contains(&i));
+            let ball = self.ball_of(i);
             match ball {
                 None => {
                     rates.set_column(i, &(screw.transformed(&so_far).to_vector() * sign));
@@ -357,7 +354,7 @@ impl ClosedLoop {
             let open = gap.norm();
             let mut all = rates.insert_row(6, 0.0);
             all.set_row(6, &row.transpose());
-            let step = solve(all, &-gap.insert_row(6, 0.0));
+            let step = Svd::new(all).solve(&-gap.insert_row(6, 0.0), RANK);
             let length = step.norm();
             // What a file leaves open does not get less.
             if open <= CLOSED && (length <= STILL || length >= 0.5 * before) {
@@ -436,20 +433,13 @@ impl ClosedLoop {
         1 << self.balls.len()
     }
 
-    /// Whether a coordinate is one of a ball's.
-    pub fn is_ball(&self, coordinate: usize) -> bool {
-        self.balls.iter().any(|ball| (ball.first..ball.first + 3).contains(&coordinate))
+    /// The number of the ball that a freedom is one of.
+    fn ball_of(&self, freedom: usize) -> Option<usize> {
+        self.balls.iter().position(|ball| (ball.first..ball.first + 3).contains(&freedom))
     }
-}
 
-/// The shortest least-squares solution.
-fn solve(matrix: DMatrix<f64>, wanted: &DVector<f64>) -> DVector<f64> {
-    let svd = Svd::new(matrix);
-    let rank = svd.rank(RANK);
-    let mut solution = DVector::zeros(svd.right.nrows());
-    for i in 0..rank {
-        let share = svd.image.column(i).dot(wanted) / (svd.values[i] * svd.values[i]);
-        solution += svd.right.column(i) * share;
+    /// Whether a freedom is one of a ball's.
+    pub fn is_ball(&self, freedom: usize) -> bool {
+        self.ball_of(freedom).is_some()
     }
-    solution
 }

@@ -157,11 +157,9 @@ fn arrived(of: &ClosedLoop, last: &Knot, start: &Knot, length: f64) -> Option<Kn
     let same_way =
         of.without_rods(met.tangent.clone()).dot(&of.without_rods(start.tangent.clone()));
     (off <= SAME && same_way > 0.0).then(|| {
-        let mut end = met;
-        let rods = end.at.clone();
-        end.at = start.at.clone();
+        let mut end = Knot { at: start.at.clone(), tangent: met.tangent };
         of.turn_on(&mut end.at, &last.at);
-        of.keep_rods(&mut end.at, &rods);
+        of.keep_rods(&mut end.at, &met.at);
         end
     })
 }

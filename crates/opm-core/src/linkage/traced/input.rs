@@ -1,9 +1,8 @@
 //! A traced loop, driven by one of its joints.
 
-use super::{ArcEnd, Arcs, Traced, place};
-use crate::chain::limits::Limits;
+use super::{ArcEnd, Arcs, Traced};
 use crate::linkage::cycle::{Cycle, CycleArc, CycleShape, NoCycle};
-use crate::linkage::{InputRange, LinkageBranch, Position, Rates};
+use crate::linkage::{InputRange, Joints, LinkageBranch, Position, Rates};
 use crate::mechanism::joint::{JointCoordinate, Quantity};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
@@ -18,19 +17,14 @@ const FAR: f64 = 0.1 * super::curve::FAR;
 pub struct TracedInput<'a> {
     traced: &'a Traced,
     arcs: &'a Arcs,
-    joints: &'a [JointCoordinate],
-    limits: &'a [Limits],
+    joints: &'a Joints,
     coordinate: usize,
 }
 
 impl<'a> TracedInput<'a> {
-    pub fn new(
-        traced: &'a Traced,
-        (joints, limits): (&'a [JointCoordinate], &'a [Limits]),
-        coordinate: usize,
-    ) -> Option<Self> {
+    pub fn new(traced: &'a Traced, joints: &'a Joints, coordinate: usize) -> Option<Self> {
         let arcs = traced.arcs(coordinate)?;
-        Some(Self { traced, arcs, joints, limits, coordinate })
+        Some(Self { traced, arcs, joints, coordinate })
     }
 
     /// The number of arcs.
@@ -39,7 +33,7 @@ impl<'a> TracedInput<'a> {
     }
 
     fn own(&self) -> &'a JointCoordinate {
-        &self.joints[self.coordinate]
+        &self.joints.coordinates[self.coordinate]
     }
 
     /// The displacement of the freedom for a value of the input.
@@ -58,7 +52,7 @@ impl<'a> TracedInput<'a> {
         position.within_limits = true;
         for (i, displacement) in found.into_iter().enumerate() {
             let held = near.then_some(position.joints[i]);
-            let (placed, within) = place(&self.joints[i], &self.limits[i], displacement, held);
+            let (placed, within) = self.joints.value(i, displacement, held);
             position.joints[i] = if i == self.coordinate { value } else { placed };
             position.within_limits &= within;
         }
@@ -115,9 +109,10 @@ impl<'a> TracedInput<'a> {
 
     /// An interval of a slider without its open ends.
     fn opened(&self, [low, high]: [f64; 2], arc: usize) -> [f64; 2] {
-        let [mut ends, run] = [self.arcs.all[arc].ends, self.arcs.all[arc].ends];
-        if self.arcs.run(arc)[0] > self.arcs.run(arc)[1] {
-            ends = [run[1], run[0]];
+        let mut ends = self.arcs.all[arc].ends;
+        let [from, to] = self.arcs.run(arc);
+        if from > to {
+            ends.reverse();
         }
         let far = |value: f64| value.abs() >= FAR;
         [

@@ -129,6 +129,9 @@ pub struct MirrorForm {
     pub sphere: Option<(Vector3<f64>, f64)>,
 }
 
+/// Below this, a symmetric platform counts as upside down.
+pub const UPRIGHT: f64 = 1e-6;
+
 /// What follows from the orientation of a mid-plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Mirrored<T: Real> {

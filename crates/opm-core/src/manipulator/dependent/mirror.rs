@@ -16,18 +16,23 @@
 //!
 //! Three freedoms are the roll, the pitch and the height; of two, the mid-plane is tangent to a sphere about a point `o`, `d = n · o + δ`.
 
-use super::form::MirrorForm;
+use super::form::{MirrorForm, UPRIGHT};
 use crate::chain::ReachDeficit;
 use crate::decomposition::whole::mirrored;
 use crate::mechanism::OrientationCoordinates;
 use crate::numeric::Quantity;
 use crate::numeric::angle::near;
+use crate::numeric::svd::Svd;
 use crate::task::Task;
-use nalgebra::{DMatrix, Isometry3, Point3, Vector3};
+use nalgebra::{DMatrix, DVector, Isometry3, Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// What is smaller counts as zero.
+/// Coordinates are found again to within this, in radians or sizes.
+const HOLDS: f64 = 1e-9;
+/// A sine below this is that of an axis at home along another one.
 const LEVEL: f64 = 1e-6;
+/// Singular values below this share of the largest are zero.
+const RANK: f64 = 1e-12;
 
 /// How coordinates follow from the mid-plane.
 #[derive(Clone, Debug)]
@@ -74,9 +79,8 @@ impl Mirror {
                     3 => 1.0,
                     j => planes[i].0[j],
                 });
-                let distances = DMatrix::from_fn(planes.len(), 1, |i, _| planes[i].1);
-                let found = matrix.svd(true, true).solve(&distances, 1e-12);
-                let found = found.ok()?;
+                let distances = DVector::from_fn(planes.len(), |i, _| planes[i].1);
+                let found = Svd::new(matrix).solve(&distances, RANK);
                 Some((Vector3::new(found[0], found[1], found[2]), found[3]))
             }
             _ => return None,
@@ -99,7 +103,7 @@ impl Mirror {
         independent.iter().for_each(|&i| pose[i] = all[i]);
         let same = |((a, b), c): ((&f64, &f64), &crate::task::TaskCoordinate)| {
             let unit = if c.quantity == Quantity::Length { size } else { 1.0 };
-            (a - b).abs() < LEVEL * LEVEL.sqrt() * unit
+            (a - b).abs() < HOLDS * unit
         };
         self.complete(task, &mut pose).is_ok()
             && pose.iter().zip(&all).zip(&task.coordinates).all(same)
@@ -108,12 +112,13 @@ impl Mirror {
     /// Writes the dependent coordinates of a pose. The yaw is that nearest to what `pose` holds.
     ///
     /// # Errors
-    /// The platform is upside down, where its mid-plane is any that is upright.
+    /// The platform is upside down: its mid-plane is then any upright one.
     pub fn complete(&self, task: &Task, pose: &mut [f64]) -> Result<(), ReachDeficit> {
         let first = self.form.first_angle;
         let home = |i: usize| task.coordinates[i].home;
         let found = self.form.follow([pose[first], pose[first + 1]], pose[2] - home(2));
-        let Some((yaw, moved)) = (found.upright > LEVEL).then_some((found.yaw, found.moved)) else {
+        let Some((yaw, moved)) = (found.upright > UPRIGHT).then_some((found.yaw, found.moved))
+        else {
             return Err(ReachDeficit::angle(FRAC_PI_2));
         };
         pose[first + 2] = near(yaw.im.atan2(yaw.re), pose[first + 2]);

@@ -9,7 +9,7 @@
 //! rows determine the positions that follow only where `F(ψ) = det [c | c · P + ⟨r, R⟩ + c₀] = 0`. That is
 //! `A cos ψ + B sin ψ + C` for the mechanisms that are covered, and its sign of slope names the branch. The positions are linear.
 
-use super::determining;
+use super::determining::determining;
 use super::form::{RowForm, RowsForm};
 use super::stem::{Rotations, rates};
 use super::zeros::Function;

@@ -4,8 +4,8 @@
 //! moves in a plane that is `T(x y) · R(theta)`, and where it only rotates about a centre, `R(angles)`. The independent coordinates are known joints of that loop, the dependent
 //! ones and those of the stem are found as a whole leg's are: by [`WholeLeg::solve_given`].
 
+use super::determining::{UNDETERMINED, determining};
 use super::form::{StemForm, StemPart};
-use super::{UNDETERMINED, determining};
 use crate::chain::whole::{LegJoint, MOST_FREEDOMS, NoOrder, WholeLeg};
 use crate::chain::{Branch, ReachDeficit};
 use crate::decomposition::whole::{configurations, end, joints};
