@@ -13,7 +13,9 @@ use crate::output::named;
 use crate::pose::Pose;
 use crate::text::{self, Table, reason};
 use crate::unitless;
-use opm_core::forward::{Assemblies, Assembly, LeastChange, NearError, Unmet};
+use opm_core::forward::{
+    Assemblies, Assembly, Completeness, ForwardMethod, LeastChange, NearError, Unmet,
+};
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, Section};
 use opm_core::mechanism::file::FileUnits;
@@ -88,8 +90,10 @@ fn solve(
     let actuated = joints(given, manipulator)?;
     let only = args.mode.as_deref().map(|mode| load::mode(manipulator, mode)).transpose()?;
     let wrong = |error: &dyn std::error::Error| Failure::flag("--joints", error);
-    let (found, method) = match (&args.near, manipulator.forward_closed_form()) {
-        (None, Ok(())) => {
+    // With --near nothing is prepared that is not used.
+    let every = args.near.is_none().then(|| manipulator.forward_method());
+    let (found, method) = match every {
+        Some(Ok(method)) => {
             let mut found = manipulator.forward(&actuated).map_err(|e| wrong(&e))?;
             if let Some(mode) = only {
                 manipulator.keep_assemblies_in(&mut found.list, mode);
@@ -97,17 +101,17 @@ fn solve(
             let home = manipulator.platform_pose(&manipulator.home_pose());
             let home = home.map_err(|error| Failure::at(&loaded.label, error))?;
             manipulator.sort_assemblies(&mut found.list, &home);
-            (found, Method::ClosedForm)
+            (found, Method::from(method))
         }
-        (near, closed_form) => {
-            let start = match near {
+        every => {
+            let start = match &args.near {
                 Some(pose) => {
                     unitless::note_pose(output, "--near", pose, loaded, manipulator);
                     pose.resolve_for("--near", manipulator)?
                 }
                 None => manipulator.home_pose(),
             };
-            if let (None, Err(why)) = (near, closed_form) {
+            if let Some(Err(why)) = every {
                 output.note(format_args!(
                     "no closed form of the forward kinematics: {why}; by Newton's method from home, \
                      which finds one assembly (--near says from where)"
@@ -182,7 +186,34 @@ fn shown(manipulator: &Manipulator, mode: Mode) -> String {
 #[serde(rename_all = "kebab-case")]
 enum Method {
     ClosedForm,
+    Continuation,
     Newton,
+}
+
+impl From<ForwardMethod> for Method {
+    fn from(method: ForwardMethod) -> Self {
+        match method {
+            ForwardMethod::ClosedForm => Self::ClosedForm,
+            ForwardMethod::Continuation => Self::Continuation,
+        }
+    }
+}
+
+/// What is known of further assemblies.
+fn solutions(found: usize, of: usize) -> String {
+    let all = match of {
+        1 => "one solution, which was found".to_owned(),
+        _ => format!("{of} solutions, complex ones too, and all were found"),
+    };
+    match of - found {
+        0 => format!(
+            "The equations have {all}: with probability one there is no other assembly of the platform."
+        ),
+        missing => format!(
+            "Of {of} solutions of the equations, complex ones too, {missing} were not found: they are far away, or where assemblies \
+             meet, or where the platform can move with these joints held."
+        ),
+    }
 }
 
 struct Answer<'a> {
@@ -202,11 +233,20 @@ struct Answer<'a> {
 struct Json {
     actuated: Map<String, Value>,
     method: Method,
+    /// The number of solutions that were found, complex ones too, and how many there are; only of a continuation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solutions: Option<Solutions>,
     assemblies: Vec<JsonAssembly>,
     unmet: Vec<String>,
     /// The least change of the joints that closes, null if there is an assembly or if none was found.
     least_change: Option<least::Json>,
     loose: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Solutions {
+    found: usize,
+    of: usize,
 }
 
 #[derive(Serialize)]
@@ -241,6 +281,7 @@ impl Answer<'_> {
         Json {
             actuated: pair(actuated, &self.actuated),
             method: self.method,
+            solutions: self.solutions(),
             assemblies: self.found.list.iter().enumerate().map(assembly).collect(),
             unmet: self.unmet(FileUnits::SI),
             least_change: self.least.as_ref().map(|least| least::Json::new(m, least)),
@@ -280,6 +321,7 @@ impl Answer<'_> {
             };
             let how = match self.method {
                 Method::ClosedForm => "",
+                Method::Continuation => " by continuation",
                 Method::Newton => " by Newton's method",
             };
             let worst = list.iter().map(|a| a.residual).fold(0.0, f64::max);
@@ -292,6 +334,9 @@ impl Answer<'_> {
                 text += &aspects::text(m, list, aspects);
             }
         }
+        if let Some(Solutions { found, of }) = self.solutions() {
+            let _ = writeln!(text, "\n{}", solutions(found, of));
+        }
         for section in &self.found.loose {
             let _ = writeln!(
                 text,
@@ -300,6 +345,13 @@ impl Answer<'_> {
             );
         }
         text
+    }
+
+    fn solutions(&self) -> Option<Solutions> {
+        match self.found.completeness {
+            Completeness::Continuation { found, of } => Some(Solutions { found, of }),
+            Completeness::ClosedForm => None,
+        }
     }
 
     /// A table with a row for each assembly.

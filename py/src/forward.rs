@@ -11,7 +11,9 @@ use crate::pickle::pickled;
 use crate::rows::Rows;
 pub use assemblies::Assemblies;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use opm_core::forward::{self as core, ForwardError, LeastChange, NearError, NearStop};
+use opm_core::forward::{
+    self as core, Completeness, ForwardError, LeastChange, NearError, NearStop,
+};
 use opm_core::manipulator::Mode;
 use opm_study::Tracker;
 use pyo3::prelude::*;
@@ -19,6 +21,13 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The assemblies of a row.
+pub struct Found {
+    list: Vec<core::Assembly>,
+    /// Whether there are no others.
+    complete: bool,
+}
 
 /// So many rows are computed before threads would have started.
 const FEW: usize = 16;
@@ -52,7 +61,13 @@ impl Assembly {
 
 #[pymethods]
 impl Manipulator {
-    /// Every assembly for actuated joint values, in closed form; or the one near a pose that Newton's method finds.
+    /// Every assembly for actuated joint values; or the one near a pose that Newton's method finds.
+    ///
+    /// Most mechanisms have a closed form. Where the legs are equations without an order, as of a hexapod, all solutions are found by
+    /// continuation, complex ones too: with probability one that is every isolated assembly, in some milliseconds. The first ones take
+    /// some tenths of a second. `complete` tells where solutions are missing, because they are far away, or where assemblies meet, or
+    /// where the platform can move with its actuated joints held. Of the joints that a leg can have at one of these poses with the same
+    /// actuated ones, those within limits are given, and else those in home's mode.
     ///
     /// In a mechanism with screws, full revolutions can matter: each of them is another assembly, one advance of the screw
     /// away, and there are infinitely many. Of these, the one is given whose actuated joints have the full revolutions that
@@ -70,8 +85,8 @@ impl Manipulator {
     ///     Only assemblies in this working mode, ``"home"`` or a sign for every two-valued choice. Newton's method
     ///     stays in this mode, or in the home mode if not given.
     /// method : str, optional
-    ///     ``"every"``: all assemblies, by the closed form that most mechanisms have. ``"newton"``: one, near `near`, for every
-    ///     mechanism. If not given, ``"every"`` where there is a closed form, otherwise ``"newton"`` if `near` is given.
+    ///     ``"every"``: all assemblies. ``"newton"``: one, near `near`, for every mechanism. If not given, ``"newton"`` where `near`
+    ///     is given and there is no closed form, otherwise ``"every"``.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
@@ -84,7 +99,7 @@ impl Manipulator {
     /// Raises
     /// ------
     /// OpmError
-    ///     The mechanism's forward kinematics have no closed form, and `near` is not given; or `near` is out of reach.
+    ///     All assemblies cannot be found, and `near` is not given; or `near` is out of reach.
     ///
     /// Examples
     /// --------
@@ -116,16 +131,16 @@ impl Manipulator {
             let (given, rows) = (starts.count, joints.count);
             return Err(wrong(format!("{given} rows of near, expected {rows}, or one")));
         }
-        let closed_form = self.inner.forward_closed_form();
-        let newton = match (method, &closed_form) {
-            (Some("every") | None, Ok(())) => false,
-            (Some("newton"), _) => true,
-            (None, Err(_)) if starts.is_some() => true,
-            (Some("every") | None, Err(why)) => {
-                let hint = "; near= says from where Newton's method begins";
-                return Err(wrong(format!("{why}{hint}")));
+        let newton = match method {
+            Some("newton") => true,
+            None if starts.is_some() && self.inner.forward_closed_form().is_err() => true,
+            Some("every") | None => {
+                py.detach(|| self.inner.forward_method()).map_err(|why| {
+                    wrong(format!("{why}; near= says from where Newton's method begins"))
+                })?;
+                false
             }
-            (Some(other), _) => {
+            Some(other) => {
                 let expected = "expected \"every\" or \"newton\"";
                 return Err(wrong(format!("method is {other:?}, {expected}")));
             }
@@ -135,9 +150,9 @@ impl Manipulator {
             starts.as_ref().map_or(&*home, |starts| starts.row(row.min(starts.count - 1)))
         };
         let stop = AtomicBool::new(false);
-        let solve = |row: usize| -> Result<Vec<core::Assembly>, String> {
+        let solve = |row: usize| -> Result<Found, String> {
             if stop.load(Ordering::Relaxed) || joints.missing(row) {
-                return Ok(Vec::new());
+                return Ok(Found { list: Vec::new(), complete: !joints.missing(row) });
             }
             let (values, start) = (joints.row(row), start(row));
             let found = if newton {
@@ -282,16 +297,21 @@ impl Manipulator {
         joints: &[f64],
         near: &[f64],
         mode: Option<Mode>,
-    ) -> Result<Vec<core::Assembly>, String> {
+    ) -> Result<Found, String> {
         let found = self.inner.forward(joints);
-        let mut list = found.map_err(|error: ForwardError| error.to_string())?.list;
+        let core::Assemblies { mut list, completeness, loose, .. } =
+            found.map_err(|error: ForwardError| error.to_string())?;
+        let complete = match completeness {
+            Completeness::ClosedForm => loose.is_empty(),
+            Completeness::Continuation { found, of } => found == of,
+        };
         if let Some(mode) = mode {
             self.inner.keep_assemblies_in(&mut list, mode);
         }
         let near = self.inner.displacement_in(near, mode.unwrap_or(self.inner.home_mode()));
         let near = self.inner.platform_at(&near.map_err(|error| format!("near: {error}"))?);
         self.inner.sort_assemblies(&mut list, &near);
-        Ok(list)
+        Ok(Found { list, complete })
     }
 
     /// The assembly that Newton's method finds from a pose; none if it does not converge.
@@ -300,16 +320,16 @@ impl Manipulator {
         joints: &[f64],
         near: &[f64],
         mode: Option<Mode>,
-    ) -> Result<Vec<core::Assembly>, String> {
+    ) -> Result<Found, String> {
         let mode = mode.unwrap_or_else(|| self.inner.home_mode());
         match self.inner.forward_near(joints, near, mode) {
-            Ok(assembly) => Ok(vec![assembly]),
+            Ok(assembly) => Ok(Found { list: vec![assembly], complete: false }),
             Err(NearError::NotFound(end)) => match end.why {
                 NearStop::OutOfReach(_) if end.steps == 0 => {
                     let mode = self.inner.format_mode(mode);
                     Err(format!("near is out of reach in mode {mode:?}: {}", end.why))
                 }
-                _ => Ok(Vec::new()),
+                _ => Ok(Found { list: Vec::new(), complete: false }),
             },
             Err(error) => Err(error.to_string()),
         }

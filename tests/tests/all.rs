@@ -5,6 +5,7 @@ mod branches;
 mod clearance;
 mod condition;
 mod constraining_legs;
+mod continued;
 mod default_grid;
 mod errata;
 mod five_bar;

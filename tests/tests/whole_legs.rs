@@ -595,8 +595,8 @@ fn cones_of_split_legs_count() {
 #[test]
 fn what_whole_legs_do_not_have_is_refused() {
     let m = example("delta");
-    let values = vec![0.0; 3];
-    assert_eq!(m.forward(&values), Err(ForwardError::NoClosedForm(NoClosedForm::Whole)));
+    assert_eq!(m.forward_closed_form(), Err(NoClosedForm::Whole));
+    assert_eq!(m.least_change(&[0.0; 3]), Err(ForwardError::NoClosedForm(NoClosedForm::Whole)));
     assert_eq!(Domain::new(&m, Sections::Upper, &[]), Err(DomainError::NoUpperSection));
     assert_eq!(Domain::new(&m, Sections::Lower, &[]), Err(DomainError::NoSections));
     assert_eq!(Domain::new(&example("tricept"), Sections::Whole, &[]), Err(DomainError::Whole));

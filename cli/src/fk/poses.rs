@@ -51,7 +51,7 @@ pub fn run(
         None => manipulator.home_pose(),
     };
     let only = args.mode.as_deref().map(|mode| load::mode(manipulator, mode)).transpose()?;
-    if let (true, Err(why)) = (args.all, manipulator.forward_closed_form()) {
+    if let (true, Err(why)) = (args.all, manipulator.forward_method()) {
         let problem = format_args!(
             "no closed form of the forward kinematics: {why}; without --all, one assembly is found near the \
              row before"

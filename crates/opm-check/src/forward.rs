@@ -21,16 +21,16 @@ pub fn forward(
     options: &Options,
     go_on: &mut impl FnMut() -> bool,
 ) -> Option<Comparison> {
-    let closed_form = manipulator.forward_closed_form();
-    let what = match closed_form {
-        Ok(()) => {
+    let every = manipulator.forward_method();
+    let what = match every {
+        Ok(_) => {
             "every assembly for joint values of inverse kinematics, with the poses that these came from"
         }
         Err(_) => {
             "the assembly that Newton's method finds nearby, with the pose that its joint values came from"
         }
     };
-    // Whole revolutions of a screw that its motor does not show are further assemblies, of which the closed form lists one.
+    // Whole revolutions of a screw that its motor does not show are further assemblies, of which one is listed.
     let screws =
         manipulator.mechanism().joints().any(|j| matches!(j.kind, JointKind::Helical { .. }));
     let most = tolerance(manipulator, SAME);
@@ -67,7 +67,7 @@ pub fn forward(
         }
         let target = at.displacement(manipulator);
         let actuated: Vec<f64> = manipulator.actuated().iter().map(|&i| at.joints()[i]).collect();
-        let mut assemblies = match closed_form.as_ref().map(|()| manipulator.forward(&actuated)) {
+        let mut assemblies = match every.as_ref().map(|_| manipulator.forward(&actuated)) {
             Ok(Ok(found)) => found.list,
             Ok(Err(error)) => {
                 found.fail(|| format!("{error}: {}", place()));
@@ -80,7 +80,7 @@ pub fn forward(
             let start: Vec<f64> = pose.iter().map(step).collect();
             manipulator.forward_near(&actuated, &start, mode)
         });
-        let listed = if closed_form.is_ok() && !screws { assemblies.len() } else { usize::MAX };
+        let listed = if every.is_ok() && !screws { assemblies.len() } else { usize::MAX };
         assemblies.extend(near.into_iter().flatten());
         let mut nearest = f64::INFINITY;
         for (number, assembly) in assemblies.iter().enumerate() {

@@ -13,8 +13,11 @@
 //!
 //! All solutions of each of these small problems are found, so that their combinations are all
 //! assemblies. Where displacements commute in both sections, the whole problem is one linear system
-//! (`manipulator/plan/flat.rs`). A mechanism without such an order is solved by
-//! [`Manipulator::forward_near`], from a pose near the solution.
+//! (`manipulator/plan/flat.rs`).
+//!
+//! Where there is no such order, as of a hexapod, all legs are equations in the platform's Study parameters, and all solutions,
+//! complex ones too, are found by continuation (`manipulator/continued.rs`). [`Manipulator::forward_near`] finds the one near a pose
+//! in every mechanism.
 //!
 //! ```
 //! use opm_core::Manipulator;
@@ -45,6 +48,7 @@
 
 mod accept;
 mod along;
+mod assemble;
 mod candidates;
 mod distance;
 mod held;
@@ -63,8 +67,10 @@ pub use least::LeastChange;
 pub use near::{NearError, NearStop, NotFound};
 pub use newton::NearBuffer;
 
+use crate::manipulator::Continued;
 use crate::manipulator::{LARGEST, Manipulator, Mode, Section, Unreachable};
 use search::{Memory, Search};
+use std::sync::Arc;
 
 /// The largest residual of an assembly, in radians and shares of the mechanism's size, where the joints are
 /// exactly in their subspaces. A candidate with a larger residual does not close, and is rejected. Where joints
@@ -113,6 +119,34 @@ pub struct Assemblies {
     /// The sections that can move while the actuated joints are held, because they are at a singularity.
     /// The poses of that motion are not listed.
     pub loose: Vec<Section>,
+    /// How complete the list is.
+    pub completeness: Completeness,
+}
+
+/// How complete a list of assemblies is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum Completeness {
+    /// All solutions were found in closed form.
+    #[default]
+    ClosedForm,
+    /// The equations were solved by continuation. With probability one, every isolated assembly is in the list if all solutions
+    /// were found. The others are where the platform can move with its actuated joints held, or several assemblies meet, or far away.
+    Continuation {
+        /// How many solutions were found, complex ones too.
+        found: usize,
+        /// How many there are for actuated joints in general.
+        of: usize,
+    },
+}
+
+/// How all assemblies of a mechanism are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForwardMethod {
+    /// In closed form.
+    ClosedForm,
+    /// By continuation, which takes milliseconds, and some tenths of a second for the first ones.
+    Continuation,
 }
 
 /// Working memory of [`Manipulator::forward_into`]; made by [`Manipulator::forward_buffer`]. See the example there.
@@ -175,7 +209,7 @@ impl Manipulator {
         RESIDUAL.max(of_deviation).max(self.closure.rounding).max(of_whole)
     }
 
-    /// Whether [`Manipulator::forward`] has a closed form, and if not, why.
+    /// Whether the forward kinematics have a closed form, and if not, why.
     ///
     /// # Errors
     /// The reason why there is no closed form.
@@ -183,7 +217,25 @@ impl Manipulator {
         self.plan.as_ref().map(|_| ()).map_err(|error| *error)
     }
 
-    /// Every assembly that the actuated joints allow, in closed form. `actuated` has the values in the order
+    /// How [`Manipulator::forward`] finds all assemblies. The first call for a mechanism without a closed form takes some tenths
+    /// of a second.
+    ///
+    /// # Errors
+    /// Why it cannot: there is no closed form, and what the legs demand are no quadratic equations of the platform's Study
+    /// parameters.
+    pub fn forward_method(&self) -> Result<ForwardMethod, NoClosedForm> {
+        match &self.plan {
+            Ok(_) => Ok(ForwardMethod::ClosedForm),
+            Err(why) => self.continued(*why).map(|_| ForwardMethod::Continuation),
+        }
+    }
+
+    fn continued(&self, why: NoClosedForm) -> Result<&Continued, NoClosedForm> {
+        let made = || Continued::new(self).map(Arc::new);
+        self.continued.get_or_init(made).as_deref().ok_or(why)
+    }
+
+    /// Every assembly that the actuated joints allow, by the [method](Manipulator::forward_method) that the mechanism has. `actuated` has the values in the order
     /// of [`Manipulator::actuated`], radians and metres. If there is no assembly, [`Assemblies::unmet`] says
     /// why; that is not an error.
     ///
@@ -236,8 +288,13 @@ impl Manipulator {
     ) -> Result<&'a Assemblies, ForwardError> {
         let ForwardBuffer { displacements, memory } = buffer;
         self.write_displacements(actuated, displacements)?;
-        let plan = self.plan.as_ref().map_err(|error| *error)?;
-        Search::new(self, plan, displacements, memory).run();
+        match &self.plan {
+            Ok(plan) => Search::new(self, plan, displacements, memory).run(),
+            Err(why) => {
+                let continued = self.continued(*why)?;
+                memory.outcome.assemblies = self.assemblies_by(continued, displacements);
+            }
+        }
         Ok(&memory.outcome.assemblies)
     }
 

@@ -20,6 +20,7 @@ mod angles;
 pub(crate) mod batch;
 mod closure;
 mod cones;
+mod continued;
 pub(crate) mod dependent;
 pub mod form;
 mod inverse;
@@ -39,6 +40,7 @@ mod whole;
 
 pub use all_modes::AllModes;
 pub use batch::{Batch, BatchError, BatchOutput};
+pub(crate) use continued::{Continued, FoundDisplacements};
 pub use dependent::ConstraintError;
 pub(crate) use dependent::Dependent;
 pub use leg::Section;
@@ -75,6 +77,7 @@ use nalgebra::{Isometry3, Vector3};
 use plan::Plan;
 pub(crate) use solution::SolvedPose;
 use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 pub(crate) use whole::WholeJoint;
 
 /// The largest number of choices in a [`Mode`].
@@ -163,6 +166,8 @@ pub struct Manipulator {
     pub(crate) judged_at: Option<Vector3<f64>>,
     /// The order in which forward kinematics solve the sections, or why they have no closed form.
     pub(crate) plan: Result<Plan, NoClosedForm>,
+    /// What finds all assemblies where there is no such order, once that is needed.
+    pub(crate) continued: OnceLock<Option<Arc<Continued>>>,
     /// The legs' products of exponentials.
     pub(crate) closure: Closure,
     /// The instructions of the processor at hand, for one pose.
@@ -321,6 +326,19 @@ impl Manipulator {
     /// Every joint coordinate, leg by leg. This is the order of [`Solution::joints`].
     pub fn coordinates(&self) -> &[JointCoordinate] {
         &self.coordinates
+    }
+
+    /// The joint coordinates of each leg among all of them.
+    pub(crate) fn coordinates_of_legs(&self) -> Vec<Range<usize>> {
+        let of_leg = |leg: &Leg| leg.joints.iter().map(|joint| joint.coordinates.len()).sum();
+        let counts = self.mechanism.legs.iter().map(of_leg);
+        counts
+            .scan(0, |next, count: usize| {
+                let first = *next;
+                *next += count;
+                Some(first..*next)
+            })
+            .collect()
     }
 
     /// The limits of every joint coordinate, in the order of [`Manipulator::coordinates`].
@@ -570,6 +588,7 @@ impl Compiled {
         let closure = Closure::new(&mechanism);
         let mut manipulator = Manipulator {
             plan: Plan::new(&task, &legs, closure.size),
+            continued: OnceLock::new(),
             judged_at: judged_at(&mechanism, &task, &independent),
             closure,
             arch: FourWide::new(),

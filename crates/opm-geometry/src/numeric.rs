@@ -10,6 +10,8 @@ pub mod rotation;
 #[doc(hidden)]
 pub mod angle;
 #[doc(hidden)]
+pub mod continuation;
+#[doc(hidden)]
 pub mod extremes;
 #[doc(hidden)]
 pub mod four_wide;

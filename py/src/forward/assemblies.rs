@@ -1,6 +1,6 @@
 //! The assemblies for many rows of joint values, as arrays and as lists.
 
-use super::Assembly;
+use super::{Assembly, Found};
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::Rows;
@@ -18,6 +18,8 @@ use pyo3::types::{PyIterator, PyList};
 pub struct Assemblies {
     /// (n,): number of assemblies of each row.
     counts: Py<PyArrayDyn<i64>>,
+    /// (n,): whether all assemblies of a row are known; see :meth:`Manipulator.forward`. Newton's method does not tell.
+    complete: Py<PyArrayDyn<bool>>,
     /// (n, m, d): task coordinates, metres and radians.
     poses: Py<PyArrayDyn<f64>>,
     /// (n, m, 4, 4): homogeneous matrices of the platform, as :meth:`Manipulator.transform` gives them, metres.
@@ -40,6 +42,7 @@ pub struct Assemblies {
 
 pickled!(Assemblies {
     counts,
+    complete,
     poses,
     transforms,
     joints,
@@ -57,13 +60,13 @@ impl Assemblies {
         py: Python<'_>,
         manipulator: &Manipulator,
         rows: &Rows<'_>,
-        found: &[Vec<core::Assembly>],
+        found: &[Found],
     ) -> PyResult<Self> {
         let inner = &manipulator.inner;
-        let most = found.iter().map(Vec::len).max().unwrap_or(0);
+        let most = found.iter().map(|row| row.list.len()).max().unwrap_or(0);
         let table = |width: usize, of: &dyn Fn(&core::Assembly, &mut Vec<f64>)| {
             let mut table = Vec::with_capacity(found.len() * most * width);
-            for (row, list) in found.iter().enumerate() {
+            for (row, Found { list, .. }) in found.iter().enumerate() {
                 list.iter().for_each(|assembly| of(assembly, &mut table));
                 table.resize((row + 1) * most * width, f64::NAN);
             }
@@ -81,19 +84,21 @@ impl Assemblies {
         });
         let mut within = Vec::with_capacity(found.len() * most);
         let mut modes = Vec::with_capacity(found.len());
-        for (row, list) in found.iter().enumerate() {
+        for (row, Found { list, .. }) in found.iter().enumerate() {
             within.extend(list.iter().map(|assembly| assembly.within_limits));
             within.resize((row + 1) * most, false);
             let signs = list.iter().map(|assembly| inner.format_mode(assembly.mode));
             modes.push(PyList::new(py, signs)?);
         }
-        let counts: Vec<i64> = found.iter().map(|list| list.len() as i64).collect();
+        let counts: Vec<i64> = found.iter().map(|row| row.list.len() as i64).collect();
+        let complete: Vec<bool> = found.iter().map(|row| row.complete).collect();
         let modes = match modes.pop() {
             Some(only) if rows.one => only,
             last => PyList::new(py, modes.into_iter().chain(last))?,
         };
         Ok(Self {
             counts: rows.frozen(&counts.into_pyarray(py), &[])?,
+            complete: rows.frozen(&complete.into_pyarray(py), &[])?,
             poses: rows.frozen(&poses, &[most, d])?,
             transforms: rows.frozen(&transforms, &[most, 4, 4])?,
             joints: rows.frozen(&joints, &[most, k])?,

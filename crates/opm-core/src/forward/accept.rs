@@ -123,7 +123,7 @@ impl Outcome {
 
     /// Forgets what is known.
     pub fn clear(&mut self) {
-        let Assemblies { list, unmet, loose } = &mut self.assemblies;
+        let Assemblies { list, unmet, loose, .. } = &mut self.assemblies;
         self.spare.append(list);
         unmet.clear();
         loose.clear();
@@ -181,7 +181,7 @@ impl Search<'_> {
     /// Gives the reasons if there are no assemblies.
     pub(super) fn give_reasons(&mut self) {
         let Memory { outcome, deficits, .. } = &mut *self.memory;
-        let Outcome { assemblies: Assemblies { list, unmet, loose }, rejected, .. } = outcome;
+        let Outcome { assemblies: Assemblies { list, unmet, loose, .. }, rejected, .. } = outcome;
         if !list.is_empty() {
             unmet.clear();
             return;

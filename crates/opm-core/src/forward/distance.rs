@@ -3,7 +3,9 @@
 use super::Assembly;
 use super::accept::APART;
 use crate::manipulator::{Manipulator, Mode};
+use crate::numeric::Quantity;
 use nalgebra::Isometry3;
+use std::f64::consts::TAU;
 
 impl Manipulator {
     /// All task coordinates of an assembly.
@@ -27,6 +29,9 @@ impl Manipulator {
         if assembly.mode == mode {
             return Some(assembly.clone());
         }
+        if self.is_whole() {
+            return self.whole_assembly_in(assembly, mode);
+        }
         let dependent = self.dependent.as_ref()?;
         if !dependent.differ_in_steps(assembly.mode, mode) {
             return None;
@@ -41,6 +46,33 @@ impl Manipulator {
             dependent: dependent.values(&all).collect(),
             mode,
             ..assembly.clone()
+        })
+    }
+
+    /// The same where every leg is solved whole: its other joints may have several values with the same actuated ones.
+    fn whole_assembly_in(&self, assembly: &Assembly, mode: Mode) -> Option<Assembly> {
+        let (mut all, mut pose, mut solution) =
+            (self.all_of(assembly), Vec::new(), self.solution());
+        let place = self.task().displacement(&all);
+        self.write_independent(Some(mode), &mut all, &mut pose);
+        let solution = self.inverse(&pose, mode, &mut solution).ok()??;
+        let given: Vec<f64> = self.actuated().iter().map(|&c| assembly.joints[c]).collect();
+        let off = |(&coordinate, given): (&usize, &f64)| {
+            let off = solution.joints()[coordinate] - given;
+            let modulo = self.coordinates()[coordinate].quantity == Quantity::Angle;
+            let off = if modulo { off - TAU * (off / TAU).round() } else { off };
+            off.abs() * self.weight(coordinate)
+        };
+        let same = self.apart(&solution.displacement(self), &place) <= APART
+            && self.actuated().iter().zip(&given).map(off).fold(0.0, f64::max) <= APART;
+        same.then(|| Assembly {
+            pose,
+            dependent: solution.dependent().to_vec(),
+            mode,
+            joints: solution.joints().to_vec(),
+            imaginary: solution.imaginary().to_vec(),
+            within_limits: solution.within_limits(),
+            residual: assembly.residual,
         })
     }
 

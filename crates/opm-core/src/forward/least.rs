@@ -61,7 +61,7 @@ impl Manipulator {
     /// This takes as long as thousands of calls of [`Manipulator::forward`].
     ///
     /// # Errors
-    /// As [`Manipulator::forward`].
+    /// As [`Manipulator::forward`], and where there is no closed form.
     ///
     /// ```
     /// use opm_core::Manipulator;
@@ -81,6 +81,7 @@ impl Manipulator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn least_change(&self, actuated: &[f64]) -> Result<Option<LeastChange>, ForwardError> {
+        self.plan.as_ref().map_err(|why| *why)?;
         let mut buffer = self.forward_buffer();
         let found = self.forward_into(actuated, &mut buffer)?;
         if !found.list.is_empty() || !found.loose.is_empty() {

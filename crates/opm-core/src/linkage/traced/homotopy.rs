@@ -7,6 +7,7 @@
 //! probability one (Sommese and Wampler, "The numerical solution of systems of polynomials", 2005, chapter 7).
 
 use super::dual_quaternion::{C, DualQuaternion, V};
+use crate::numeric::continuation::{Moving, Pace, follow};
 use nalgebra::{SMatrix, SVector};
 
 pub type Unknowns = SVector<C, 6>;
@@ -38,6 +39,12 @@ pub struct Homotopy {
     pub charts: [[[C; 2]; 2]; 6],
 }
 
+/// The joints at one `t`, each axis with its derivative.
+pub struct HeldLoop {
+    before: [DualQuaternion; 2],
+    axes: [[DualQuaternion; 2]; 6],
+}
+
 /// The equations, their derivatives by the unknowns, and by `t`.
 struct Equations {
     open: Unknowns,
@@ -45,13 +52,8 @@ struct Equations {
     drift: Unknowns,
 }
 
-/// A step is accepted if its last correction is as small as this.
-const CONVERGED: f64 = 1e-9;
 /// The largest first correction of a step: a larger one may be on another path.
 const NEAR: f64 = 1e-2;
-const FIRST: f64 = 0.02;
-const SHORTEST: f64 = 1e-8;
-const MOST_STEPS: usize = 5_000;
 /// An unknown that is so large is at infinity.
 const FAR: f64 = 1e8;
 
@@ -126,8 +128,7 @@ impl Homotopy {
         self.charts[joint].map(|[constant, slope]| constant + slope * unknown)
     }
 
-    fn equations(&self, x: &Unknowns, t: f64) -> Equations {
-        let axes = self.axes.map(|axis| axis.at(t));
+    fn equations(&self, x: &Unknowns, HeldLoop { before, axes }: &HeldLoop) -> Equations {
         let factors: [[C; 2]; 6] = std::array::from_fn(|i| self.factor(i, x[i]));
         let one = DualQuaternion::ONE;
         let joint = |i: usize| one * factors[i][0] + axes[i][0] * factors[i][1];
@@ -135,7 +136,7 @@ impl Homotopy {
         for i in (0..6).rev() {
             after[i] = joint(i) * after[i + 1];
         }
-        let [mut so_far, rate] = self.before.at(t);
+        let [mut so_far, rate] = *before;
         let mut drift = rate * after[0];
         let mut slopes: SMatrix<C, 6, 6> = SMatrix::zeros();
         for i in 0..6 {
@@ -156,79 +157,46 @@ impl Homotopy {
         })
     }
 
-    /// One step of Newton's method, and its size.
-    fn corrected(&self, x: &Unknowns, t: f64) -> Option<(Unknowns, f64)> {
-        let at = self.equations(x, t);
+    fn velocity(&self, x: &Unknowns, held: &HeldLoop) -> Option<Unknowns> {
+        let at = self.equations(x, held);
+        at.slopes.lu().solve(&-at.drift)
+    }
+
+    /// Where a solution at `t = 0` is at `t = 1`. `None` if it goes to infinity, or where solutions meet.
+    pub fn follow(&self, start: &Unknowns) -> Option<Unknowns> {
+        follow(self, start, Pace { near: NEAR }).reached()
+    }
+}
+
+impl Moving for Homotopy {
+    type Unknowns = Unknowns;
+    type Held = HeldLoop;
+    const ORDER: f64 = 5.0;
+
+    fn at(&self, t: f64) -> HeldLoop {
+        HeldLoop { before: self.before.at(t), axes: self.axes.map(|axis| axis.at(t)) }
+    }
+
+    /// By the classical method of Runge and Kutta.
+    fn ahead(&self, held: &HeldLoop, x: &Unknowns, t: f64, h: f64) -> Option<Unknowns> {
+        let c = |value: f64| C::from(value);
+        let (middle, end) = (self.at(t + 0.5 * h), self.at(t + h));
+        let one = self.velocity(x, held)?;
+        let two = self.velocity(&(x + one * c(0.5 * h)), &middle)?;
+        let three = self.velocity(&(x + two * c(0.5 * h)), &middle)?;
+        let four = self.velocity(&(x + three * c(h)), &end)?;
+        Some(x + (one + (two + three) * c(2.0) + four) * c(h / 6.0))
+    }
+
+    fn corrected(&self, held: &HeldLoop, x: &Unknowns) -> Option<(Unknowns, f64)> {
+        let at = self.equations(x, held);
         let step = at.slopes.lu().solve(&-at.open)?;
         let size = step.iter().zip(x.iter()).map(|(d, x)| d.norm() / (1.0 + x.norm()));
         let size = size.fold(0.0, f64::max);
         size.is_finite().then(|| (x + step, size))
     }
 
-    fn velocity(&self, x: &Unknowns, t: f64) -> Option<Unknowns> {
-        let at = self.equations(x, t);
-        at.slopes.lu().solve(&-at.drift)
-    }
-
-    /// Where a solution at `t = 0` is at `t = 1`. `None` if it goes to infinity, or where paths meet.
-    pub fn follow(&self, start: &Unknowns) -> Option<Unknowns> {
-        let (mut x, mut t, mut step, mut good) = (*start, 0.0, FIRST, 0);
-        for _ in 0..MOST_STEPS {
-            if t >= 1.0 {
-                return self.polished(x);
-            }
-            let h = f64::min(step, 1.0 - t);
-            let reached = self.ahead(&x, t, h).and_then(|ahead| {
-                let (first, size) = self.corrected(&ahead, t + h)?;
-                if size > NEAR {
-                    return None;
-                }
-                let (second, size) = self.corrected(&first, t + h)?;
-                if size <= CONVERGED {
-                    return Some(second);
-                }
-                let (third, size) = self.corrected(&second, t + h)?;
-                (size <= CONVERGED).then_some(third)
-            });
-            match reached {
-                Some(found) => {
-                    (x, t, good) = (found, t + h, good + 1);
-                    if x.iter().any(|c| c.norm() > FAR) {
-                        return None;
-                    }
-                    if good >= 3 {
-                        (step, good) = (2.0 * step, 0);
-                    }
-                }
-                None => {
-                    (step, good) = (0.5 * h, 0);
-                    if step < SHORTEST {
-                        return None;
-                    }
-                }
-            }
-        }
-        None
-    }
-
-    /// The prediction by the classical method of Runge and Kutta.
-    fn ahead(&self, x: &Unknowns, t: f64, h: f64) -> Option<Unknowns> {
-        let c = |value: f64| C::from(value);
-        let one = self.velocity(x, t)?;
-        let two = self.velocity(&(x + one * c(0.5 * h)), t + 0.5 * h)?;
-        let three = self.velocity(&(x + two * c(0.5 * h)), t + 0.5 * h)?;
-        let four = self.velocity(&(x + three * c(h)), t + h)?;
-        Some(x + (one + (two + three) * c(2.0) + four) * c(h / 6.0))
-    }
-
-    fn polished(&self, mut x: Unknowns) -> Option<Unknowns> {
-        for _ in 0..4 {
-            let (better, size) = self.corrected(&x, 1.0)?;
-            x = better;
-            if size <= 1e-14 {
-                break;
-            }
-        }
-        Some(x)
+    fn is_far(&self, x: &Unknowns) -> bool {
+        x.iter().any(|c| c.norm() > FAR)
     }
 }
