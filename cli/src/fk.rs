@@ -205,7 +205,7 @@ fn solutions(found: usize, of: usize) -> String {
         1 => "one solution, which was found".to_owned(),
         _ => format!("{of} solutions, complex ones too, and all were found"),
     };
-    match of - found {
+    match of.saturating_sub(found) {
         0 => format!(
             "The equations have {all}: with probability one there is no other assembly of the platform."
         ),

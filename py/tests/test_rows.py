@@ -221,6 +221,23 @@ def test_forward_gives_arrays(m):
     assert len(m.forward(np.zeros((0, 5)))) == 0 and m.forward([9.0] * 5).poses.shape == (0, 5)
 
 
+def test_all_assemblies_of_a_hexapod_are_found():
+    m = opm.examples.load("stewart")
+    poses = m.home + np.array([[0.02, -0.01, 0.03, 0.1, 0.05, -0.1], [-0.03, 0.02, 0.01, -0.05, 0.1, 0.2]])
+    joints = m.inverse(poses, joints="actuated").joints
+    found = m.forward(joints)
+    assert found.complete.all() and (found.counts > 1).all() and (found.counts % 2 == 0).all()
+    for row, pose in enumerate(poses):
+        off = np.abs(found.poses[row, : found.counts[row]] - pose).max(axis=1)
+        assert off.min() < 1e-9
+        again = m.inverse(found.poses[row, : found.counts[row]], joints="actuated").joints
+        np.testing.assert_allclose(again, np.broadcast_to(joints[row], again.shape), atol=1e-9)
+    # Near a pose it is Newton's method, as before: one row, and nothing is said of others.
+    near = m.forward(joints, near=poses)
+    assert near.poses.shape == (2, 1, 6) and not near.complete.any()
+    np.testing.assert_allclose(near.poses[:, 0], poses, atol=1e-9)
+
+
 def test_assemblies_are_sorted_from_near(m):
     joints = m.inverse(poses_of(m, 4), joints="actuated").joints
     from_home = m.forward(joints)

@@ -99,6 +99,29 @@ fn without_a_closed_form_it_says_so() {
     start.fails_with_one_line(1, &[name, "the start is out of reach", "leg1: "]);
 }
 
+/// Legs that are solved whole: all assemblies, with the number of all solutions.
+#[test]
+fn a_hexapod_has_assemblies_by_continuation() {
+    let joints = "S1=560mm,S2=530mm,S3=540mm,S4=535mm,S5=537mm,S6=545mm";
+    let found = json(&["fk", "stewart", "--joints", joints]);
+    assert_eq!(
+        keys(&found),
+        ["actuated", "method", "solutions", "assemblies", "unmet", "least_change", "loose"]
+    );
+    assert_eq!(found["method"], "continuation");
+    let [all, of] = ["found", "of"].map(|key| found["solutions"][key].as_u64().unwrap());
+    let listed = found["assemblies"].as_array().unwrap().len() as u64;
+    assert!(all == of && listed <= of && listed % 2 == 0 && listed > 0, "{listed} {all} {of}");
+    let run = opm(&["fk", "stewart", "--joints", joints]);
+    assert!(run.text().contains(&format!("{listed} assemblies by continuation")), "{}", run.stdout);
+    assert!(run.text().contains("with probability one"), "{}", run.stdout);
+    // The one near home, by Newton's method, is one of them.
+    let near = json(&["fk", "stewart", "--joints", joints, "--near", "x=0"]);
+    assert_eq!(near["method"], "newton");
+    let z = |found: &Value| number(&found["assemblies"][0]["pose"]["z"]);
+    assert!((z(&found) - z(&near)).abs() < 1e-9);
+}
+
 #[test]
 fn no_assembly_is_an_answer() {
     let joints = "S1=900mm,S2=165mm,S3=160mm,phi14=-150deg,phi24=130deg";

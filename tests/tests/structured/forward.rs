@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Translation3};
 use opm_core::forward::{Completeness, ForwardMethod, RESIDUAL};
-use opm_core::manipulator::{Manipulator, Mode};
+use opm_core::manipulator::{Manipulator, Mode, Solution};
 use opm_core::mechanism::joint::JointKind;
 use opm_tests::displacement;
 use opm_tests::structured::{apart, gap, manipulators, pose, quarter_turns};
@@ -33,7 +33,12 @@ fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
         Completeness::ClosedForm => (false, SAME),
         Completeness::Continuation { found, of } => (found < of, SAME_FITTED),
     };
-    if !found.loose.is_empty() || meets {
+    // Continuation finds isolated assemblies.
+    let loose = match found.completeness {
+        Completeness::ClosedForm => !found.loose.is_empty(),
+        Completeness::Continuation { .. } => meets || is_singular(m, &at),
+    };
+    if loose {
         return [0, 1];
     }
     let targets = advanced(m, &target);
@@ -48,6 +53,16 @@ fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
         found.list.iter().map(|a| (&a.pose, m.format_mode(a.mode))).collect::<Vec<_>>()
     );
     [1, 0]
+}
+
+/// Whether the platform can move at a solution with its actuated joints held, or legs are stretched there.
+fn is_singular(m: &Manipulator, at: &Solution) -> bool {
+    let (mut jacobians, mut measured) = (m.jacobians(), m.singularities());
+    if !m.differentiate(at, &mut jacobians).is_ok_and(|regular| regular) {
+        return true;
+    }
+    m.measure_singularities(&jacobians, &mut measured);
+    measured.whole.parallel.is_none_or(|measure| measure.abs() < 1e-6)
 }
 
 /// A place, and those that whole turns of a screw advance it to: inverse kinematics do not tell the turns of a

@@ -59,7 +59,7 @@ impl Manipulator {
             (true, true) => vec![Unmet::Contradiction],
             (true, false) => vec![Unmet::Together],
         };
-        let completeness = Completeness::Continuation { found, of };
+        let completeness = Completeness::Continuation { found, of: of.max(found) };
         Assemblies { list, unmet, loose: Vec::new(), completeness }
     }
 }

@@ -24,6 +24,9 @@ const PACES: [Pace; 2] = [Pace { near: 1e-3 }, Pace { near: 1e-5 }];
 const SAME: f64 = 1e-6;
 /// Two solutions that nearly meet are known to half of their digits, and so are their imaginary parts.
 const REAL: f64 = 1e-5;
+/// Solutions meet where a pivot is below this share of the largest: in general position, and nearly, where joints are given.
+const REGULAR: f64 = 1e-9;
+const MEETING: f64 = 1e-6;
 /// A real solution may be near one that was lost with imaginary parts up to this.
 const NEARLY: f64 = 0.1;
 /// So many round trips at most look for further solutions.
@@ -131,6 +134,10 @@ impl Continued {
         for pace in PACES {
             met.clear();
             let missed = |start: &Unknowns| match follow(&moving, start, pace) {
+                End::Reached(solution) if !moving.is_regular(&solution, MEETING) => {
+                    met.push(solution);
+                    true
+                }
                 End::Reached(solution) => {
                     twice |= !add(&mut found, solution);
                     false
@@ -154,7 +161,9 @@ impl Continued {
             for start in &self.starts {
                 let end = follow(&there, start, PACES[1]).reached();
                 let end = end.and_then(|start| follow(&on, &start, PACES[1]).reached());
-                end.map(|solution| add(&mut found, solution));
+                if let Some(end) = end.filter(|end| on.is_regular(end, MEETING)) {
+                    add(&mut found, end);
+                }
             }
         }
         (found, met)
@@ -217,7 +226,7 @@ impl Continued {
             let start = start / C::from(start.map(|c| c.norm()).norm());
             let Some(solution) = follow(&moving, &start, PACES[0]).reached() else { continue };
             let holds = |form: &RealForm| (complex(form) * solution).dot(&solution).norm() < SAME;
-            if moving.is_regular(&solution) && c.further.iter().all(holds) {
+            if moving.is_regular(&solution, REGULAR) && c.all_fixed.iter().all(holds) {
                 add(&mut found, solution);
             }
         }
@@ -232,8 +241,8 @@ impl Continued {
             let real = solutions.iter().filter_map(|solution| self.real(solution, within));
             real.collect::<Vec<_>>()
         };
-        let near = of(&met, NEARLY);
-        FoundDisplacements { real: of(&found, REAL), near, found: found.len(), of: self.count }
+        let (near, real) = (of(&met, NEARLY), [of(&found, REAL), of(&met, REAL)].concat());
+        FoundDisplacements { real, near, found: found.len(), of: self.count }
     }
 
     /// The displacement that a solution is; `None` if it is not real to within this.

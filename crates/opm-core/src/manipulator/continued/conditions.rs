@@ -43,9 +43,9 @@ pub struct Conditions {
     pub free: usize,
     /// The forms of which the others are sums.
     terms: Vec<RealForm>,
-    /// Forms that are zero in all displacements: those that are used, and others.
+    /// Forms that are zero in all displacements: all, and sums of them, as many as are independent.
+    pub all_fixed: Vec<RealForm>,
     pub fixed: Vec<RealForm>,
-    pub further: Vec<RealForm>,
     /// Forms that hold the platform with the actuated joints, as many as it has freedoms.
     pub held: Vec<Condition>,
     /// What each actuated joint is.
@@ -110,7 +110,7 @@ impl Conditions {
                     free,
                     terms: terms(&basis, free, all_terms),
                     fixed: Vec::new(),
-                    further: Vec::new(),
+                    all_fixed: Vec::new(),
                     held: Vec::new(),
                     quantities: manipulator.actuated().iter().map(quantity).collect(),
                     size: manipulator.closure.size,
@@ -156,9 +156,14 @@ impl Conditions {
                     continue;
                 }
                 let form = forms.swap_remove(0);
-                let used = gradients.take(&(form * place));
-                if used { &mut self.fixed } else { &mut self.further }.push(form);
+                gradients.take(&(form * place));
+                self.all_fixed.push(form);
             }
+        }
+        // At special places, as where the platform is turned by half a turn, some depend on each other that do not elsewhere.
+        for _ in 0..gradients.units.len() {
+            let mixed = |sum, form: &RealForm| sum + form * (2.0 * rng.f64() - 1.0);
+            self.fixed.push(self.all_fixed.iter().fold(RealForm::zeros(), mixed));
         }
         demands.sort_by_key(|(degree, _)| *degree);
         let factors = self.factors(&complex(&shared[0].actuated));

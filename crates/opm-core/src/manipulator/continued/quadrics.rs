@@ -14,9 +14,6 @@ pub type Form = SMatrix<C, 8, 8>;
 /// A displacement with an orientation below this is at infinity.
 const FAR: f64 = 1e-5;
 
-/// Solutions meet where a pivot is below this share of the largest.
-const REGULAR: f64 = 1e-9;
-
 /// Equations `xᵀ A x = 0`, as many as there are free coordinates but one. The coordinates after the free ones are zero.
 #[derive(Clone, Debug)]
 pub struct Quadrics {
@@ -45,10 +42,11 @@ impl Quadrics {
     }
 
     /// Whether a solution at `t = 1` is isolated: no other one is near it.
-    pub fn is_regular(&self, x: &Unknowns) -> bool {
+    pub fn is_regular(&self, x: &Unknowns, least: f64) -> bool {
         let (jacobian, _) = self.jacobian(&self.at(1.0), x);
         let pivots = jacobian.lu().u().diagonal().map(|pivot| pivot.norm());
-        pivots.min() > REGULAR * pivots.max()
+        // Far away all pivots but one are small.
+        pivots.min() > least * self.turned(x).powi(2) * pivots.max()
     }
 
     /// How far from infinity a displacement is.
