@@ -69,7 +69,7 @@ fn complex(form: &RealForm) -> Form {
 /// Whether two are multiples of each other; both have length one.
 fn same(one: &Unknowns, other: &Unknowns) -> bool {
     let along = one.dotc(other);
-    (other - one * along).map(|c| c.norm()).norm() < SAME
+    (other - one * along).map(C::norm).norm() < SAME
 }
 
 /// Adds a solution unless it is known.
@@ -223,7 +223,7 @@ impl Continued {
                 }
                 _ => C::ZERO,
             });
-            let start = start / C::from(start.map(|c| c.norm()).norm());
+            let start = start / C::from(start.map(C::norm).norm());
             let Some(solution) = follow(&moving, &start, PACES[0]).reached() else { continue };
             let holds = |form: &RealForm| (complex(form) * solution).dot(&solution).norm() < SAME;
             if moving.is_regular(&solution, REGULAR) && c.all_fixed.iter().all(holds) {

@@ -44,7 +44,7 @@ impl Quadrics {
     /// Whether a solution at `t = 1` is isolated: no other one is near it.
     pub fn is_regular(&self, x: &Unknowns, least: f64) -> bool {
         let (jacobian, _) = self.jacobian(&self.at(1.0), x);
-        let pivots = jacobian.lu().u().diagonal().map(|pivot| pivot.norm());
+        let pivots = jacobian.lu().u().diagonal().map(C::norm);
         // Far away all pivots but one are small.
         pivots.min() > least * self.turned(x).powi(2) * pivots.max()
     }
@@ -100,8 +100,8 @@ impl Moving for Quadrics {
         let (jacobian, values) = self.jacobian(held, x);
         let step = jacobian.lu().solve(&-values)?;
         let found = x + step;
-        let length = found.map(|c| c.norm()).norm();
-        let size = step.map(|c| c.norm()).norm() / self.turned(x).max(FAR);
+        let length = found.map(C::norm).norm();
+        let size = step.map(C::norm).norm() / self.turned(x).max(FAR);
         size.is_finite().then(|| (found / C::from(length), size))
     }
 
