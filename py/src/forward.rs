@@ -152,7 +152,7 @@ impl Manipulator {
         let stop = AtomicBool::new(false);
         let solve = |row: usize| -> Result<Found, String> {
             if stop.load(Ordering::Relaxed) || joints.missing(row) {
-                return Ok(Found { list: Vec::new(), complete: !joints.missing(row) });
+                return Ok(Found { list: Vec::new(), complete: false });
             }
             let (values, start) = (joints.row(row), start(row));
             let found = if newton {
@@ -223,8 +223,8 @@ impl Manipulator {
 
     /// The pose for each row of actuated joint values, near the pose of the row before it, in one working mode.
     ///
-    /// Newton's method starts at the last pose that was found. Where it ends without an assembly, the closed form finds
-    /// the nearest one in this mode, for mechanisms that have one.
+    /// Newton's method starts at the last pose that was found. Where it ends without an assembly, the nearest of all
+    /// assemblies in this mode is taken, if these can be found.
     ///
     /// Parameters
     /// ----------

@@ -5,31 +5,55 @@ use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Vector3};
 use opm_core::Manipulator;
 use opm_core::forward::{Assemblies, Completeness, ForwardMethod};
-use std::fmt::Write;
+
+/// The start of a mechanism file.
+const HEAD: &str = "format = 1\nname = \"telescopes\"\nunits = { length = \"m\", angle = \"rad\" }\n[platform]\npoint = [0, 0, 0]\n";
+
+fn list(v: Vector3<f64>) -> String {
+    format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
+}
+
+/// A telescope between two points, with a ball at its end. It swings about a side of its own, or in all directions.
+fn telescope(number: usize, [a, b]: [Vector3<f64>; 2], in_plane: bool) -> String {
+    let along = (b - a).normalize();
+    let side = along.cross(&Vector3::new(0.3, 0.5, 0.8)).normalize();
+    let swings = match in_plane {
+        true => format!("type = \"revolute\", axis = {}", list(side)),
+        false => {
+            let other = along.cross(&side);
+            format!("type = \"universal\", axis = {}, axis2 = {}", list(side), list(other))
+        }
+    };
+    format!(
+        "[[leg]]\nname = \"leg{number}\"\njoints = [\n\
+         {{ name = \"u{number}\", {swings}, point = {} }},\n\
+         {{ name = \"p{number}\", type = \"prismatic\", axis = {}, actuated = true }},\n\
+         {{ name = \"s{number}\", type = \"spherical\", point = {} }},\n]\n",
+        list(a),
+        list(along),
+        list(b)
+    )
+}
+
+/// A 3-RPS, or three telescopes about a ball (3-UPS-S), at home as given.
+fn three_legs(kind: &str, base: &[[f64; 3]], platform: &[[f64; 3]]) -> Manipulator {
+    let mut text = HEAD.to_owned();
+    for (number, (a, b)) in base.iter().zip(platform).enumerate() {
+        let ends = [Vector3::from(*a), Vector3::from(*b) + Vector3::z() * 1.2];
+        text += &telescope(number, ends, kind == "RPS");
+    }
+    if kind == "UPS-S" {
+        text += "[[leg]]\nname = \"stem\"\njoints = [{ name = \"s\", type = \"spherical\", point = [0.1, 0.2, 0.6] }]\n";
+    }
+    Manipulator::read(&text).unwrap()
+}
 
 /// A hexapod with universal joints at its base, telescopes, and balls at its platform, at home as given.
 fn hexapod(base: &[[f64; 3]; 6], platform: &[[f64; 3]; 6], height: f64) -> Manipulator {
-    let mut text = String::from(
-        "format = 1\nname = \"hexapod\"\nunits = { length = \"m\", angle = \"rad\" }\n[platform]\npoint = [0, 0, 0]\n",
-    );
+    let mut text = HEAD.to_owned();
     for (number, (a, b)) in base.iter().zip(platform).enumerate() {
-        let (a, b) = (Vector3::from(*a), Vector3::from(*b) + Vector3::z() * height);
-        let along = (b - a).normalize();
-        let side = along.cross(&Vector3::new(0.3, 0.5, 0.8)).normalize();
-        let other = along.cross(&side);
-        let list = |v: Vector3<f64>| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
-        let _ = writeln!(
-            text,
-            "[[leg]]\nname = \"leg{number}\"\njoints = [\n\
-             {{ name = \"u{number}\", type = \"universal\", axis = {}, axis2 = {}, point = {} }},\n\
-             {{ name = \"p{number}\", type = \"prismatic\", axis = {}, actuated = true }},\n\
-             {{ name = \"s{number}\", type = \"spherical\", point = {} }},\n]",
-            list(side),
-            list(other),
-            list(a),
-            list(along),
-            list(b)
-        );
+        let ends = [Vector3::from(*a), Vector3::from(*b) + Vector3::z() * height];
+        text += &telescope(number, ends, false);
     }
     Manipulator::read(&text).unwrap()
 }
@@ -134,7 +158,8 @@ fn hexapods_lead_back() {
 }
 
 /// As many solutions as are published: 16 where legs meet in pairs at three points of the platform (6-3, Innocenti and
-/// Parenti-Castelli 1990), 8 of three spheres about a ball (3-UPS-S, Wohlhart 1994), 28 of a Tricept, 2 of a Delta, 1 of a Tripteron.
+/// Parenti-Castelli 1990) and of a 3-RPS, 8 of three spheres about a ball (3-UPS-S, Wohlhart 1994), 28 of a Tricept, 2 of a Delta, 1 of a
+/// Tripteron.
 #[test]
 fn there_are_as_many_solutions_as_published() {
     let mut rng = Rng::with_seed(55);
@@ -146,6 +171,15 @@ fn there_are_as_many_solutions_as_published() {
     let m = hexapod(&base, &platform, 1.2);
     let home = vec![0.0; 6];
     assert_eq!(solutions(&m.forward(&home).unwrap()), [16, 16]);
+
+    let three = |rng: &mut Rng| random(rng, false).into_iter().step_by(2).collect::<Vec<_>>();
+    for (kind, count) in [("RPS", 16), ("UPS-S", 8)] {
+        let m = three_legs(kind, &three(&mut rng), &three(&mut rng));
+        let (actuated, g) = joints_at(&m, &near(&m, 0.1, &mut rng)).unwrap();
+        let found = m.forward(&actuated).unwrap();
+        assert_eq!(solutions(&found), [count, count], "{kind}");
+        check(&m, &actuated, &g, &found);
+    }
 
     for (name, count) in [
         ("delta", 2),

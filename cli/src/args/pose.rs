@@ -126,14 +126,15 @@ pub struct VelocityArgs {
 
 /// Forward kinematics: every pose that given actuated joints allow, or the poses of a CSV file of joints
 ///
-/// If the mechanism's sections can be solved one after the other, the closed form finds all assemblies,
-/// each with its working mode and with how well its legs close (`residual`, radians and shares of the
-/// mechanism's size). Otherwise, or with --near, Newton's method starts from a pose and finds one assembly,
-/// in the working mode of --mode or home. The assembly nearest to home comes first.
+/// All assemblies are found, each with its working mode and with how well its legs close (`residual`, radians and
+/// shares of the mechanism's size): in closed form if the mechanism's sections can be solved one after the other,
+/// else by continuation, which tells how many solutions there are, complex ones too, and lists a pose once. With
+/// --near, or where neither is possible, Newton's method starts from a pose and finds one assembly, in the working
+/// mode of --mode or home. The assembly nearest to home comes first.
 ///
 /// No assembly is an answer (exit status 0): it names what does not meet, and the least change of the joints
 /// with which the mechanism can be assembled, of all together (least sum of squares, lengths over the
-/// mechanism's size) and of each alone; in JSON `least_change`, null where none was found. Angles count
+/// mechanism's size) and of each alone; in JSON `least_change`, null where none was found or there is no closed form. Angles count
 /// modulo a revolution, except where a screw joint follows them: each revolution is then an assembly of its
 /// own, one advance of the screw away. `opm ik` does not count revolutions; the angles in --joints decide.
 ///
@@ -141,9 +142,9 @@ pub struct VelocityArgs {
 /// radians. A column `t` is carried through; the others that `opm ik --poses` and `opm trajectory` write are not read.
 /// CSV out: the task coordinates, those that depend on them, `mode`,
 /// `reachable` and `within_limits` (1 or 0), the actuated joints. Every row is solved near the row before it, the
-/// first one near home or --near, by Newton's method in one working mode; where that ends without an assembly, the
-/// closed form finds the nearest in this mode. A row without an assembly keeps its place; its pose cells are empty,
-/// and the next row starts where this one did. With --all there is a row for each assembly of the closed form, with
+/// first one near home or --near, by Newton's method in one working mode; where that ends without an assembly, it is
+/// the nearest of all in this mode. A row without an assembly keeps its place; its pose cells are empty,
+/// and the next row starts where this one did. With --all there is a row for each assembly, with
 /// the number of its row (`row`) and its own (`assembly`), those nearest to home or to --near first.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
@@ -152,6 +153,7 @@ Examples:
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.16,S3=0.16,phi14=-2.7,phi24=2.3 --mode home
   opm fk plano-spherical-5dof --joints S1=0.17,S2=0.17,S3=0.17,phi14=-2.7,phi24=2.3 --near xi=10deg
   opm fk translational-planar-4dof --joints S1=10mm,S2=0,S3=0,S4=-10mm --format json
+  opm fk stewart --joints S1=560mm,S2=530mm,S3=540mm,S4=535mm,S5=537mm,S6=545mm
   opm fk planar-3rpr --joints S1=14.98mm,S2=15.38mm,S3=12mm --aspects
   opm fk plano-spherical-5dof --poses joints.csv | head")]
 #[command(group = clap::ArgGroup::new("given").required(true).args(["joints", "poses"]))]

@@ -239,9 +239,11 @@ impl Manipulator {
         self.continued.get_or_init(made).as_deref().ok_or(why)
     }
 
-    /// Every assembly that the actuated joints allow, by the [method](Manipulator::forward_method) that the mechanism has. `actuated` has the values in the order
-    /// of [`Manipulator::actuated`], radians and metres. If there is no assembly, [`Assemblies::unmet`] says
-    /// why; that is not an error.
+    /// Every assembly that the actuated joints allow, by the [method](Manipulator::forward_method) that the mechanism
+    /// has. `actuated` has the values in the order of [`Manipulator::actuated`], radians and metres. If there is no
+    /// assembly, [`Assemblies::unmet`] says why; that is not an error. By continuation a pose is listed once: of the
+    /// joints that a leg can have there, those within limits, and else those of home's mode
+    /// ([`Manipulator::assembly_in`] has the others).
     ///
     /// Angles count modulo 2π, unless a screw makes full revolutions matter. Inverse kinematics do not
     /// determine the full revolutions of a revolute joint in a plane that passes its rotation on to a screw:

@@ -6,8 +6,7 @@ use opm_core::manipulator::{Manipulator, Mode};
 /// Follows the platform through a series of values of the actuated joints, in one working mode.
 ///
 /// Each step starts Newton's method at the last pose that was found. If it ends without an assembly, because the
-/// joints have moved too far, the closed form finds all assemblies, where the mechanism has one, and the nearest in
-/// this mode is taken.
+/// joints have moved too far, all assemblies are found, where that is possible, and the nearest in this mode is taken.
 pub struct Tracker<'a> {
     manipulator: &'a Manipulator,
     mode: Mode,

@@ -36,7 +36,9 @@ fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
     // Continuation finds isolated assemblies.
     let loose = match found.completeness {
         Completeness::ClosedForm => !found.loose.is_empty(),
-        Completeness::Continuation { .. } => meets || is_singular(m, &at),
+        Completeness::Continuation { .. } => {
+            meets || is_singular(m, &at) || !is_told_by_coordinates(m, pose, mode)
+        }
     };
     if loose {
         return [0, 1];
@@ -46,11 +48,6 @@ fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
         let here = displacement(m, &a.pose, a.mode);
         targets.iter().any(|target| apart(m, &here, target) < same)
     });
-    // A stem may have a singularity of its own at a structured pose: a Tricept's, along the first axis of its universal joint.
-    let continued = found.completeness != Completeness::ClosedForm;
-    if !back && continued && !m.dependent_coordinates().is_empty() {
-        return [0, 1];
-    }
     assert!(
         back,
         "{name} {pose:?} {} {actuated:?}: none of {:?}",
@@ -70,6 +67,22 @@ fn is_singular(m: &Manipulator, at: &Solution) -> bool {
     let zero = |measure: f64| measure.abs() < 1e-6;
     measured.legs.iter().flatten().any(|measure| zero(*measure))
         || measured.whole.parallel.is_none_or(zero)
+}
+
+/// Whether coordinates tell a place: they are found again from it, and their rounding moves the platform by little more than rounding.
+/// Neither holds everywhere: at a pole of the angles, and on the first axis of a Tricept's universal joint, where x, y and z leave
+/// the angle about it open.
+fn is_told_by_coordinates(m: &Manipulator, pose: &[f64], mode: Mode) -> bool {
+    let place = m.displacement_in(pose, mode).unwrap();
+    let near = |pose: &[f64]| {
+        m.displacement_in(pose, mode).is_ok_and(|other| apart(m, &other, &place) < SAME)
+    };
+    m.locate(&place).is_ok_and(|pose| near(&pose))
+        && (0..pose.len()).all(|coordinate| {
+            let mut other = pose.to_vec();
+            other[coordinate] += 1e-10;
+            near(&other)
+        })
 }
 
 /// A place, and those that whole turns of a screw advance it to: inverse kinematics do not tell the turns of a
@@ -103,11 +116,12 @@ fn joints_of_structured_poses_lead_back() {
             (found, loose) = (found + one, loose + other);
         }
         println!("{}: {found} found, {loose} loose", m.mechanism().name);
-        assert!(
-            found > 50 || method != Ok(ForwardMethod::ClosedForm),
-            "{}: {found}",
-            m.mechanism().name
-        );
+        let enough = match method {
+            Ok(ForwardMethod::ClosedForm) => found > 50,
+            Ok(ForwardMethod::Continuation) => found > 10,
+            Err(_) => true,
+        };
+        assert!(enough, "{}: {found}", m.mechanism().name);
     }
 }
 

@@ -3,10 +3,10 @@
 use super::held::Held;
 use super::search::{Memory, Search};
 use super::{Assemblies, Assembly, Unmet};
-use crate::manipulator::{ClosureBuffer, Manipulator, Mode, Section, Unreachable};
+use crate::manipulator::{ClosureBuffer, Manipulator, Mode, Section, Solution, Unreachable};
 use crate::numeric::Quantity;
 use nalgebra::Isometry3;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// The solution at an assembled pose has the values of the actuated joints to within this, in radians or shares of the
 /// size. Near a serial singularity, inverse kinematics are only accurate to about the square root of rounding.
@@ -73,6 +73,46 @@ impl Manipulator {
             };
             *joint = given + TAU * revolutions;
         }
+    }
+
+    /// The error of an actuated joint that has this value and should be displaced from home by `wanted`, in radians or shares of
+    /// the size. Full revolutions do not count where it is `modulo` these: see [`Manipulator::modulo_revolutions`].
+    #[inline]
+    pub(super) fn actuated_error(
+        &self,
+        coordinate: usize,
+        value: f64,
+        wanted: f64,
+        modulo: bool,
+    ) -> f64 {
+        let mut off = (value - self.coordinates()[coordinate].home - wanted).abs();
+        if modulo && off > PI {
+            off = (off - TAU * (off / TAU).round()).abs();
+        }
+        off * self.weight(coordinate)
+    }
+
+    /// The assembly in a mode with these displacements of the actuated joints, from a solution at its pose.
+    pub(super) fn assembly_of(
+        &self,
+        (pose, mode): (&[f64], Mode),
+        solution: &Solution,
+        wanted: &[f64],
+        buffer: &mut ClosureBuffer,
+    ) -> Option<Assembly> {
+        let (all, target) = (self.completed(pose, mode).ok()?, solution.displacement(self));
+        let (mut joints, mut residuals) = (solution.joints().to_vec(), Vec::new());
+        self.set_actuated(wanted, &mut joints);
+        self.closure.write_residuals(&joints, &[target], &mut residuals);
+        let place = AssemblyPlace { pose, all: &all, target: &target, mode };
+        let solved = Solved {
+            joints: &joints,
+            imaginary: solution.imaginary(),
+            within_limits: solution.within_limits(),
+        };
+        let mut assembly = Assembly::buffer(self);
+        self.write_assembly(place, solved, residuals[0], buffer, &mut assembly);
+        Some(assembly)
     }
 
     /// Writes the assembly at a pose from a solution there, with its residual. The passive joints are improved where it

@@ -1,13 +1,12 @@
 //! Displacements of the platform as assemblies.
 
-use super::accept::{APART, AssemblyPlace, MATCH, Solved};
+use super::accept::{APART, MATCH};
 use super::{Assemblies, Assembly, Completeness, Unmet};
 use crate::group::JointDisplacement;
 use crate::manipulator::{
     AllModes, ClosureBuffer, Continued, FoundDisplacements, Manipulator, Mode, Solution,
 };
 use nalgebra::Isometry3;
-use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 /// The most combinations of choices of a leg.
@@ -68,10 +67,17 @@ impl Assembler<'_> {
     /// An assembly in home's mode near a place where solutions meet, which Newton's method finds.
     fn near(&self, g: &Isometry3<f64>) -> Option<Assembly> {
         let m = self.manipulator;
+        let pose = self.pose(g, Some(m.home_mode()));
+        m.forward_near(&self.given(), &pose, m.home_mode()).ok()
+    }
+
+    /// The independent coordinates of a displacement, with the angles of a mode if one is given.
+    fn pose(&self, g: &Isometry3<f64>, mode: Option<Mode>) -> Vec<f64> {
+        let m = self.manipulator;
         let ([v, b], rise) = m.task().factors(g);
         let (mut all, mut pose) = (m.task().pose(&v, &b, rise), Vec::new());
-        m.write_independent(Some(m.home_mode()), &mut all, &mut pose);
-        m.forward_near(&self.given(), &pose, m.home_mode()).ok()
+        m.write_independent(mode, &mut all, &mut pose);
+        pose
     }
 
     /// The values of the actuated joints.
@@ -83,26 +89,16 @@ impl Assembler<'_> {
     /// The assembly at a displacement of the platform; `None` if a leg does not close there with its actuated joints.
     fn at(&mut self, g: &Isometry3<f64>) -> Option<Assembly> {
         let m = self.manipulator;
-        let ([v, b], rise) = m.task().factors(g);
-        let (mut all, mut pose) = (m.task().pose(&v, &b, rise), Vec::new());
-        m.write_independent(None, &mut all, &mut pose);
+        let pose = self.pose(g, None);
         let steps = self.steps(&pose, g)?;
         m.inverse_all(&pose, &mut self.all).ok()??;
         let mode = self.legs_mode(steps)?;
         let solution = m.solution_in_mode(&self.all, mode, &mut self.solution)?;
-        let (target, within_limits) = (solution.displacement(m), solution.within_limits());
-        let (mut joints, imaginary) = (solution.joints().to_vec(), solution.imaginary().to_vec());
-        m.set_actuated(self.wanted, &mut joints);
-        let mut residuals = Vec::new();
-        m.closure.write_residuals(&joints, &[target], &mut residuals);
-        let all = m.completed(&pose, mode).ok()?;
-        let place = AssemblyPlace { pose: &pose, all: &all, target: &target, mode };
-        let solved = Solved { joints: &joints, imaginary: &imaginary, within_limits };
-        let mut assembly = Assembly::buffer(m);
-        m.write_assembly(place, solved, residuals[0], &mut self.closure, &mut assembly);
+        let mut assembly =
+            m.assembly_of((&pose, mode), solution, self.wanted, &mut self.closure)?;
         if assembly.residual > m.largest_residual() {
             let better = m.forward_near(&self.given(), &assembly.pose, mode).ok()?;
-            let moved = m.apart(&m.displacement_of(&better), &target);
+            let moved = m.apart(&m.displacement_of(&better), g);
             assembly = (moved < APART).then_some(better)?;
         }
         (assembly.residual <= m.largest_residual()).then_some(assembly)
@@ -155,12 +151,7 @@ impl Assembler<'_> {
         let m = self.manipulator;
         let values = m.actuated().iter().zip(self.wanted).zip(&self.modulo);
         let of = |((&coordinate, wanted), &modulo): ((&usize, &f64), &bool)| {
-            let value = self.solution.joints()[coordinate];
-            let mut off = (value - m.coordinates()[coordinate].home - wanted).abs();
-            if modulo && off > PI {
-                off = (off - TAU * (off / TAU).round()).abs();
-            }
-            off * m.weight(coordinate)
+            m.actuated_error(coordinate, self.solution.joints()[coordinate], *wanted, modulo)
         };
         let own = values.filter(|((coordinate, _), _)| coordinates.contains(coordinate));
         own.map(of).fold(0.0, f64::max)

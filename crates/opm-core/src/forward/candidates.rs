@@ -8,7 +8,7 @@ use crate::group::Displacement;
 use crate::manipulator::{Batch, BatchOutput, Dependent, Manipulator, Mode, Solution};
 use crate::numeric::Quantity;
 use nalgebra::Isometry3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// The candidates that the search has found, one row for each working mode of a pose.
 #[derive(Clone, Debug)]
@@ -113,12 +113,9 @@ impl Candidates {
             let mut largest = 0.0;
             let values = manipulator.actuated().iter().zip(wanted).zip(&self.modulo);
             for ((&coordinate, wanted), &modulo) in values {
-                let home = manipulator.coordinates()[coordinate].home;
-                let mut off = (joints[coordinate] - home - wanted).abs();
-                if modulo && off > PI {
-                    off = (off - TAU * (off / TAU).round()).abs();
-                }
-                largest = f64::max(largest, off * manipulator.weight(coordinate));
+                let value = joints[coordinate];
+                let error = manipulator.actuated_error(coordinate, value, *wanted, modulo);
+                largest = f64::max(largest, error);
             }
             largest
         };

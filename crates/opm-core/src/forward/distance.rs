@@ -3,9 +3,7 @@
 use super::Assembly;
 use super::accept::APART;
 use crate::manipulator::{Manipulator, Mode};
-use crate::numeric::Quantity;
 use nalgebra::Isometry3;
-use std::f64::consts::TAU;
 
 impl Manipulator {
     /// All task coordinates of an assembly.
@@ -56,24 +54,17 @@ impl Manipulator {
         let place = self.task().displacement(&all);
         self.write_independent(Some(mode), &mut all, &mut pose);
         let solution = self.inverse(&pose, mode, &mut solution).ok()??;
-        let given: Vec<f64> = self.actuated().iter().map(|&c| assembly.joints[c]).collect();
-        let off = |(&coordinate, given): (&usize, &f64)| {
-            let off = solution.joints()[coordinate] - given;
-            let modulo = self.coordinates()[coordinate].quantity == Quantity::Angle;
-            let off = if modulo { off - TAU * (off / TAU).round() } else { off };
-            off.abs() * self.weight(coordinate)
-        };
+        let actuated = || self.actuated().iter().copied();
+        let wanted: Vec<f64> =
+            actuated().map(|c| assembly.joints[c] - self.coordinates()[c].home).collect();
+        let modulo = self.modulo_revolutions();
+        let errors = actuated().zip(&wanted).zip(&modulo).map(|((c, wanted), &modulo)| {
+            self.actuated_error(c, solution.joints()[c], *wanted, modulo)
+        });
         let same = self.apart(&solution.displacement(self), &place) <= APART
-            && self.actuated().iter().zip(&given).map(off).fold(0.0, f64::max) <= APART;
-        same.then(|| Assembly {
-            pose,
-            dependent: solution.dependent().to_vec(),
-            mode,
-            joints: solution.joints().to_vec(),
-            imaginary: solution.imaginary().to_vec(),
-            within_limits: solution.within_limits(),
-            residual: assembly.residual,
-        })
+            && errors.fold(0.0, f64::max) <= APART;
+        let mut buffer = self.closure.buffer();
+        same.then(|| self.assembly_of((&pose, mode), solution, &wanted, &mut buffer)).flatten()
     }
 
     /// Keeps the assemblies of one working mode, with the coordinates that they have in it:

@@ -118,7 +118,7 @@ impl Continued {
         let size = found.conditions.size;
         let joint =
             |quantity| number(&mut rng) * if quantity == Quantity::Length { size } else { 1.0 };
-        let joints: Vec<C> = found.conditions.joints().map(joint).collect();
+        let joints: Vec<C> = found.conditions.quantities.iter().copied().map(joint).collect();
         found.count = found.ends(&joints).0.len();
         (found.count > 0).then_some(found)
     }
@@ -181,19 +181,15 @@ impl Continued {
         Quadrics { forms, orientation: self.conditions.basis.fixed_rows::<4>(0).into_owned() }
     }
 
-    /// Takes the first sphere from the others, of which each has `p · p` once: far away they would be nearly equal.
+    /// Takes the first sphere from the others. Each has `p · p` once, so that far away they are nearly equal.
     fn without_squares(&self, forms: &[Form]) -> Vec<Form> {
-        let all = self.conditions.held.iter().zip(forms);
-        let first = all.clone().find(|(condition, _)| condition.sphere).map(|(_, form)| *form);
-        let mut seen = false;
-        all.map(|(condition, form)| match first {
-            Some(first) if condition.sphere && seen => form - first,
-            _ => {
-                seen |= condition.sphere;
-                *form
-            }
-        })
-        .collect()
+        let held = &self.conditions.held;
+        let first = held.iter().position(|condition| condition.sphere);
+        let less = |(i, form): (usize, &Form)| match first {
+            Some(first) if i != first && held[i].sphere => form - forms[first],
+            _ => *form,
+        };
+        forms.iter().enumerate().map(less).collect()
     }
 
     /// The solutions for the joints in general position, from those of `a x² = b x₀²` in each coordinate.

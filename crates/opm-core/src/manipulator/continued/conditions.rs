@@ -49,7 +49,7 @@ pub struct Conditions {
     /// Forms that hold the platform with the actuated joints, as many as it has freedoms.
     pub held: Vec<Condition>,
     /// What each actuated joint is.
-    quantities: Vec<Quantity>,
+    pub quantities: Vec<Quantity>,
     /// Lengths are over this, metres.
     pub size: f64,
 }
@@ -182,11 +182,6 @@ impl Conditions {
         parts.fold(RealForm::zeros(), |sum, (term, coefficient)| sum + term * *coefficient)
     }
 
-    /// What each actuated joint is.
-    pub fn joints(&self) -> impl Iterator<Item = Quantity> + '_ {
-        self.quantities.iter().copied()
-    }
-
     /// What each actuated joint gives: `1, cos q, sin q`, or `1, q, q²`.
     pub fn factors(&self, actuated: &[C]) -> Vec<[C; 3]> {
         let of = |(&value, quantity): (&C, &Quantity)| match quantity {
@@ -244,8 +239,8 @@ fn actuated_of_legs(m: &Manipulator) -> Option<Vec<Vec<usize>>> {
 }
 
 /// The terms of equations, as independent forms of the free coordinates: products of two parts of `q`, those of one of `q` and
-/// one of `p = t q`, and `p · p`.
-fn terms(basis: &SMatrix<f64, 8, 8>, free: usize, full: bool) -> Vec<RealForm> {
+/// one of `p = t q`, and `p · p`; or `all` products.
+fn terms(basis: &SMatrix<f64, 8, 8>, free: usize, all: bool) -> Vec<RealForm> {
     let product = |i: usize, j: usize| {
         let mut form = RealForm::zeros();
         form[(i, j)] += 0.5;
@@ -254,11 +249,11 @@ fn terms(basis: &SMatrix<f64, 8, 8>, free: usize, full: bool) -> Vec<RealForm> {
     };
     let of_orientation = (0..4).flat_map(|i| (i..8).map(move |j| product(i, j)));
     let square = (4..8).fold(RealForm::zeros(), |sum, i| sum + product(i, i));
-    let squares: Vec<RealForm> = match full {
+    let squares: Vec<RealForm> = match all {
         true => (4..8).flat_map(|i| (i..8).map(move |j| product(i, j))).collect(),
         false => vec![square],
     };
-    let all: Vec<RealForm> = of_orientation
+    let products: Vec<RealForm> = of_orientation
         .chain(squares)
         .map(|form| {
             let mut of_free = RealForm::zeros();
@@ -267,7 +262,7 @@ fn terms(basis: &SMatrix<f64, 8, 8>, free: usize, full: bool) -> Vec<RealForm> {
             of_free
         })
         .collect();
-    let svd = Svd::new(DMatrix::from_fn(64, all.len(), |i, j| all[j][i]));
+    let svd = Svd::new(DMatrix::from_fn(64, products.len(), |i, j| products[j][i]));
     let independent = svd.rank(HOLDS);
     let image = svd.image.columns(0, independent);
     image
