@@ -69,6 +69,7 @@ impl Change {
                     self.name
                 ))
             }),
+            None if file.is_plain(&self.name) => number.bare(&self.name),
             None => number.value_of(&self.name, Quantity::Length).or(Ok(0.0)),
         };
         Ok(match self.value {
@@ -134,11 +135,12 @@ impl Loaded {
                 format!("{name} is an effort: nothing that is counted here depends on it");
             return Err(Failure::flag("--vary", problem));
         }
-        let Some(quantity) = self.file.quantity_of(name) else {
+        let quantity = self.file.quantity_of(name);
+        if quantity.is_none() && !self.file.is_plain(name) {
             let unknown = self.file.with([(name, ParameterValue::Number(0.0))]);
             let problem = unknown.err().map_or_else(String::new, |errors| errors.to_string());
             return Err(Failure::flag("--vary", problem));
-        };
+        }
         let axis = vary.of_quantity(quantity).map_err(|error| Failure::flag("--vary", error))?;
         const MOST: u64 = 100_000;
         if !(1..=MOST).contains(&axis.count) {
@@ -155,7 +157,8 @@ pub struct Varied<'a> {
     pub name: &'a str,
     /// Radians and metres.
     pub values: Vec<f64>,
-    pub quantity: Quantity,
+    /// `None` for a number without a unit.
+    pub quantity: Option<Quantity>,
 }
 
 #[cfg(test)]

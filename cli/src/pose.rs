@@ -398,8 +398,11 @@ impl GridAxis {
     }
 
     /// The values in SI, for something of this quantity.
-    pub fn of_quantity(&self, quantity: Quantity) -> Result<Axis, Misread> {
-        let [min, max] = [self.min, self.max].map(|end| end.value_of(&self.name, quantity));
+    pub fn of_quantity(&self, quantity: Option<Quantity>) -> Result<Axis, Misread> {
+        let [min, max] = [self.min, self.max].map(|end| match quantity {
+            Some(quantity) => end.value_of(&self.name, quantity),
+            None => end.bare(&self.name),
+        });
         Ok(Axis::new(&*self.name, min?, max?, self.count))
     }
 

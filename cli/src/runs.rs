@@ -146,12 +146,21 @@ pub fn vary(
     mut run: impl FnMut(&Loaded) -> Result<Vec<Cell>, Failure>,
 ) -> Result<(), Failure> {
     let units = loaded.file.units;
-    let mut runs = Runs::new("value", &text::header(varied.name, varied.quantity, units));
+    let header = match varied.quantity {
+        Some(quantity) => text::header(varied.name, quantity, units),
+        None => varied.name.to_owned(),
+    };
+    let mut runs = Runs::new("value", &header);
     for &value in &varied.values {
         // A mechanism that does not assemble is a result.
         let found = loaded.with(varied.name, value).and_then(|changed| run(&changed));
-        runs.add(value, text::number(value, varied.quantity, units), found)?;
+        let shown = match varied.quantity {
+            Some(quantity) => text::number(value, quantity, units),
+            None => value.to_string(),
+        };
+        runs.add(value, shown, found)?;
     }
-    let more = json!({ "vary": varied.name, "units": FileUnits::SI.symbol(varied.quantity) });
+    let unit = varied.quantity.map_or("", |quantity| FileUnits::SI.symbol(quantity));
+    let more = json!({ "vary": varied.name, "units": unit });
     runs.print(output, &loaded.file.mechanism.name, more)
 }

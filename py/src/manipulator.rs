@@ -17,7 +17,7 @@ use opm_core::manipulator::{self as core, Mode};
 use opm_core::mechanism::OrientationCoordinates;
 use opm_core::mechanism::examples as shipped;
 use opm_core::mechanism::family::{Family, ParameterValue};
-use opm_core::mechanism::file::{FileUnits, Locations, MechanismFile};
+use opm_core::mechanism::file::{FileUnits, Locations, MechanismFile, NamedValue};
 use opm_core::task;
 use opm_export::{Keyframes, mjcf};
 use pyo3::exceptions::PyUserWarning;
@@ -40,6 +40,8 @@ pub struct Manipulator {
     label: String,
     /// What it was assembled from; `None` for a list of joints.
     pub family: Option<Family>,
+    /// The file, if it has named parameters.
+    named: Option<Arc<MechanismFile>>,
 }
 
 impl PartialEq for Manipulator {
@@ -174,14 +176,21 @@ impl Manipulator {
         Self::compile(read, text, label)?.warned(py)
     }
 
-    /// The geometric parameters of its family by name; empty for a list of joints.
+    /// The named parameters of its file, and the geometric parameters of its family, by name; empty for a list of joints that
+    /// names none.
     ///
-    /// ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
+    /// A parameter of the table ``[parameters]`` has its own name; a point is ``(x, y, z)``. In a family, ``home.x`` is a coordinate of home, ``leg1.h`` a parameter of the leg of this name, ``leg1.limits.S`` the limits of one
     /// of its joints, ``leg1.max_rate.S`` and ``leg1.max_acceleration.S`` those of its motion, ``leg1.max_effort.S`` that of its
     /// actuator, ``leg1.offset.S`` the offset of its encoder. Values are in metres, radians, seconds and newtons. A point is ``(x, y)``; limits are ``(lowest, highest)``, or None if there are none, and so is an offset.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
+        for parameter in self.named.iter().flat_map(|file| &file.parameters) {
+            match parameter.value {
+                NamedValue::Number(value) => dict.set_item(&parameter.name, value)?,
+                NamedValue::Point([x, y, z]) => dict.set_item(&parameter.name, (x, y, z))?,
+            }
+        }
         for (name, value) in self.family.iter().flat_map(Family::parameters) {
             match value {
                 ParameterValue::None => dict.set_item(name, py.None())?,
@@ -197,7 +206,8 @@ impl Manipulator {
     /// Parameters
     /// ----------
     /// changes : mapping, optional
-    ///     New values by name. A name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
+    ///     New values by name, in metres, radians, or as they are for numbers without a unit. A parameter of the file changes
+    ///     everything that the file gives by it. In a family, a name without its leg (``h``, ``limits.S``) sets the parameter in every leg that has it; a
     ///     full name (``leg1.h``) sets it in one leg and takes precedence. In a list of joints, ``S1.limits``,
     ///     ``S1.max_rate``, ``S1.max_acceleration``, ``S1.max_effort`` and ``S1.home`` are those of one joint coordinate, and
     ///     ``limits`` those of all joints that have any.
@@ -310,7 +320,8 @@ impl Manipulator {
         &self.inner.mechanism().name
     }
 
-    /// The mechanism file. After :meth:`with_parameters` it is in metres and radians and gives equal results to the bit.
+    /// The mechanism file. After :meth:`with_parameters` it is in metres and radians and gives equal results to the bit; a file
+    /// with named parameters stays as it was typed, but for their numbers.
     #[getter]
     pub fn text(&self) -> &str {
         self.text.get_or_init(|| self.file().text())
@@ -536,23 +547,35 @@ fn parameter(name: &str, value: &Bound<'_, PyAny>) -> PyResult<ParameterValue> {
     }
 }
 
+/// The file, if it has named parameters.
+fn named(file: MechanismFile) -> Option<Arc<MechanismFile>> {
+    (!file.parameters.is_empty()).then(|| Arc::new(file))
+}
+
 impl Manipulator {
-    /// Its mechanism file, in metres and radians.
+    /// Its mechanism file; in metres and radians, unless it has named parameters.
     fn file(&self) -> MechanismFile {
+        let mechanism = self.inner.mechanism().clone();
+        if let Some(named) = &self.named {
+            return MechanismFile { mechanism, ..(**named).clone() };
+        }
         MechanismFile {
-            mechanism: self.inner.mechanism().clone(),
+            mechanism,
             units: FileUnits::SI,
             family: self.family.clone(),
             mode: self.family.as_ref().map(Family::mode),
             places: Locations::default(),
+            parameters: Vec::new(),
+            source: None,
         }
     }
 
     /// The manipulator of a changed file.
     fn changed(&self, file: MechanismFile) -> PyResult<Self> {
-        let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;
+        let mechanism = file.mechanism.clone();
+        let inner = core::Manipulator::new(mechanism).map_err(|error| failed(&error))?;
         let (inner, text, label) = (Arc::new(inner), OnceLock::new(), self.label.clone());
-        Ok(Self { inner, text, label, family: file.family })
+        Ok(Self { inner, text, label, family: file.family.clone(), named: named(file) })
     }
 
     /// The name of its file, without folders.
@@ -564,8 +587,10 @@ impl Manipulator {
 
     /// The decomposed mechanism of a file; `text` is its text.
     pub fn compile(file: MechanismFile, text: String, label: String) -> PyResult<Self> {
-        let inner = core::Manipulator::new(file.mechanism).map_err(|error| failed(&error))?;
-        Ok(Self { inner: Arc::new(inner), text: text.into(), label, family: file.family })
+        let mechanism = file.mechanism.clone();
+        let inner = core::Manipulator::new(mechanism).map_err(|error| failed(&error))?;
+        let (inner, family) = (Arc::new(inner), file.family.clone());
+        Ok(Self { inner, text: text.into(), label, family, named: named(file) })
     }
 
     /// The same, after a warning where home is a parallel singularity.

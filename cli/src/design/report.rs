@@ -150,10 +150,15 @@ impl Report<'_> {
         let mut table = Table::new(["variable", ">value", "unit"]);
         let mut values = design.variables.iter();
         for variable in self.problem.variables.all() {
-            let quantity = self.loaded.file.quantity_of(&variable.name).unwrap_or(Quantity::Length);
+            let quantity = self.loaded.file.quantity_of(&variable.name);
             for (name, value) in variable.components().into_iter().zip(values.by_ref()) {
-                let value = crate::text::number(*value, quantity, units);
-                table.row([name, value, units.symbol(quantity).to_owned()]);
+                let (value, unit) = match quantity {
+                    Some(quantity) => {
+                        (crate::text::number(*value, quantity, units), units.symbol(quantity))
+                    }
+                    None => (value.to_string(), ""),
+                };
+                table.row([name, value, unit.to_owned()]);
             }
         }
         table

@@ -161,7 +161,7 @@ fn wrong_masses_are_told_where_they_stand() {
     let text = opm(&["examples", PLANO]).stdout;
     for (bodies, problem) in [
         ("density = 0", "`density` is 0 kg/m^3, expected 0.001 to 1000000.0 kg/m^3"),
-        ("density = \"iron\"", "`density` is a string, expected a number"),
+        ("density = \"iron\"", "`density`: `iron` is not a parameter; expected a number"),
         ("masses = { platform = -1 }", "`platform` is -1 kg, expected 1e-9 to 1000000.0 kg"),
         ("masses = { S11 = 1 }", "no body is called \"S11\""),
         ("masses = { s4 = 1 }", "the joint s4 carries the platform, expected `platform`"),

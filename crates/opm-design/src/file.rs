@@ -260,8 +260,15 @@ impl Reader<'_> {
         Some((problem, file))
     }
 
-    /// The quantity of a number of a mechanism file; an unknown name is reported.
-    fn quantity(&mut self, name: &Spanned<String>, file: &MechanismFile) -> Option<Quantity> {
+    /// What a number of a mechanism file measures, or that it has no unit (`Some(None)`); an unknown name is reported.
+    fn quantity(
+        &mut self,
+        name: &Spanned<String>,
+        file: &MechanismFile,
+    ) -> Option<Option<Quantity>> {
+        if file.is_plain(name.get_ref()) {
+            return Some(None);
+        }
         let quantity = file.quantity_of(name.get_ref());
         if quantity.is_none() {
             let unknown = file.with([(name.get_ref().as_str(), ParameterValue::Number(0.0))]);
@@ -271,7 +278,12 @@ impl Reader<'_> {
             );
             self.report(name.span().start, message);
         }
-        quantity
+        quantity.map(Some)
+    }
+
+    /// A number of this quantity in SI.
+    fn si(&self, number: f64, quantity: Option<Quantity>) -> f64 {
+        quantity.map_or(number, |quantity| self.units.si(number, quantity))
     }
 
     fn set(&mut self, set: Named<'_, SetText>, file: &MechanismFile) -> Option<MechanismFile> {
@@ -279,9 +291,9 @@ impl Reader<'_> {
         for (name, value) in set {
             let quantity = self.quantity(name, file)?;
             let value = match value {
-                SetText::Number(number) => ParameterValue::Number(self.units.si(*number, quantity)),
+                SetText::Number(number) => ParameterValue::Number(self.si(*number, quantity)),
                 SetText::Pair(pair) => {
-                    ParameterValue::Pair(pair.map(|number| self.units.si(number, quantity)))
+                    ParameterValue::Pair(pair.map(|number| self.si(number, quantity)))
                 }
             };
             changes.push((name.get_ref().as_str(), value));
@@ -433,7 +445,7 @@ impl Reader<'_> {
                 self.report(name.span().start, format!("`{}`: {problem}", name.get_ref()));
                 continue;
             }
-            let bounds = bounds.iter().map(|pair| pair.map(|end| self.units.si(end, quantity)));
+            let bounds = bounds.iter().map(|pair| pair.map(|end| self.si(end, quantity)));
             let variable = Variable { name: name.get_ref().clone(), bounds: bounds.collect() };
             let middle: Vec<f64> = variable.bounds.iter().map(|[a, b]| 0.5 * (a + b)).collect();
             let value = match *middle {
@@ -442,12 +454,16 @@ impl Reader<'_> {
             };
             // A number where a point is expected, for instance. Whether it assembles is not decided here.
             let change = [(&*variable.name, value)];
-            let wrong = match &file.family {
-                Some(family) => family.with(change).err(),
-                None => file.with(change).err(),
+            let wrong = match (file.parameter(name.get_ref()), &file.family) {
+                (Some(parameter), _) => {
+                    let refused = parameter.takes(value).err();
+                    refused.map(|problem| format!("`{}` {problem}", name.get_ref()))
+                }
+                (None, Some(family)) => family.with(change).err().map(|wrong| wrong.to_string()),
+                (None, None) => file.with(change).err().map(|wrong| wrong.to_string()),
             };
             if let Some(wrong) = wrong {
-                self.report(name.span().start, wrong.to_string());
+                self.report(name.span().start, wrong);
             }
             variables.push(variable);
         }

@@ -1,4 +1,4 @@
-//! The numbers of a mechanism that can be changed: the parameters of a family, or the joints of a list.
+//! The numbers of a mechanism that can be changed: its named parameters, those of a family, or the joints of a list.
 
 use crate::problem::{Problem, Problems};
 use crate::request::Changes;
@@ -6,7 +6,7 @@ use crate::units::{rounded, shown};
 use opm_core::Quantity;
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::family::{Family, ParameterValue};
-use opm_core::mechanism::file::{FileUnits, MechanismFile};
+use opm_core::mechanism::file::{FileUnits, MechanismFile, NamedParameter, NamedValue};
 use opm_core::mechanism::joint::{DriveLimit, Joint, JointKind};
 use opm_core::nalgebra::{Point3, Unit, Vector3};
 use serde::Serialize;
@@ -41,10 +41,31 @@ const PLANE: &[&str] = &["x", "y"];
 
 /// Every number of the mechanism that can be changed, in the order of the file.
 pub fn dimensions(file: &MechanismFile) -> Vec<Dimension> {
-    match &file.family {
+    let mut all = of_names(file);
+    all.extend(match &file.family {
         Some(family) => of_family(family, file.units),
-        None => of_joints(file),
-    }
+        None if all.is_empty() => of_joints(file),
+        // Places follow from the parameters.
+        None => of_joints(file).into_iter().filter(|d| d.name.ends_with(".limits")).collect(),
+    });
+    all
+}
+
+/// The named parameters, but for points and those that follow from others.
+fn of_names(file: &MechanismFile) -> Vec<Dimension> {
+    let units = file.units;
+    let dimension = |parameter: &NamedParameter| {
+        let NamedValue::Number(value) = parameter.value else { return None };
+        let (unit, value) = match parameter.unit.quantity() {
+            Some(quantity) => (units.symbol(quantity), shown(value, quantity, units)),
+            None => ("", rounded(value)),
+        };
+        let (name, group) = (parameter.name.clone(), "parameters".to_owned());
+        let label = name.clone();
+        Some(Dimension { name, group, label, unit, parts: SINGLE, values: vec![value] })
+    };
+    let given = file.parameters.iter().filter(|parameter| parameter.formula.is_none());
+    given.filter_map(dimension).collect()
 }
 
 /// The parameters of a family, but for the limits of how joints are driven, on which nothing that is shown depends, and the

@@ -60,15 +60,22 @@
 mod bodies;
 mod change;
 pub(crate) mod checks;
+#[cfg(feature = "files")]
+mod edit;
+#[cfg(feature = "files")]
+mod expression;
 mod heading;
 #[doc(hidden)]
 pub mod hint;
 #[cfg(feature = "files")]
 mod joints;
+mod named;
 #[cfg(feature = "files")]
 mod obstacles;
 #[cfg(feature = "files")]
 mod parameters;
+#[cfg(feature = "files")]
+mod pattern;
 mod problem;
 #[cfg(feature = "files")]
 mod read;
@@ -86,6 +93,7 @@ pub use change::text;
 pub use checks::LARGEST;
 pub use heading::Heading;
 pub(super) use hint::nearest;
+pub use named::{NamedParameter, NamedValue, ParameterUnit};
 pub use problem::{FileErrors, Location, Locations, Problem};
 pub use units::{AngleUnit, FileUnits, LengthUnit};
 pub(super) use writer::quoted;
@@ -104,12 +112,14 @@ pub(super) use {
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub use {
+    expression::FUNCTIONS,
     read::{document, head, optional_units},
     reader::{Table, Value, all},
 };
 
 use super::Mechanism;
 use super::family::Family;
+use std::sync::Arc;
 
 /// The content of a mechanism file.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,6 +136,33 @@ pub struct MechanismFile {
     pub mode: Option<String>,
     /// Locations, in the file, of what may later turn out to be inconsistent.
     pub places: Locations,
+    /// The numbers and points that the file names in `[parameters]`, in its order.
+    pub parameters: Vec<NamedParameter>,
+    /// The text that it was read from, whose order and comments a changed text keeps.
+    pub source: Option<Arc<Source>>,
+}
+
+/// The text of a file, and what it gives.
+#[derive(Clone, Debug)]
+pub struct Source {
+    text: String,
+    mechanism: Mechanism,
+    family: Option<Family>,
+}
+
+impl Source {
+    /// The text that gives a file.
+    fn of(text: String, file: &MechanismFile) -> Arc<Self> {
+        let (mechanism, family) = (file.mechanism.clone(), file.family.clone());
+        Arc::new(Self { text, mechanism, family })
+    }
+}
+
+/// Files that give the same are equal, whatever their comments.
+impl PartialEq for Source {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 #[cfg(all(test, feature = "files"))]

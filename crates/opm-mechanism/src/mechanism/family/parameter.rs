@@ -122,7 +122,7 @@ impl Parameter<'_> {
     }
 
     /// What it measures, in the units of the file; `None` for an effort, which is in newtons or newton metres.
-    fn quantity(&self) -> Option<Quantity> {
+    pub(in crate::mechanism) fn quantity(&self) -> Option<Quantity> {
         match self.target {
             ParameterRef::DriveLimit(limit, ..) if !limit.has_units_of_file() => None,
             ParameterRef::Number(quantity, _)

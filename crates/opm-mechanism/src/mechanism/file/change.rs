@@ -1,16 +1,32 @@
 //! A mechanism file with some of its numbers changed: the parameters of a family, or the values at home and the limits of
 //! the joints of a list.
 
-use super::{Digits, FileUnits, MechanismFile, checks, nearest, write, writer};
+use super::{
+    Digits, FileUnits, Locations, MechanismFile, NamedParameter, ParameterUnit, Source, checks,
+    nearest, write, writer,
+};
 use crate::mechanism::family::{Family, ParameterErrors, ParameterValue};
 use crate::mechanism::joint::{DriveLimit, JointCoordinate};
 use crate::mechanism::{Mechanism, TaskHints};
 use crate::numeric::Quantity;
 
 impl MechanismFile {
+    /// The parameter that the file names so.
+    pub fn parameter(&self, name: &str) -> Option<&NamedParameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// Whether a name that [`MechanismFile::with`] takes is that of a number that has no unit at all.
+    pub fn is_plain(&self, name: &str) -> bool {
+        self.parameter(name).is_some_and(|parameter| parameter.unit == ParameterUnit::Number)
+    }
+
     /// What a number of the file measures, by the name that [`MechanismFile::with`] takes; `None` if there is no such
-    /// number, and if it is an effort ([`MechanismFile::is_effort`]).
+    /// number, if it is an effort ([`MechanismFile::is_effort`]), and if it has no unit ([`MechanismFile::is_plain`]).
     pub fn quantity_of(&self, name: &str) -> Option<Quantity> {
+        if let Some(parameter) = self.parameter(name) {
+            return parameter.unit.quantity();
+        }
         match &self.family {
             Some(family) => family.quantity_of(name),
             None => {
@@ -27,18 +43,20 @@ impl MechanismFile {
     /// Whether a name that [`MechanismFile::with`] takes is that of the largest effort of actuators, in newtons or newton
     /// metres.
     pub fn is_effort(&self, name: &str) -> bool {
-        name.split('.').any(|part| part == DriveLimit::Effort.key())
+        self.parameter(name).is_none()
+            && name.split('.').any(|part| part == DriveLimit::Effort.key())
     }
 
     /// Whether a name that [`MechanismFile::with`] takes is that of a largest rate, acceleration or effort, and not that of a
     /// length or an angle.
     pub fn is_of_drive(&self, name: &str) -> bool {
         let of = |part: &str| DriveLimit::ALL.iter().any(|limit| limit.key() == part);
-        name.split('.').any(of)
+        self.parameter(name).is_none() && name.split('.').any(of)
     }
 
     /// The same file with some numbers changed, SI.
     ///
+    /// A name may be one of [`MechanismFile::parameters`]: everything that the file gives by it follows.
     /// The names are those of [`Family::parameters`] (see [`Family::with`]). In a list of joints, `S1.limits` are the
     /// limits of a joint coordinate, `S1.max_rate`, `S1.max_acceleration` and `S1.max_effort` those of how it is driven, and
     /// `S1.home` is its value at home; `limits` alone are those of all joints that have any, and so are the other limits.
@@ -48,6 +66,83 @@ impl MechanismFile {
     pub fn with<'n>(
         &self,
         changes: impl IntoIterator<Item = (&'n str, ParameterValue)>,
+    ) -> Result<Self, ParameterErrors> {
+        let changes: Vec<_> = changes.into_iter().collect();
+        let (named, others): (Vec<_>, Vec<_>) =
+            changes.into_iter().partition(|(name, _)| self.parameter(name).is_some());
+        let file = if named.is_empty() { self.clone() } else { self.with_named(&named)? };
+        if others.is_empty() { Ok(file) } else { file.with_others(others) }
+    }
+
+    /// The same with other values of named parameters: the file is read anew with them.
+    #[cfg(feature = "files")]
+    fn with_named(&self, changes: &[(&str, ParameterValue)]) -> Result<Self, ParameterErrors> {
+        let (mut values, mut problems) = (Vec::new(), Vec::new());
+        for &(name, value) in changes {
+            let Some(parameter) = self.parameter(name) else { continue };
+            match parameter.takes(value) {
+                Ok(value) => values.push((name, parameter.unit.number_of(value, self.units))),
+                Err(problem) => problems.push(format!("`{name}` {problem}")),
+            }
+        }
+        if !problems.is_empty() {
+            return Err(ParameterErrors { problems });
+        }
+        let text = self.edited().and_then(|text| super::edit::parameters(&text, &values));
+        let Some(text) = text else {
+            let problem = "the text with the parameters is not known".to_owned();
+            return Err(ParameterErrors { problems: vec![problem] });
+        };
+        super::read(&text).map_err(|errors| ParameterErrors {
+            problems: errors.problems.into_iter().map(|problem| problem.message).collect(),
+        })
+    }
+
+    /// Nothing is named where files are not read.
+    #[cfg(not(feature = "files"))]
+    fn with_named(&self, _: &[(&str, ParameterValue)]) -> Result<Self, ParameterErrors> {
+        Ok(self.clone())
+    }
+
+    /// The text that it was read from with what was changed since; `None` where that text cannot say it, as for one leg of a
+    /// pattern.
+    #[cfg(feature = "files")]
+    fn edited(&self) -> Option<String> {
+        use super::edit;
+        let Source { text, mechanism, family } = &**self.source.as_ref()?;
+        if *mechanism == self.mechanism && *family == self.family {
+            return Some(text.clone());
+        }
+        let mechanisms = [mechanism, &self.mechanism];
+        match [family, &self.family] {
+            [Some(old), Some(new)] if mechanism.units == self.units => {
+                let text = edit::family(text, [old, new], self.units)?;
+                edit::angles(&text, mechanisms)
+            }
+            [None, None] => edit::joints(text, mechanisms, self.units),
+            _ => None,
+        }
+    }
+
+    #[cfg(not(feature = "files"))]
+    fn edited(&self) -> Option<String> {
+        None
+    }
+
+    /// The same with the text that gives its numbers, if there is one; else it has no named parameters any more.
+    fn settled(mut self) -> Self {
+        let text = self.edited();
+        if text.is_none() {
+            self.parameters = Vec::new();
+        }
+        self.source = text.map(|text| Source::of(text, &self));
+        self
+    }
+
+    /// The same with other numbers than those of named parameters changed.
+    fn with_others<'n>(
+        &self,
+        changes: Vec<(&'n str, ParameterValue)>,
     ) -> Result<Self, ParameterErrors> {
         let mut file = self.clone();
         match &self.family {
@@ -65,7 +160,7 @@ impl MechanismFile {
             None => {
                 let mut problems = Vec::new();
                 for (name, value) in changes {
-                    let problem = change(&mut file.mechanism, name, value, self.units).err();
+                    let problem = change(&mut file.mechanism, name, value, self).err();
                     problems.extend(problem.map(|problem| format!("`{name}` {problem}")));
                 }
                 if problems.is_empty() {
@@ -77,12 +172,14 @@ impl MechanismFile {
                 }
             }
         }
-        Ok(file)
+        file.places = Locations::default();
+        Ok(if file.parameters.is_empty() { file } else { file.settled() })
     }
 
-    /// The text of the file, in its units.
+    /// The text of the file, in its units: as it was typed, but for what was changed.
     pub fn text(&self) -> String {
-        text(&self.mechanism, self.family.as_ref(), self.units)
+        let written = || text(&self.mechanism, self.family.as_ref(), self.units);
+        self.edited().unwrap_or_else(written)
     }
 }
 
@@ -138,18 +235,24 @@ fn change(
     mechanism: &mut Mechanism,
     name: &str,
     value: ParameterValue,
-    units: FileUnits,
+    file: &MechanismFile,
 ) -> Result<(), String> {
+    let units = file.units;
     let names: Vec<String> = mechanism.coordinates().map(|c| c.name.clone()).collect();
     let list = || names.join(", ");
     let Some((joint, part)) = split(name) else {
         let parts = ["limits", "home"].into_iter().chain(DriveLimit::ALL.map(DriveLimit::key));
         let parts =
             names.iter().flat_map(|name| parts.clone().map(move |part| format!("{name}.{part}")));
-        let hint = nearest(name, &parts.collect::<Vec<_>>());
+        let named: Vec<String> = file.parameters.iter().map(|p| p.name.clone()).collect();
+        let hint = nearest(name, &parts.chain(named.iter().cloned()).collect::<Vec<_>>());
         let hint = hint.map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+        let parameters = match &named[..] {
+            [] => String::new(),
+            named => format!("a parameter ({}), ", named.join(", ")),
+        };
         return Err(format!(
-            "is not a number of a list of joints; {hint}expected JOINT.limits, JOINT.home, JOINT.max_rate, \
+            "is not a number of a list of joints; {hint}expected {parameters}JOINT.limits, JOINT.home, JOINT.max_rate, \
              JOINT.max_acceleration or JOINT.max_effort, JOINT one of {}",
             list()
         ));

@@ -2,6 +2,7 @@
 
 use super::FileUnits;
 use super::leg_name;
+use super::pattern::{self, Pattern, Placement};
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
 use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
@@ -15,8 +16,8 @@ use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::PI;
 
 pub(super) const KEYS: &[&str] =
-    &["format", "name", "units", "platform", "task", "bodies", "obstacle", "leg"];
-pub(super) const LEG_KEYS: &[&str] = &["name", "joints"];
+    &["format", "name", "units", "parameters", "platform", "task", "bodies", "obstacle", "leg"];
+pub(super) const LEG_KEYS: &[&str] = &["name", "joints", "pattern"];
 pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates", "home"];
 /// The keys of `[task]` in the file of a family, of which the frames are given.
 pub(super) const FAMILY_TASK_KEYS: &[&str] = &["coordinates"];
@@ -134,21 +135,27 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         .map_or_else(TaskHints::default, |task| read_task(&task, &mut locations));
 
     let tables = root.tables("leg", LEG_KEYS);
+    let described = legs(&tables);
     let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
     for name in RESERVED {
         joint_names.reserve(name, "a task coordinate or a column of tables");
     }
-    for (index, table) in tables.iter().enumerate() {
-        let imaginary = Leg::new(leg_name(table, index), Vec::new()).imaginary_name();
+    for leg in &described {
+        let imaginary = Leg::new(leg.name.clone(), Vec::new()).imaginary_name();
         joint_names.reserve(&imaginary, "that leg's imaginary joint");
     }
     let mut legs = Vec::new();
-    for (index, table) in tables.iter().enumerate() {
-        let name = leg_name(table, index);
-        leg_names.add(&name, root.reader, table.location_of("name"));
-        locations.legs.push(table.at);
-        let joints = read_joints(table, platform, &mut joint_names);
-        legs.push(Leg::new(name, joints.unwrap_or_default()));
+    for leg in described {
+        leg_names.add(&leg.name, root.reader, leg.table.location_of("name"));
+        locations.legs.push(leg.table.at);
+        root.reader.number_leg(leg.number.map(|(number, _)| number + 1));
+        let mut joints =
+            read_joints(leg.table, platform, leg.number, &mut joint_names).unwrap_or_default();
+        root.reader.number_leg(None);
+        if let Some(place) = leg.place {
+            joints.iter_mut().for_each(|joint| place.place(joint));
+        }
+        legs.push(Leg::new(leg.name, joints));
     }
     let at = root.location_of("leg");
     if legs.len() < 2 && !root.reader.has_problem(at) {
@@ -160,6 +167,42 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     let units = root.reader.units();
     let name = name.to_owned();
     (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations)
+}
+
+/// A leg of the file, or one of those that a pattern makes of it.
+struct Described<'t, 'a> {
+    table: &'t Table<'a>,
+    name: String,
+    /// Its number in the pattern, from 0, and how many there are.
+    number: Option<(usize, usize)>,
+    place: Option<Placement>,
+}
+
+/// The legs of the file, in order, those of patterns one by one.
+fn legs<'t, 'a>(tables: &'t [Table<'a>]) -> Vec<Described<'t, 'a>> {
+    let mut legs = Vec::new();
+    for table in tables {
+        let pattern = table.get("pattern");
+        let Some(value) = pattern else {
+            let name = leg_name(table, legs.len());
+            let name = pattern::numbered(table.get("name").as_ref(), &name, None);
+            legs.push(Described { table, name, number: None, place: None });
+            continue;
+        };
+        let Some(pattern) = Pattern::read(&value) else { continue };
+        let count = pattern.count();
+        for number in 0..count {
+            let name = leg_name(table, legs.len());
+            let given = table.get("name");
+            let name = match given {
+                Some(_) => pattern::numbered(given.as_ref(), &name, Some((number, count))),
+                None => name,
+            };
+            let (number, place) = (Some((number, count)), Some(pattern.place(number)));
+            legs.push(Described { table, name, number, place });
+        }
+    }
+    legs
 }
 
 /// Reads `[task]`: how the pose is measured. Whether it fits the geometry is checked later.
@@ -234,6 +277,7 @@ fn task_value<'a>(
 fn read_joints(
     leg: &Table<'_>,
     platform: Point3<f64>,
+    number: Option<(usize, usize)>,
     names: &mut UniqueNames,
 ) -> Option<Vec<Joint>> {
     let expected = "an array of joints, from base to platform";
@@ -242,7 +286,7 @@ fn read_joints(
     if items.is_empty() {
         value.report("is empty, expected at least one joint");
     }
-    let joints = all(items.iter().map(|item| read_joint(item, platform, names)))?;
+    let joints = all(items.iter().map(|item| read_joint(item, platform, number, names)))?;
     let placed = Leg::new("", placed(joints));
     check_cones(leg, &items, &placed);
     Some(placed.joints)
@@ -253,10 +297,12 @@ fn read_joints(
 fn read_joint(
     value: &Value<'_>,
     platform: Point3<f64>,
+    number: Option<(usize, usize)>,
     names: &mut UniqueNames,
 ) -> Option<(Joint, bool)> {
     let table = value.open_table()?;
-    let name = table.require("name", "the joint's name").and_then(|value| value.name());
+    let name = table.require("name", "the joint's name");
+    let name = name.and_then(|value| Some(pattern::numbered(Some(&value), value.name()?, number)));
     let kind = table.require("type", "the joint's type")?.word(&TYPES)?;
     table.allow(&kind.keys());
 
@@ -277,7 +323,7 @@ fn read_joint(
     let mut joint =
         Joint::new(name.unwrap_or_default(), joint_kind, axis.unwrap_or(Vector3::z_axis()), point);
     joint.actuated = table.get("actuated").is_some_and(|value| value.boolean().unwrap_or(true));
-    if name.is_some() {
+    if !joint.name.is_empty() {
         let at = table.location_of("name");
         names.add(&joint.name, table.reader, at);
         // The coordinate `s.x` of a spherical joint `s` may equal the name of another joint.

@@ -3,7 +3,7 @@
 use super::problem::{FileErrors, Locations, Problem};
 use super::reader::{Reader, Table};
 use super::units::{AngleUnit, FileUnits, LengthUnit};
-use super::{MechanismFile, bodies, joints, obstacles};
+use super::{MechanismFile, Source, bodies, joints, named, obstacles};
 use crate::chain::Branch;
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::{AssemblyError, AssemblyReason, FORMS, Family};
@@ -13,7 +13,7 @@ use toml::de::DeTable;
 pub(crate) const FORMAT: i64 = 1;
 
 /// The keys that the file of every family may have.
-pub(super) const FAMILY_KEYS: &[&str] = &["task", "bodies", "obstacle"];
+pub(super) const FAMILY_KEYS: &[&str] = &["parameters", "task", "bodies", "obstacle"];
 
 /// Reads the text of a mechanism file.
 ///
@@ -21,8 +21,10 @@ pub(super) const FAMILY_KEYS: &[&str] = &["task", "bodies", "obstacle"];
 /// [`FileErrors`] lists every problem of the file; if the text is not TOML, only the parser's
 /// problems.
 pub fn read(text: &str) -> Result<MechanismFile, FileErrors> {
-    let (file, places) = document(text, "mechanism", read_document)?;
-    Ok(MechanismFile { places: places.in_text(text), ..file })
+    let (mut file, places) = document(text, "mechanism", read_document)?;
+    file.places = places.in_text(text);
+    file.source = Some(Source::of(text.to_owned(), &file));
+    Ok(file)
 }
 
 /// Reads a TOML text as a file of the kind `kind`. `read` reads its content.
@@ -72,12 +74,15 @@ pub fn head<'a>(root: &Table<'a>, kind: &str) -> Option<&'a str> {
 fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> {
     let name = head(root, "mechanism")?;
     let units = root.reader.units();
+    let parameters = named::read(root);
     let Some(family) = root.get("family") else {
         let (mut mechanism, noted) = joints::read(root, name);
         bodies::read(root, &mut mechanism);
         mechanism.shapes.obstacles = obstacles::read(root);
-        let places = Locations::default();
-        return Some((MechanismFile { mechanism, units, family: None, mode: None, places }, noted));
+        let (family, mode, places) = (None, None, Locations::default());
+        let file =
+            MechanismFile { mechanism, units, family, mode, places, parameters, source: None };
+        return Some((file, noted));
     };
     let form = family.word(&FORMS)?;
     root.allow(&[form.keys, FAMILY_KEYS].concat());
@@ -90,7 +95,8 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     bodies::read(root, &mut mechanism);
     mechanism.shapes.obstacles = obstacles::read(root);
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
-    Some((MechanismFile { mechanism, units, mode, family, places }, noted))
+    let file = MechanismFile { mechanism, units, mode, family, places, parameters, source: None };
+    Some((file, noted))
 }
 
 /// The keys of `units`.

@@ -4,7 +4,9 @@
 //! the value.
 
 use super::checks;
+use super::expression::{Fault, Term, evaluate};
 use super::hint::expected_one_of;
+use super::named::Names;
 use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
 use crate::mechanism::joint::DriveLimit;
@@ -15,15 +17,17 @@ use std::collections::{HashMap, HashSet};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The problems found so far, and the units of the file.
+/// The problems found so far, the units of the file, and the names of its parameters.
 pub struct Reader {
     problems: RefCell<Vec<(usize, String)>>,
     units: Cell<FileUnits>,
+    /// What expressions may name; `None` in files whose numbers are no expressions.
+    names: RefCell<Option<Names>>,
 }
 
 impl Reader {
     pub fn new() -> Self {
-        Self { problems: RefCell::default(), units: Cell::default() }
+        Self { problems: RefCell::default(), units: Cell::default(), names: RefCell::default() }
     }
 
     pub fn report(&self, at: usize, message: impl Into<String>) {
@@ -36,6 +40,16 @@ impl Reader {
 
     pub fn set_units(&self, units: FileUnits) {
         self.units.set(units);
+    }
+
+    /// Takes expressions in place of numbers from now on, with these names.
+    pub(super) fn set_names(&self, names: Names) {
+        *self.names.borrow_mut() = Some(names);
+    }
+
+    /// Sets the number of the leg of a pattern that is read next, from 1.
+    pub(super) fn number_leg(&self, number: Option<usize>) {
+        self.names.borrow_mut().iter_mut().for_each(|names| names.number_leg(number));
     }
 
     /// Whether a problem was reported at this location.
@@ -79,6 +93,21 @@ impl<'a> Value<'a> {
     /// Reports the problem `KEY PROBLEM` at the value.
     pub fn report(&self, problem: impl AsRef<str>) {
         self.reader.report(self.at, format!("`{}` {}", self.key, problem.as_ref()));
+    }
+
+    /// The same with another name than its key.
+    pub(super) fn report_as(&self, name: &str, problem: &str) {
+        self.reader.report(self.at, format!("`{name}` {problem}"));
+    }
+
+    /// The key that it stands under.
+    pub(super) fn key(&self) -> &'a str {
+        self.key
+    }
+
+    /// Its text, if it is one.
+    pub(super) fn text(&self) -> Option<&'a str> {
+        self.value.as_str()
     }
 
     fn wrong_type<T>(&self, expected: &str) -> Option<T> {
@@ -152,8 +181,85 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// The expression that stands in place of a number or of three; `None` if it is none.
+    fn expression(&self) -> Option<&'a str> {
+        self.text().filter(|_| self.reader.names.borrow().is_some())
+    }
+
+    /// Evaluates an expression. A problem is reported where it is in the text.
+    fn evaluated(
+        &self,
+        name: &str,
+        evaluate: impl FnOnce(&str) -> Result<Term, Fault>,
+    ) -> Option<Term> {
+        match evaluate(self.text()?) {
+            Ok(term) => Some(term),
+            // What it depends on has its own problem, for which the file is refused.
+            Err(Fault { message, .. }) if message.is_empty() => None,
+            Err(Fault { at, message }) => {
+                // Behind the quotation mark.
+                let place = self.at + 1 + at;
+                self.reader.report(place, format!("`{name}`: {message}"));
+                None
+            }
+        }
+    }
+
+    /// Evaluates an expression with the names that are known.
+    fn term_of_names(&self) -> Option<Term> {
+        let names = self.reader.names.borrow();
+        let names = names.as_ref()?;
+        self.evaluated(self.key, |text| evaluate(text, names))
+    }
+
+    /// Reads a number, an expression, or a point of three of them.
+    pub(super) fn term(
+        &self,
+        name: &str,
+        evaluate: &dyn Fn(&str) -> Result<Term, Fault>,
+    ) -> Option<Term> {
+        match self.value {
+            DeValue::String(_) => self.evaluated(name, evaluate),
+            DeValue::Array(_) => {
+                let component = |item: &Value<'a>| match item.term(name, evaluate)? {
+                    Term::Number(number) => Some(number),
+                    Term::Vector(_) => {
+                        item.report_as(name, "has a point in a point, expected three numbers");
+                        None
+                    }
+                };
+                let [x, y, z] = self.each("a point [x, y, z]", component)?;
+                Some(Term::Vector(nalgebra::Vector3::new(x, y, z)))
+            }
+            _ => self.number().map(Term::Number),
+        }
+    }
+
+    /// Three numbers that an expression gives, if there is one: the outer `None` if it is none, the inner one if it gives
+    /// none.
+    fn vector(&self, expected: &str) -> Option<Option<[f64; 3]>> {
+        self.expression()?;
+        Some(match self.term_of_names() {
+            Some(Term::Vector(vector)) => Some(vector.into()),
+            Some(Term::Number(number)) => {
+                self.report(format!("is the number {number}, expected {expected}"));
+                None
+            }
+            None => None,
+        })
+    }
+
     /// Reads a finite number without a unit. Integers are accepted.
     pub fn number(&self) -> Option<f64> {
+        if self.expression().is_some() {
+            return match self.term_of_names()? {
+                Term::Number(number) => Some(number),
+                Term::Vector(_) => {
+                    self.report("is a point, expected a number");
+                    None
+                }
+            };
+        }
         let value = match self.value {
             DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
             // Parsed as i128 first, which also reads hexadecimal, octal and binary integers.
@@ -233,12 +339,28 @@ impl<'a> Value<'a> {
     /// Reads a point in the plane or in space; returns it in metres.
     pub(crate) fn point<const N: usize>(&self) -> Option<[f64; N]> {
         let expected = if N == 2 { "a point [x, y]" } else { "a point [x, y, z]" };
+        if N == 3
+            && let Some(given) = self.vector(expected)
+        {
+            let units = self.reader.units();
+            let length = |number: f64| {
+                let value = units.si(number, Quantity::Length);
+                checks::size(value, Quantity::Length, units)
+                    .map_err(|problem| self.report(problem))
+                    .ok()
+            };
+            return all(given?.into_iter().map(length))?.try_into().ok();
+        }
         self.each(expected, Self::length)
     }
 
     /// Reads a direction: three numbers without a unit, not all zero. Returns the unit vector.
     pub(crate) fn direction(&self) -> Option<nalgebra::Unit<nalgebra::Vector3<f64>>> {
-        let [x, y, z] = self.each("a direction [x, y, z]", Value::number)?;
+        let expected = "a direction [x, y, z]";
+        let [x, y, z] = match self.vector(expected) {
+            Some(given) => given?,
+            None => self.each(expected, Value::number)?,
+        };
         let vector = nalgebra::Vector3::new(x, y, z);
         let largest = vector.amax();
         if largest == 0.0 {
@@ -348,6 +470,16 @@ impl<'a> Table<'a> {
         let mut keys: Vec<&str> = self.entries.keys().map(|key| &**key.get_ref()).collect();
         keys.sort_unstable();
         keys.into_iter()
+    }
+
+    /// Every value, in the order of the file.
+    pub(super) fn in_order(&self) -> Vec<Value<'a>> {
+        let mut entries: Vec<_> = self.entries.iter().collect();
+        entries.sort_by_key(|(key, _)| key.span().start);
+        entries
+            .into_iter()
+            .map(|(key, value)| Value::new(key.get_ref(), value, self.reader))
+            .collect()
     }
 
     /// The value of an optional key.

@@ -7,6 +7,7 @@
 
 mod families;
 mod joints;
+mod named;
 mod surroundings;
 mod values;
 
@@ -26,6 +27,7 @@ pub fn schema() -> String {
     properties.extend(families::properties());
     properties.extend(joints::properties());
     properties.insert("bodies".to_owned(), surroundings::bodies());
+    properties.insert("parameters".to_owned(), named::parameters());
     properties.insert("obstacle".to_owned(), surroundings::obstacles());
     // Both kinds of files have legs in `leg`.
     properties.insert("leg".to_owned(), legs());

@@ -3,6 +3,7 @@ use crate::chain::Branch;
 use nalgebra::Point3;
 
 mod fuzz;
+mod parametric;
 mod problems;
 mod round_trip;
 

@@ -40,7 +40,14 @@ pub fn leg_properties() -> Properties {
     let mut joints = array("The leg's joints, from base to platform.", joint());
     joints["minItems"] = json!(1);
     let description = "The leg's name. If it is not given: leg1, leg2, ...";
-    [("name".to_owned(), name(description)), ("joints".to_owned(), joints)].into_iter().collect()
+    let pattern = super::named::pattern();
+    [
+        ("name".to_owned(), name(description)),
+        ("joints".to_owned(), joints),
+        ("pattern".to_owned(), pattern),
+    ]
+    .into_iter()
+    .collect()
 }
 
 fn task_key(key: &str) -> Value {

@@ -23,9 +23,9 @@ pub fn text(description: &str) -> Value {
     json!({ "description": description, "type": "string" })
 }
 
-/// A number: a length or an angle in the units of the file.
+/// A number, or an expression: a length or an angle in the units of the file.
 pub fn number(description: &str, quantity: Quantity) -> Value {
-    json!({ "description": in_units(description, quantity), "type": "number" })
+    json!({ "description": in_units(description, quantity), "type": ["number", "string"] })
 }
 
 /// The description of a length or an angle, with its unit.
@@ -63,13 +63,17 @@ pub fn drive_limit(description: &str, limit: DriveLimit, quantity: Quantity) -> 
         (DriveLimit::Effort, _) => limit.unit(quantity).to_owned(),
     };
     let description = format!("{description} In {unit}, above 0.");
-    json!({ "description": description, "type": "number", "exclusiveMinimum": 0 })
+    json!({ "description": description, "type": ["number", "string"], "exclusiveMinimum": 0 })
 }
 
-/// An array of `count` numbers.
+/// An array of `count` numbers. Three of them may be one expression.
 pub fn numbers(description: &str, count: usize) -> Value {
-    let item = json!({ "type": "number" });
-    exactly(count, array(description, item))
+    let item = json!({ "type": ["number", "string"] });
+    let mut numbers = exactly(count, array(description, item));
+    if count == 3 {
+        numbers["type"] = json!(["array", "string"]);
+    }
+    numbers
 }
 
 /// An array with items of one kind.

@@ -140,8 +140,8 @@ fn joints() {
         ),
         (
             "point = [10, 20, 30]",
-            "point = [10, ^\"x\", 30]",
-            "`point` is a string, expected a number",
+            "point = [10, \"^x\", 30]",
+            "`point`: `x` is not a parameter; expected a number, or an expression",
         ),
         ("axis = [0, 0, -2]", "axis = ^[0, 0, 0]", "`axis` is zero, expected a direction"),
         (
@@ -152,7 +152,7 @@ fn joints() {
         ("[task]\naxis", "[task]\nlower = ^1\naxis", "`lower` is an integer, expected a table"),
         ("[task]\naxis", "[task]\nlower = { ^y = [0, 1, 0] }\naxis", "unknown key `y`"),
         ("[task]\naxis", "[task]\nlower = { x = ^[0, 0, 0] }\naxis", "`x` is zero"),
-        ("[task]\naxis", "[task]\nupper = { w = ^\"up\" }\naxis", "`w` is a string, expected a"),
+        ("[task]\naxis", "[task]\nupper = { w = \"^up\" }\naxis", "`w`: `up` is not a parameter"),
         ("[task]\naxis", "[task]\nupper = { normal = ^[0, 1] }\naxis", "has 2 values, expected"),
         ("[task]\naxis", "[task]\nupper = { origin = [0, ^nan, 1] }\naxis", "expected a finite"),
         ("axis = [0, 3, 4]", "axis = ^[0, 0.0, -0.0]", "`axis` is zero"),
@@ -301,7 +301,7 @@ fn plano_spherical() {
         "alpha2 = ^180",
         "`alpha2` is 180 deg, expected an arc between 0 and 180 deg",
     );
-    leg2("beta = 60", "beta = ^\"60\"", "`beta` is a string, expected a number");
+    leg2("beta = 60", "beta = ^true", "`beta` is a boolean, expected a number");
     leg2("beta = 60", "^bet = 60\nbeta = 60", "unknown key `bet`, did you mean `beta`?");
     leg2("[-300, 300]", "^[300, -300]", "are reversed: 300 mm is above -300 mm");
     leg2("{ S = [-300, 300] }", "^{ S = [-300, 100] }", "exclude home: S2 is 167.875 mm there");

@@ -1,0 +1,215 @@
+//! The functions that expressions may call.
+
+use super::Term::{self, Number, Vector};
+use super::construct::{self, Place};
+use crate::mechanism::file::FileUnits;
+use crate::mechanism::file::hint::nearest;
+use crate::numeric::Quantity;
+use nalgebra::{Unit, Vector3};
+
+/// Every function: its name, its values, and what it gives.
+pub const FUNCTIONS: [(&str, &str, &str); 25] = [
+    ("sin", "ANGLE", "sine"),
+    ("cos", "ANGLE", "cosine"),
+    ("tan", "ANGLE", "tangent"),
+    ("asin", "NUMBER", "the angle from -90 to 90 degrees with this sine"),
+    ("acos", "NUMBER", "the angle from 0 to 180 degrees with this cosine"),
+    ("atan", "NUMBER", "the angle from -90 to 90 degrees with this tangent"),
+    ("atan2", "Y, X", "the angle of the point (X, Y)"),
+    ("sqrt", "NUMBER", "square root"),
+    ("abs", "NUMBER", "the number without its sign"),
+    ("min", "NUMBER, ...", "the least"),
+    ("max", "NUMBER, ...", "the largest"),
+    ("hypot", "NUMBER, ...", "the root of the sum of the squares"),
+    ("norm", "VECTOR", "its length"),
+    ("unit", "VECTOR", "the direction, of length 1"),
+    ("distance", "POINT, POINT", "how far they are apart"),
+    ("dot", "VECTOR, VECTOR", "scalar product"),
+    ("cross", "VECTOR, VECTOR", "vector product"),
+    (
+        "polar",
+        "RADIUS, ANGLE[, Z]",
+        "the point at this angle from x about z, at the height Z (or 0)",
+    ),
+    (
+        "rotate",
+        "POINT, AXIS, ANGLE[, ABOUT]",
+        "the point rotated about an axis through ABOUT (or the origin)",
+    ),
+    (
+        "mirror",
+        "POINT, NORMAL[, THROUGH]",
+        "its mirror image in the plane through THROUGH (or the origin)",
+    ),
+    (
+        "meet",
+        "A, R, B, S, NORMAL, SIDE",
+        "the point R from A and S from B in the plane through A: for the side 1 to the left of the way from A to B, seen from where NORMAL points, for -1 to the right",
+    ),
+    (
+        "spheres",
+        "A, R, B, S, C, T, SIDE",
+        "the point R from A, S from B and T from C: for the side 1 where A, B, C are counter-clockwise seen from it",
+    ),
+    (
+        "along",
+        "P, DIRECTION, B, R, SIDE",
+        "the point R from B on the line through P: for the side 1 the one further in the direction",
+    ),
+    (
+        "arcs",
+        "A, ALPHA, B, BETA, SIDE",
+        "the direction at the angle ALPHA from the direction A and BETA from B: for the side 1 where cross(A, B) points",
+    ),
+    ("rad", "ANGLE", "the angle in radians, as a number"),
+];
+
+/// Whether there is a function of this name.
+pub(in crate::mechanism::file) fn is_function(name: &str) -> bool {
+    FUNCTIONS.iter().any(|(known, ..)| *known == name)
+}
+
+/// Calls a function, or says what is wrong.
+pub(super) fn call(name: &str, given: &[Term], units: FileUnits) -> Result<Term, String> {
+    let si = |angle: f64| units.si(angle, Quantity::Angle);
+    let angle = |radians: f64| Number(radians / units.factor(Quantity::Angle));
+    let side = |side: f64| match side {
+        0.0 => Err(format!("{name}: the side is 0, expected 1 or -1")),
+        side => Ok(side.signum()),
+    };
+    let told = |point: Result<Vector3<f64>, String>| {
+        point.map(Vector).map_err(|problem| format!("{name}: {problem}"))
+    };
+    let place = Place { units };
+    Ok(match (name, given) {
+        ("sin", &[Number(a)]) => Number(sine_and_cosine(si(a)).0),
+        ("cos", &[Number(a)]) => Number(sine_and_cosine(si(a)).1),
+        ("tan", &[Number(a)]) => {
+            let (sin, cos) = sine_and_cosine(si(a));
+            Number(sin / cos)
+        }
+        ("asin" | "acos", &[Number(value)]) => {
+            if !(value.abs() <= 1.0) {
+                return Err(format!("{name} of {value}, expected a number from -1 to 1"));
+            }
+            angle(if name == "asin" { value.asin() } else { value.acos() })
+        }
+        ("atan", &[Number(value)]) => angle(value.atan()),
+        ("atan2", &[Number(y), Number(x)]) => angle(y.atan2(x)),
+        ("rad", &[Number(a)]) => Number(si(a)),
+        ("sqrt", &[Number(value)]) => {
+            if value < 0.0 {
+                return Err(format!("sqrt of {value}, expected a number of at least 0"));
+            }
+            Number(value.sqrt())
+        }
+        ("abs", &[Number(value)]) => Number(value.abs()),
+        ("min" | "max" | "hypot", [Number(first), rest @ ..])
+            if rest.iter().all(|term| matches!(term, Number(_))) =>
+        {
+            let combine: fn(f64, f64) -> f64 = match name {
+                "min" => f64::min,
+                "max" => f64::max,
+                _ => f64::hypot,
+            };
+            let of = |so_far, term: &Term| match term {
+                Number(next) => combine(so_far, *next),
+                Vector(_) => so_far,
+            };
+            Number(rest.iter().fold(*first, of))
+        }
+        ("norm", [Vector(v)]) => Number(v.norm()),
+        ("unit", [Vector(v)]) => Vector(direction(name, v)?.into_inner()),
+        ("distance", [Vector(a), Vector(b)]) => Number((a - b).norm()),
+        ("dot", [Vector(a), Vector(b)]) => Number(a.dot(b)),
+        ("cross", [Vector(a), Vector(b)]) => Vector(a.cross(b)),
+        ("polar", &[Number(radius), Number(a), ref rest @ ..]) if rest.len() < 2 => {
+            let z = match rest {
+                [] => 0.0,
+                [Number(z)] => *z,
+                _ => return Err(expected(name)),
+            };
+            let (sin, cos) = sine_and_cosine(si(a));
+            Vector(Vector3::new(radius * cos, radius * sin, z))
+        }
+        ("rotate", [Vector(point), Vector(axis), Number(a), rest @ ..]) if rest.len() < 2 => {
+            let about = origin(name, rest)?;
+            Vector(about + turned(direction(name, axis)?, si(*a), point - about))
+        }
+        ("mirror", [Vector(point), Vector(normal), rest @ ..]) if rest.len() < 2 => {
+            let (through, normal) = (origin(name, rest)?, direction(name, normal)?);
+            Vector(point - *normal * (2.0 * normal.dot(&(point - through))))
+        }
+        ("meet", &[Vector(a), Number(r), Vector(b), Number(s), Vector(normal), Number(at)]) => {
+            told(place.meet([(a, r), (b, s)], direction(name, &normal)?, side(at)?))?
+        }
+        (
+            "spheres",
+            &[Vector(a), Number(r), Vector(b), Number(s), Vector(c), Number(t), Number(at)],
+        ) => told(place.spheres([(a, r), (b, s), (c, t)], side(at)?))?,
+        ("along", &[Vector(p), Vector(axis), Vector(b), Number(r), Number(at)]) => {
+            told(place.along(p, direction(name, &axis)?, (b, r), side(at)?))?
+        }
+        ("arcs", &[Vector(a), Number(alpha), Vector(b), Number(beta), Number(at)]) => {
+            let ends = [direction(name, &a)?, direction(name, &b)?];
+            told(place.arcs(ends, [alpha, beta].map(si), side(at)?))?
+        }
+        _ => return Err(expected(name)),
+    })
+}
+
+/// The sine and the cosine of an angle, as exact as they can be at multiples of 30 degrees: what is symmetric on a drawing stays so.
+fn sine_and_cosine(angle: f64) -> (f64, f64) {
+    const SIXTH: f64 = std::f64::consts::FRAC_PI_6;
+    let twelfths = angle / SIXTH;
+    let whole = twelfths.round();
+    if whole.abs() < 1e9 && (twelfths - whole).abs() <= 4.0 * f64::EPSILON * whole.abs() {
+        let sine = |twelfth: i64| match twelfth.rem_euclid(12) {
+            0 | 6 => 0.0,
+            1 | 5 => 0.5,
+            2 | 4 => 0.75_f64.sqrt(),
+            3 => 1.0,
+            7 | 11 => -0.5,
+            9 => -1.0,
+            _ => -0.75_f64.sqrt(),
+        };
+        return (sine(whole as i64), sine(whole as i64 + 3));
+    }
+    angle.sin_cos()
+}
+
+/// A vector that is turned about an axis, as exactly as its sine and cosine.
+pub(in crate::mechanism::file) fn turned(
+    axis: Unit<Vector3<f64>>,
+    angle: f64,
+    vector: Vector3<f64>,
+) -> Vector3<f64> {
+    let (sin, cos) = sine_and_cosine(angle);
+    let along = *axis * axis.dot(&vector);
+    along + (vector - along) * cos + axis.cross(&vector) * sin
+}
+
+fn origin(name: &str, rest: &[Term]) -> Result<Vector3<f64>, String> {
+    match rest {
+        [] => Ok(Vector3::zeros()),
+        [Vector(about)] => Ok(*about),
+        _ => Err(expected(name)),
+    }
+}
+
+fn direction(name: &str, vector: &Vector3<f64>) -> Result<Unit<Vector3<f64>>, String> {
+    construct::direction(vector).ok_or_else(|| format!("{name}: a direction is zero"))
+}
+
+/// What a function is called with; or that there is none of this name.
+fn expected(name: &str) -> String {
+    match FUNCTIONS.iter().find(|(known, ..)| *known == name) {
+        Some((_, values, _)) => format!("expected {name}({values})"),
+        None => {
+            let names = FUNCTIONS.map(|(known, ..)| known);
+            let meant = nearest(name, &names)
+                .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+            format!("`{name}` is not a function; {meant}expected one of {}", names.join(", "))
+        }
+    }
+}

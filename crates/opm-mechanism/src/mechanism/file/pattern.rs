@@ -1,0 +1,187 @@
+//! Patterns of legs: one description, and legs that are turned about an axis or mirrored.
+
+use super::expression::turned;
+use super::reader::Value;
+use crate::mechanism::joint::{Joint, JointKind};
+use crate::numeric::Quantity;
+use nalgebra::{Point3, Unit, Vector3};
+use std::f64::consts::TAU;
+
+/// The keys of `pattern`.
+pub(super) const KEYS: &[&str] = &["count", "axis", "point", "angles", "mirror"];
+/// The keys of `mirror` in it.
+pub(super) const MIRROR_KEYS: &[&str] = &["normal", "point"];
+
+/// What stands for a leg's number in the names of a pattern.
+pub(super) const PLACE: &str = "{i}";
+
+/// The most legs that a pattern makes.
+const MOST: i64 = 100;
+
+/// How the legs of a pattern are placed: the first one as it is described, in the default.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    /// The axis about which legs are turned.
+    pub axis: Unit<Vector3<f64>>,
+    /// A point of the axis, metres.
+    pub point: Point3<f64>,
+    /// By how much each leg is turned, radians.
+    pub angles: Vec<f64>,
+    /// A plane in which each of them is mirrored, if there is one: its normal and a point. The image of a leg follows it.
+    pub mirror: Option<(Unit<Vector3<f64>>, Point3<f64>)>,
+}
+
+impl Pattern {
+    /// Reads the key `pattern` of a leg.
+    pub(super) fn read(value: &Value<'_>) -> Option<Self> {
+        let table = value.table(KEYS)?;
+        let axis = table.get("axis").and_then(|value| value.direction());
+        let point = table.get("point").and_then(|value| value.point());
+        let mirror = table.get("mirror").and_then(|value| read_mirror(&value));
+        let (count, angles) = (table.get("count"), table.get("angles"));
+        let angles = match (count, angles) {
+            (Some(_), Some(angles)) => {
+                angles.report("is given beside `count`, expected one of them");
+                None
+            }
+            (Some(count), None) => read_count(&count),
+            (None, Some(angles)) => read_angles(&angles),
+            (None, None) if table.get("mirror").is_some() => Some(vec![0.0]),
+            (None, None) => {
+                value.report("has no legs, expected `count`, `angles` or `mirror`");
+                None
+            }
+        };
+        Some(Self {
+            axis: axis.unwrap_or(Vector3::z_axis()),
+            point: point.map_or_else(Point3::origin, Point3::from),
+            angles: angles?,
+            mirror,
+        })
+    }
+
+    /// The number of legs.
+    pub fn count(&self) -> usize {
+        self.angles.len() * if self.mirror.is_some() { 2 } else { 1 }
+    }
+
+    /// Where the leg of a number, from 0, is.
+    pub(super) fn place(&self, number: usize) -> Placement {
+        let (turn, mirrored) = match self.mirror {
+            Some(plane) => (number / 2, (number % 2 == 1).then_some(plane)),
+            None => (number, None),
+        };
+        Placement { axis: self.axis, point: self.point, angle: self.angles[turn], mirrored }
+    }
+}
+
+fn read_mirror(value: &Value<'_>) -> Option<(Unit<Vector3<f64>>, Point3<f64>)> {
+    let table = value.table(MIRROR_KEYS)?;
+    let normal = table.require("normal", "the normal [x, y, z] of the plane")?.direction();
+    let point = table.get("point").and_then(|value| value.point());
+    Some((normal?, point.map_or_else(Point3::origin, Point3::from)))
+}
+
+/// Reads the number of legs, which are all around the axis.
+fn read_count(value: &Value<'_>) -> Option<Vec<f64>> {
+    let count = value.integer()?;
+    if !(1..=MOST).contains(&count) {
+        value.report(format!("is {count}, expected 1 to {MOST} legs"));
+        return None;
+    }
+    Some((0..count).map(|number| TAU * number as f64 / count as f64).collect())
+}
+
+/// Reads the angles of legs, one by one.
+fn read_angles(value: &Value<'_>) -> Option<Vec<f64>> {
+    let items = value.items("an array of angles")?;
+    if !(1..=MOST as usize).contains(&items.len()) {
+        value.report(format!("has {} angles, expected 1 to {MOST}", items.len()));
+        return None;
+    }
+    super::all(items.iter().map(|item| item.quantity(Quantity::Angle)))
+}
+
+/// How one leg of a pattern is placed: mirrored, if it is, and then turned.
+pub(super) struct Placement {
+    axis: Unit<Vector3<f64>>,
+    point: Point3<f64>,
+    angle: f64,
+    mirrored: Option<(Unit<Vector3<f64>>, Point3<f64>)>,
+}
+
+impl Placement {
+    /// Moves a joint of the described leg to this one. Its coordinates keep their values: those of a mirror image are
+    /// counted so that equal values are images of each other.
+    pub fn place(&self, joint: &mut Joint) {
+        joint.point = self.point(joint.point);
+        // An axis of rotation turns the other way in a mirror.
+        let turns = !matches!(joint.kind, JointKind::Prismatic);
+        joint.axis = self.axis(joint.axis, turns);
+        match &mut joint.kind {
+            JointKind::Universal { second } => *second = self.axis(*second, true),
+            // Along its axis, which is turned round, the image advances the other way.
+            JointKind::Helical { pitch } if self.mirrored.is_some() => *pitch = -*pitch,
+            JointKind::Cylindrical if self.mirrored.is_some() => {
+                if let Some(slide) = joint.coordinates.last_mut() {
+                    slide.home = -slide.home;
+                    slide.limits = slide.limits.map(|[low, high]| [-high, -low]);
+                }
+            }
+            _ => {}
+        }
+        if let Some(cone) = &mut joint.cone {
+            cone.axis = cone.axis.map(|axis| self.axis(axis, false));
+        }
+    }
+
+    fn point(&self, point: Point3<f64>) -> Point3<f64> {
+        let image = match self.mirrored {
+            Some((normal, through)) => through + reflected(normal, point - through),
+            None => point,
+        };
+        self.point + turned(self.axis, self.angle, image - self.point)
+    }
+
+    fn axis(&self, axis: Unit<Vector3<f64>>, turns: bool) -> Unit<Vector3<f64>> {
+        let image = match self.mirrored {
+            Some((normal, _)) if turns => -reflected(normal, *axis),
+            Some((normal, _)) => reflected(normal, *axis),
+            None => *axis,
+        };
+        Unit::new_normalize(turned(self.axis, self.angle, image))
+    }
+}
+
+fn reflected(normal: Unit<Vector3<f64>>, vector: Vector3<f64>) -> Vector3<f64> {
+    vector - *normal * (2.0 * normal.dot(&vector))
+}
+
+/// A name of a pattern's leg or joint, with the leg's number; a problem is reported if it would be that of several legs.
+pub(super) fn numbered(
+    value: Option<&Value<'_>>,
+    name: &str,
+    number: Option<(usize, usize)>,
+) -> String {
+    match number {
+        Some((number, count)) => {
+            if count > 1
+                && !name.contains(PLACE)
+                && let Some(value) = value
+            {
+                value.report(format!(
+                    "is {name:?} in every leg of the pattern, expected a name with {PLACE}, the number of the leg"
+                ));
+            }
+            name.replace(PLACE, &(number + 1).to_string())
+        }
+        None => {
+            if name.contains(PLACE)
+                && let Some(value) = value
+            {
+                value.report(format!("has {PLACE}, which is the number of a leg of a `pattern`"));
+            }
+            name.to_owned()
+        }
+    }
+}
