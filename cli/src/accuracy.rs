@@ -56,7 +56,7 @@ impl<'a> Setting<'a> {
         let mode = load::mode(manipulator, &args.mode)?;
         let length = args.length.map(Number::characteristic_length).transpose()?;
         let length = characteristic_length(length, manipulator)?;
-        let model = Model::new(manipulator, loaded.file.family.as_ref(), args.errors);
+        let model = Model::new(manipulator, Some(&loaded.file), args.errors);
         let model = model.with_length(length);
         let sizes = sizes::read(args, model.sources())?;
         Ok(Self { loaded, model, sizes, mode })

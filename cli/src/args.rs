@@ -11,6 +11,7 @@ mod export;
 mod generate;
 mod measure;
 mod motion;
+mod new;
 mod path;
 mod pose;
 mod recording;
@@ -29,6 +30,7 @@ pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
 pub use generate::{CodeArgs, GenerateArgs, Language};
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
+pub use new::NewArgs;
 pub use path::PathArgs;
 pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, LayoutArgs, PlotArgs, RecoverArgs};
@@ -69,6 +71,7 @@ pub struct Args {
 const ROOT_EXAMPLES: &str = "\
 Examples:
   opm examples                                         what comes with opm
+  opm new delta --set crank=150mm -o mine.toml         a robot by its dimensions
   opm decompose plano-spherical-5dof                   how a mechanism falls into two sections
   opm check plano-spherical-5dof                       its closed forms against other computations
   opm ik plano-spherical-5dof --pose x=10mm,xi=15deg   joint values at a pose
@@ -145,6 +148,7 @@ pub enum Command {
     Convert(ConvertArgs),
     Export(ExportArgs),
     Generate(GenerateArgs),
+    New(NewArgs),
     Examples(ExamplesArgs),
     Schema(SchemaArgs),
     Format(FormatArgs),
@@ -170,9 +174,10 @@ pub struct MechanismArgs {
 /// What is changed of a mechanism file.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 pub struct ChangeArgs {
-    /// Change a number of the file: a parameter of a leg (leg1.h=140mm) or of all legs (h=140mm), or limits
-    /// (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=..., S1.max_rate=... and S1.home=...
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    /// Change numbers of the file: a parameter that it names (rb=120mm,rod=350mm), one of a family's leg (leg1.h=140mm) or
+    /// of all its legs (h=140mm), or limits (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=...,
+    /// S1.max_rate=... and S1.home=...
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true, value_delimiter = ',')]
     pub set: Vec<Change>,
     /// Angles of orientations: `euler-angles` (zeta xi psi), `tilt-torsion` (azimuth tilt torsion) or `roll-pitch-yaw` (roll
     /// pitch yaw)

@@ -7,6 +7,7 @@ mod whole;
 use crate::args::{DecomposeArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::parameters;
 use crate::pose::GridAxis;
 use crate::runs::{self, Cell};
 use crate::text::{self, Table, chain, plural, short};
@@ -49,7 +50,8 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
             Applies::Nearly => Vec::new(),
             Applies::Decomposed(_) | Applies::Outside(_) => actuator_warnings(&found.mobility),
         };
-        output.print(&answer.json(&warnings), answer.text())?;
+        output
+            .print(&answer.json(&warnings), answer.text() + &parameters::section(&loaded.file))?;
         warn(output, &loaded, &warnings);
         return Ok(());
     };
@@ -90,7 +92,7 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         ways: &ways,
         manipulator,
     };
-    output.print(&report.json(&warnings), report.text())?;
+    output.print(&report.json(&warnings), report.text() + &parameters::section(&loaded.file))?;
     warn(output, &loaded, &warnings);
     if let Some(error) = refused {
         let (hint, place) = (loaded.linkage_hint(), loaded.place_of(error));
@@ -335,7 +337,7 @@ impl Report<'_> {
                 json.insert("alternatives".to_owned(), Value::Array(others));
             }
             json.insert("applies".to_owned(), self.applies.into());
-            joints::insert(json, &self.loaded.file.mechanism);
+            joints::insert(json, &self.loaded.file);
             json.insert("warnings".to_owned(), warnings.into());
             if let Some(snapped) = &self.loaded.snapped {
                 json.insert("snapped".to_owned(), misses(snapped));

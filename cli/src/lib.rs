@@ -32,7 +32,9 @@ mod load;
 mod measure;
 mod merge;
 mod motion;
+mod new;
 mod output;
+mod parameters;
 mod path;
 mod plot;
 mod pose;
@@ -109,6 +111,7 @@ fn run(args: &Args) -> Result<(), Failure> {
         Command::Convert(command) => convert::run(command, output),
         Command::Export(command) => export::run(command, output),
         Command::Generate(command) => generate::run(command, output),
+        Command::New(command) => new::run(command, output),
         Command::Examples(command) => examples::run(command, output),
         Command::Schema(command) => schema::run(command),
         Command::Format(_) => format::run(output),

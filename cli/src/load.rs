@@ -19,7 +19,7 @@ use opm_core::manipulator::{CompileError, Manipulator, Mode};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file::hint::expected_one_of;
-use opm_core::mechanism::file::{self, Digits, MechanismFile};
+use opm_core::mechanism::file::{self, MechanismFile};
 use opm_mcap::input::{self, Expected, InputError, Pipes};
 use opm_study::recording::Attachment;
 use std::io::{self, Read};
@@ -177,8 +177,8 @@ impl Loaded {
             snap(&self.file.mechanism, length).map_err(|error| Failure::at(&self.label, error))?;
         if !joints.is_empty() {
             // A recording holds the mechanism that was computed with.
-            self.text = file::write(&mechanism, self.file.units, Digits::All);
             self.file.mechanism = mechanism;
+            self.text = self.file.text();
         }
         self.snapped = Some(joints);
         Ok(())

@@ -16,6 +16,7 @@ mod clearance;
 mod columns;
 mod command;
 mod decomposition;
+mod dimensions;
 mod error;
 mod explorer;
 mod export;
@@ -60,6 +61,8 @@ mod _native {
     use crate::command::command;
     #[pymodule_export]
     use crate::decomposition::{Decomposition, Intersection, LegSplit};
+    #[pymodule_export]
+    use crate::dimensions::ParameterJacobian;
     #[pymodule_export]
     use crate::error::OpmError;
     #[pymodule_export]

@@ -554,7 +554,7 @@ fn named(file: MechanismFile) -> Option<Arc<MechanismFile>> {
 
 impl Manipulator {
     /// Its mechanism file; in metres and radians, unless it has named parameters.
-    fn file(&self) -> MechanismFile {
+    pub fn file(&self) -> MechanismFile {
         let mechanism = self.inner.mechanism().clone();
         if let Some(named) = &self.named {
             return MechanismFile { mechanism, ..(**named).clone() };
@@ -566,6 +566,7 @@ impl Manipulator {
             mode: self.family.as_ref().map(Family::mode),
             places: Locations::default(),
             parameters: Vec::new(),
+            patterns: Vec::new(),
             source: None,
         }
     }
@@ -576,6 +577,11 @@ impl Manipulator {
         let inner = core::Manipulator::new(mechanism).map_err(|error| failed(&error))?;
         let (inner, text, label) = (Arc::new(inner), OnceLock::new(), self.label.clone());
         Ok(Self { inner, text, label, family: file.family.clone(), named: named(file) })
+    }
+
+    /// What it is called in messages.
+    pub fn label(&self) -> &str {
+        &self.label
     }
 
     /// The name of its file, without folders.

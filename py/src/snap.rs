@@ -2,7 +2,7 @@
 
 use crate::error::{failed, wrong};
 use opm_core::decomposition::{Snapped, slightly_off, snap};
-use opm_core::mechanism::file::{self, Digits, MechanismFile};
+use opm_core::mechanism::file::{self, MechanismFile};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use std::ffi::CString;
@@ -58,7 +58,7 @@ pub fn within(
         let message = CString::new(format!("{label}: snapped {miss}"))?;
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
     }
-    let text = file::write(&mechanism, read.units, Digits::All);
     read.mechanism = mechanism;
+    let text = read.text();
     Ok((read, text))
 }

@@ -5,6 +5,7 @@ use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Vector3};
 use opm_core::Manipulator;
 use opm_core::forward::{Assemblies, Completeness, ForwardMethod};
+use std::f64::consts::PI;
 
 /// The start of a mechanism file.
 const HEAD: &str = "format = 1\nname = \"telescopes\"\nunits = { length = \"m\", angle = \"rad\" }\n[platform]\npoint = [0, 0, 0]\n";
@@ -255,6 +256,24 @@ fn no_assembly_is_missing() {
 }
 
 /// Joints with which legs do not meet have no assembly, and all solutions are complex.
+/// At home, and turned by half a turn, products in a leg's equations are zero: each of them alone says nothing there. Both
+/// assemblies are known by symmetry.
+#[test]
+fn a_quadrupteron_at_home_has_its_mirror_image() {
+    let m = Manipulator::example("quadrupteron").unwrap();
+    // `θ` is that of sin θ = (S2 - S1) / (2 rp), as the levers of its legs 1 and 2 are opposite.
+    for [x, y, z] in [[0.0, 0.0, 0.0], [0.1, -0.05, 0.02], [0.0, 0.05, -0.03]] {
+        let found = m.forward(&[x, x, y, z]).unwrap();
+        assert_eq!(solutions(&found), [2, 2], "{x} {y} {z}");
+        let mut turns: Vec<f64> = found.list.iter().map(|a| a.pose[3].abs()).collect();
+        turns.sort_by(f64::total_cmp);
+        assert!(turns[0] < 1e-9 && (turns[1] - PI).abs() < 1e-9, "{turns:?}");
+        for a in &found.list {
+            assert!((a.pose[0] - x).abs() + (a.pose[2] - z).abs() < 1e-9, "{:?}", a.pose);
+        }
+    }
+}
+
 #[test]
 fn joints_out_of_reach_have_no_assembly() {
     let m = Manipulator::example("linear-delta").unwrap();

@@ -33,7 +33,7 @@ impl Answer<'_> {
             "warnings": warnings,
         });
         if let Value::Object(json) = &mut json {
-            joints::insert(json, &self.loaded.file.mechanism);
+            joints::insert(json, &self.loaded.file);
         }
         if let Some(near) = &survey.near {
             json["nearly"] = json!({

@@ -1,12 +1,22 @@
 //! The joints of a mechanism as data: what a program needs to build it.
 
 use super::triple_json;
-use opm_core::mechanism::Mechanism;
+use crate::parameters;
+use opm_core::mechanism::file::{LegPattern, MechanismFile};
 use opm_core::mechanism::joint::{Joint, JointCoordinate, JointKind};
 use serde_json::{Map, Value, json};
 
-/// Adds the reference point, and every joint with the keys of a mechanism file. All of it is at home, SI.
-pub fn insert(json: &mut Map<String, Value>, mechanism: &Mechanism) {
+/// Adds the reference point, and every joint with the keys of a mechanism file; the named parameters and the patterns of the
+/// file. All of it is at home, SI.
+pub fn insert(json: &mut Map<String, Value>, file: &MechanismFile) {
+    let mechanism = &file.mechanism;
+    if !file.parameters.is_empty() {
+        json.insert("parameters".to_owned(), json!(parameters::json(file)));
+    }
+    if !file.patterns.is_empty() {
+        let one = |pattern: &LegPattern| json!({ "legs": pattern.legs, "text": pattern.text });
+        json.insert("patterns".to_owned(), file.patterns.iter().map(one).collect());
+    }
     json.insert("reference_point".to_owned(), json!(triple_json(&mechanism.platform.coords)));
     let of_leg = mechanism
         .legs

@@ -119,7 +119,7 @@ fn a_mechanism_that_cannot_be_had() {
     opm(&["ik", &empty, "--pose", ""]).fails(1, &["empty.toml:1:1: `format`"]);
     opm(&["workspace", "bennett-double-spherical-6r"]).fails_with_one_line(
         1,
-        &["bennett-double-spherical-6r:22:1: legs leg1, leg2", "closed-form"],
+        &["bennett-double-spherical-6r:38:1: legs leg1, leg2", "closed-form"],
     );
     opm(&["examples", "none"]).fails_with_one_line(2, &["\"none\"", PLANO]);
 }

@@ -21,6 +21,7 @@ mod kind;
 mod linkage;
 mod measure;
 mod misses;
+mod new;
 mod plot;
 mod run;
 mod shard;

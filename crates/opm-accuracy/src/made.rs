@@ -5,7 +5,8 @@ use crate::response::Model;
 use crate::source::{ErrorModel, Origin};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use opm_core::mechanism::Mechanism;
-use opm_core::mechanism::family::{Family, ParameterValue};
+use opm_core::mechanism::family::ParameterValue;
+use opm_core::mechanism::file::MechanismFile;
 use opm_core::mechanism::joint::JointKind;
 use std::collections::BTreeMap;
 
@@ -20,9 +21,9 @@ pub struct Made {
 }
 
 impl Made {
-    /// With an error for each source of a model, radians and metres; `None` if the family cannot be assembled with them.
+    /// With an error for each source of a model, radians and metres; `None` if the mechanism cannot be assembled with them.
     pub fn new(model: &Model<'_>, errors: &[f64]) -> Option<Self> {
-        let mut mechanism = family(model, errors)?;
+        let mut mechanism = dimensions(model, errors)?;
         let (mut actuators, mut axes) = (Vec::new(), BTreeMap::new());
         for (source, &error) in model.sources().iter().zip(errors).filter(|(_, e)| **e != 0.0) {
             match &source.origin {
@@ -74,10 +75,10 @@ impl Made {
     }
 }
 
-/// The mechanism with the errors of its family's parameters.
-fn family(model: &Model<'_>, errors: &[f64]) -> Option<Mechanism> {
+/// The mechanism with the errors of its file's dimensions.
+fn dimensions(model: &Model<'_>, errors: &[f64]) -> Option<Mechanism> {
     let mut changed: BTreeMap<&str, ParameterValue> = BTreeMap::new();
-    let nominal = model.family().map(Family::parameters).unwrap_or_default();
+    let nominal = model.file().map(MechanismFile::dimensions).unwrap_or_default();
     for (source, &error) in model.sources().iter().zip(errors).filter(|(_, e)| **e != 0.0) {
         let Origin::Parameter { key, part, .. } = &source.origin else { continue };
         let known = nominal.iter().find(|(name, _)| name == key).map(|(_, value)| *value);
@@ -88,8 +89,8 @@ fn family(model: &Model<'_>, errors: &[f64]) -> Option<Mechanism> {
             ParameterValue::None => {}
         }
     }
-    match model.family() {
-        Some(family) if !changed.is_empty() => family.with(changed).ok()?.assemble().ok(),
+    match model.file() {
+        Some(file) if !changed.is_empty() => Some(file.with(changed).ok()?.mechanism),
         _ => Some(model.manipulator().mechanism().clone()),
     }
 }

@@ -6,14 +6,14 @@ use crate::source::{ErrorModel, Source, sources};
 use nalgebra::{DMatrix, Isometry3, Matrix6, Matrix6xX, Vector6};
 use opm_core::group::screw::Screw;
 use opm_core::manipulator::{Manipulator, Solution};
-use opm_core::mechanism::family::Family;
+use opm_core::mechanism::file::MechanismFile;
 use opm_core::velocity::VelocityError;
 
 /// A manipulator with the sources of its errors.
 #[derive(Clone, Debug)]
 pub struct Model<'a> {
     manipulator: &'a Manipulator,
-    family: Option<Family>,
+    file: Option<MechanismFile>,
     errors: ErrorModel,
     length: f64,
     sources: Vec<Source>,
@@ -57,11 +57,16 @@ pub struct Response {
 }
 
 impl<'a> Model<'a> {
-    /// The errors of all actuators and axes of a manipulator. If it is of a family, also those of the family's parameters.
-    pub fn new(manipulator: &'a Manipulator, family: Option<&Family>, errors: ErrorModel) -> Self {
-        let sources = sources(manipulator, family, errors);
+    /// The errors of all actuators and axes of a manipulator. With the file that it is of, also those of the dimensions that the
+    /// file gives by name ([`MechanismFile::dimensions`]).
+    pub fn new(
+        manipulator: &'a Manipulator,
+        file: Option<&MechanismFile>,
+        errors: ErrorModel,
+    ) -> Self {
+        let sources = sources(manipulator, file, errors);
         let length = manipulator.characteristic_length();
-        Self { manipulator, family: family.cloned(), errors, length, sources }
+        Self { manipulator, file: file.cloned(), errors, length, sources }
     }
 
     /// Compares lengths with angles by another characteristic length, metres.
@@ -78,7 +83,7 @@ impl<'a> Model<'a> {
         self
     }
 
-    /// The sources of errors: actuators, then parameters of the family, then joint by joint.
+    /// The sources of errors: actuators, then dimensions of the file, then joint by joint.
     pub fn sources(&self) -> &[Source] {
         &self.sources
     }
@@ -93,9 +98,9 @@ impl<'a> Model<'a> {
         self.length
     }
 
-    /// The family, if the errors of its parameters are known.
-    pub(crate) fn family(&self) -> Option<&Family> {
-        self.family.as_ref()
+    /// The file, if the errors of its dimensions are known.
+    pub(crate) fn file(&self) -> Option<&MechanismFile> {
+        self.file.as_ref()
     }
 
     /// The manipulator.

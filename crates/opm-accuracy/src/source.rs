@@ -1,11 +1,12 @@
-//! Sources of errors: actuators, axes of joints, links, parameters of a family.
+//! Sources of errors: actuators, axes of joints, links, dimensions of the file.
 
 use crate::chain::{Chain, small_twist, unit};
 use nalgebra::{Isometry3, Translation3, Unit, Vector3, Vector6};
 use opm_core::Quantity;
 use opm_core::group::screw::Screw;
 use opm_core::manipulator::Manipulator;
-use opm_core::mechanism::family::{Family, ParameterValue};
+use opm_core::mechanism::family::ParameterValue;
+use opm_core::mechanism::file::MechanismFile;
 use opm_core::mechanism::joint::{Joint, JointKind};
 use opm_core::mechanism::{Mechanism, leg::Leg};
 use std::ops::Range;
@@ -39,7 +40,7 @@ pub struct Source {
     pub name: String,
     /// Whether it is an angle or a length.
     pub quantity: Quantity,
-    /// The name of the joint that it belongs to; `platform` for the platform's end of a leg, `None` for a family's parameter.
+    /// The name of the joint that it belongs to; `platform` for the platform's end of a leg, `None` for a dimension of the file.
     pub joint: Option<String>,
     /// The direction of an offset or the axis of a rotation, in base coordinates, with the mechanism at home; `None` for
     /// actuators and parameters.
@@ -56,8 +57,8 @@ pub(crate) enum Origin {
     Axis { leg: usize, first: usize, end: usize, twist: Screw },
     /// Of a helical joint's pitch: its advance.
     Pitch { leg: usize, first: usize, coordinate: usize, home: f64, advance: Screw },
-    /// Of a family's parameter: the mechanisms with a larger and with a smaller value, and how far these are apart.
-    /// `key` is its name in the family, and `part` the number of its component if it is a pair.
+    /// Of a dimension of the file: the mechanisms with a larger and with a smaller value, and how far these are apart.
+    /// `key` is its name in the file, and `part` the number of its component if it is a pair.
     Parameter { mechanisms: Box<[Mechanism; 2]>, apart: f64, key: String, part: usize },
 }
 
@@ -67,7 +68,7 @@ impl Source {
         matches!(self.origin, Origin::Actuator(_))
     }
 
-    /// Whether it is a parameter of a family.
+    /// Whether it is a dimension of the file.
     pub fn is_parameter(&self) -> bool {
         matches!(self.origin, Origin::Parameter { .. })
     }
@@ -129,10 +130,10 @@ impl Source {
     }
 }
 
-/// Every source of a manipulator: actuators first, then the parameters of its family, then joint by joint.
+/// Every source of a manipulator: actuators first, then the dimensions of its file, then joint by joint.
 pub(crate) fn sources(
     manipulator: &Manipulator,
-    family: Option<&Family>,
+    file: Option<&MechanismFile>,
     model: ErrorModel,
 ) -> Vec<Source> {
     let coordinates = manipulator.coordinates();
@@ -148,8 +149,9 @@ pub(crate) fn sources(
     });
     let mut all: Vec<Source> = actuators.collect();
     let mechanism = manipulator.mechanism();
-    if let Some(family) = family {
-        parameters(family, mechanism, manipulator.characteristic_length(), &mut all);
+    // Coordinates that depend on others change with a dimension, too, which errors of the pose do not tell apart.
+    if let Some(file) = file.filter(|_| manipulator.dependent_coordinates().is_empty()) {
+        parameters(file, mechanism, manipulator.characteristic_length(), &mut all);
     }
     let mut coordinate = 0;
     for (number, leg) in mechanism.legs.iter().enumerate() {
@@ -276,23 +278,42 @@ fn across(axis: &Unit<Vector3<f64>>) -> [Named; 2] {
     [("1", first), ("2", axis.cross(&first))]
 }
 
-/// The step of a parameter in shares of the mechanism's size: the error of a central difference is its square.
-const STEP: f64 = 1e-5;
+/// The mechanism of a file with another dimension; `None` if it cannot be assembled.
+pub(crate) fn changed_file(
+    file: &MechanismFile,
+    mechanism: &Mechanism,
+    change: (&str, ParameterValue),
+) -> Option<Mechanism> {
+    let mut changed = file.with([change]).ok()?.mechanism;
+    // Encoders may have been set since the file was read.
+    let set = mechanism.coordinates().zip(file.mechanism.coordinates());
+    let set: Vec<f64> = set.map(|(now, read)| now.home - read.home).collect();
+    let legs = changed.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    let coordinates = legs.flat_map(|joint| &mut joint.coordinates);
+    coordinates.zip(set).for_each(|(c, set)| c.home += set);
+    // A loop may have another platform than that of its file.
+    let names = |mechanism: &Mechanism| -> Vec<String> {
+        mechanism.joints().map(|joint| joint.name.clone()).collect()
+    };
+    (names(&changed) == names(mechanism)).then_some(changed)
+}
 
-/// The parameters of a family that are geometry: those of legs, without limits. One that cannot change alone in the family
-/// is none: errors of axes have its part.
-fn parameters(family: &Family, mechanism: &Mechanism, length: f64, all: &mut Vec<Source>) {
-    for (name, value) in family.parameters() {
+/// The step of a parameter in shares of the mechanism's size: the error of a central difference is its square.
+pub(crate) const STEP: f64 = 1e-5;
+
+/// The dimensions of a file that are geometry: its named lengths and angles, and the parameters of a family's legs, without
+/// limits. One that cannot change alone is none: errors of axes have its part.
+fn parameters(file: &MechanismFile, mechanism: &Mechanism, length: f64, all: &mut Vec<Source>) {
+    for (name, value) in file.dimensions() {
         let own = |leg: &Leg| Some(name.strip_prefix(&*leg.name)?.strip_prefix('.')?.to_owned());
         let own = mechanism.legs.iter().find_map(own);
-        if own.is_none_or(|own| own.contains('.')) {
+        if file.parameter(&name).is_none() && own.is_none_or(|own| own.contains('.')) {
             continue;
         }
-        let quantity = family.quantity_of(&name).unwrap_or(Quantity::Length);
+        let Some(quantity) = file.quantity_of(&name) else { continue };
         let step = STEP * unit(quantity, length);
         let mut push = |(suffix, part): (&str, usize), changed: &dyn Fn(f64) -> ParameterValue| {
-            let assembled =
-                |step: f64| family.with([(&*name, changed(step))]).ok()?.assemble().ok();
+            let assembled = |step: f64| changed_file(file, mechanism, (&name, changed(step)));
             let ends = match (assembled(step), assembled(-step)) {
                 (Some(more), Some(less)) => Some(([more, less], 2.0 * step)),
                 // At an end of its range the difference is to one side.

@@ -3,7 +3,7 @@
 use crate::column::Column;
 use crate::fit::{Derivatives, Problem, State, Unsolved, left_over, leverages, residuals};
 use crate::identify::{Combination, Identified};
-use crate::parameter::{Instance, InstanceError, Parameter, parameters, text};
+use crate::parameter::{Instance, InstanceError, Parameter, parameters};
 use crate::play::{ResidualPlay, residual_play};
 use nalgebra::{DMatrix, DVector};
 use opm_core::Quantity;
@@ -138,7 +138,7 @@ pub struct Calibration {
 impl Calibration {
     /// The text of the calibrated mechanism file, in the units of the file.
     pub fn text(&self) -> String {
-        text(&self.file)
+        self.file.text()
     }
 }
 
@@ -227,7 +227,7 @@ pub fn with_changes(
     changes: &[f64],
 ) -> Result<MechanismFile, CalibrateError> {
     assert_eq!(parameters.len(), changes.len(), "one change for each parameter");
-    Ok(Instance::nominal(file)?.changed(parameters, changes)?.file)
+    Ok(Instance::nominal(file)?.changed(parameters, changes)?.made())
 }
 
 /// Calibrates a mechanism. `watch` is told the sum of squares of the weighted residuals after each evaluation; where it says
@@ -428,7 +428,7 @@ impl Fitted {
         let unused = (0..problem.rows.len()).filter(|&row| self.state.rows[row].is_none());
         let left = left_over(derivatives, identified, &residuals);
         Calibration {
-            file: self.state.instance.file.clone(),
+            file: self.state.instance.made(),
             parameters,
             correlations,
             rank: identified.rank(),

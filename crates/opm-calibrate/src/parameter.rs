@@ -1,8 +1,9 @@
-//! What is calibrated: parameters of a family, places of joints within their subspaces, offsets of encoders.
+//! What is calibrated: dimensions of the file, places of joints within their subspaces, offsets of encoders.
 
 use crate::allowed::{Displacement, allowed};
 use nalgebra::{DMatrix, Isometry3, Vector6};
 use opm_accuracy::{ErrorModel, Model};
+use opm_core::Quantity;
 use opm_core::decomposition::PlatformSet;
 use opm_core::group::screw::Screw;
 use opm_core::manipulator::{CompileError, Manipulator};
@@ -10,7 +11,6 @@ use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::family::{Family, ParameterErrors, ParameterValue};
 use opm_core::mechanism::file::MechanismFile;
 use opm_core::mechanism::joint::{Joint, JointKind};
-use opm_core::{Quantity, mechanism::file};
 
 /// A number of a mechanism that measurements may correct.
 #[derive(Clone, Debug)]
@@ -27,8 +27,8 @@ pub struct Parameter {
 
 #[derive(Clone, Debug)]
 enum ParameterKind {
-    /// A parameter of the family: the number of its source of errors.
-    Family { name: String, part: Option<usize>, source: usize },
+    /// A dimension of the file: the number of its source of errors.
+    Dimension { name: String, part: Option<usize>, source: usize },
     /// An offset of the family that is the home value of an actuated joint coordinate.
     Offset { name: String, coordinate: usize },
     /// The home value of an actuated joint coordinate of a list.
@@ -42,7 +42,11 @@ enum ParameterKind {
 /// A mechanism with some values of its parameters.
 pub struct Instance {
     pub manipulator: Manipulator,
+    /// With the dimensions of the mechanism. Where these are named, offsets of encoders are not in it: they would be numbers in
+    /// place of expressions.
     pub file: MechanismFile,
+    /// Whether dimensions are calibrated, not joints.
+    by_dimension: bool,
     /// The values from those of the file on.
     values: Vec<f64>,
 }
@@ -50,7 +54,7 @@ pub struct Instance {
 /// Why a mechanism with changed parameters is none.
 #[derive(Debug, thiserror::Error)]
 pub enum InstanceError {
-    /// The parameters of the family do not fit.
+    /// The dimensions do not fit.
     #[error(transparent)]
     Parameters(#[from] ParameterErrors),
     /// The mechanism cannot be compiled.
@@ -58,8 +62,9 @@ pub enum InstanceError {
     Compile(#[from] CompileError),
     /// Legs are solved whole, and the platform moves in a subgroup: with a joint that is off, legs do not contain it.
     #[error(
-        "calibration is for legs that are split into two sections, or that have six freedoms; this mechanism's legs are \
-         each solved by itself, and hold the platform in a subgroup only with the joints of the file"
+        "calibration of joints is for legs that are split into two sections, or that have six freedoms; this mechanism's legs \
+         are each solved by itself, and hold the platform in a subgroup only with the joints of the file: name its dimensions \
+         in [parameters], to calibrate these"
     )]
     Whole,
 }
@@ -68,11 +73,14 @@ impl Instance {
     /// The mechanism of the file.
     pub fn nominal(file: &MechanismFile) -> Result<Self, InstanceError> {
         let manipulator = Manipulator::new(file.mechanism.clone())?;
-        if manipulator.is_whole() && manipulator.decomposition().platform() == PlatformSet::Subgroup
-        {
+        let subgroup = manipulator.decomposition().platform() == PlatformSet::Subgroup;
+        // Only with these joints do legs hold the platform in a subgroup, whatever the dimensions are that the file names.
+        let needs_names = manipulator.is_whole() && subgroup;
+        if needs_names && file.parameters.is_empty() {
             return Err(InstanceError::Whole);
         }
-        Ok(Self { manipulator, file: file.clone(), values: Vec::new() })
+        let by_dimension = file.family.is_some() || needs_names;
+        Ok(Self { manipulator, file: file.clone(), by_dimension, values: Vec::new() })
     }
 
     /// The mechanism with changes of its parameters. The decomposition stays: parameters do not leave the class.
@@ -81,15 +89,29 @@ impl Instance {
         parameters: &[Parameter],
         changes: &[f64],
     ) -> Result<Self, InstanceError> {
-        let file = apply(&self.file, parameters, changes)?;
+        let by_dimension = self.by_dimension;
+        let mut file = match by_dimension {
+            true => dimensioned(&self.file, parameters, changes)?,
+            false => self.file.clone(),
+        };
+        let mut mechanism = file.mechanism.clone();
+        displace(&mut mechanism, parameters, changes);
+        if !by_dimension {
+            file.mechanism = mechanism.clone();
+        }
         let decomposition = self.manipulator.decomposition().clone();
-        let manipulator = Manipulator::with_decomposition(file.mechanism.clone(), decomposition)?;
-        Ok(Self { manipulator, file, values: changes.to_vec() })
+        let manipulator = Manipulator::with_decomposition(mechanism, decomposition)?;
+        Ok(Self { manipulator, file, by_dimension, values: changes.to_vec() })
+    }
+
+    /// The file of the mechanism as it is.
+    pub fn made(&self) -> MechanismFile {
+        MechanismFile { mechanism: self.manipulator.mechanism().clone(), ..self.file.clone() }
     }
 
     /// Its errors. The actuators are the first sources.
     pub fn model(&self) -> Model<'_> {
-        Model::new(&self.manipulator, self.file.family.as_ref(), ErrorModel::Axes)
+        Model::new(&self.manipulator, Some(&self.file), ErrorModel::Axes)
     }
 
     /// The twists through all legs for units of the parameters at a solved pose, if joints keep their values; weighted as in
@@ -102,7 +124,7 @@ impl Instance {
         let mut twists = DMatrix::zeros(closure.joints.nrows(), parameters.len());
         for (column, parameter) in parameters.iter().enumerate() {
             match &parameter.kind {
-                ParameterKind::Family { source, .. } | ParameterKind::Pitch { source, .. } => {
+                ParameterKind::Dimension { source, .. } | ParameterKind::Pitch { source, .. } => {
                     twists.set_column(column, &closure.errors.column(*source));
                 }
                 // Where an encoder's zero is moves nothing.
@@ -177,13 +199,13 @@ fn derivative_of_exp(a: &Screw, b: &Screw) -> Screw {
     Screw::from_vector(&sum)
 }
 
-/// The parameters of a mechanism: those of its family, or places of joints; then the offsets of actuated joints.
+/// The parameters of a mechanism: the dimensions of its file, or places of joints; then the offsets of actuated joints.
 pub fn parameters(instance: &Instance) -> Vec<Parameter> {
     let manipulator = &instance.manipulator;
     let model = instance.model();
-    let mut all = match &instance.file.family {
-        Some(family) => of_family(family, &model),
-        None => of_joints(manipulator, &model),
+    let mut all = match instance.by_dimension {
+        true => of_dimensions(&instance.file, &model),
+        false => of_joints(manipulator, &model),
     };
     match &instance.file.family {
         Some(family) => all.extend(offsets(family, manipulator)),
@@ -197,9 +219,9 @@ pub fn parameters(instance: &Instance) -> Vec<Parameter> {
     all
 }
 
-/// The parameters of a family that are sources of errors.
-fn of_family(family: &Family, model: &Model<'_>) -> Vec<Parameter> {
-    let named = family.parameters();
+/// The dimensions of a file that are sources of errors.
+fn of_dimensions(file: &MechanismFile, model: &Model<'_>) -> Vec<Parameter> {
+    let named = file.dimensions();
     let parameter = |(source, of): (usize, &opm_accuracy::Source)| {
         let (name, part, before) = named.iter().find_map(|(name, value)| {
             let rest = of.name.strip_prefix(name.as_str())?;
@@ -210,7 +232,7 @@ fn of_family(family: &Family, model: &Model<'_>) -> Vec<Parameter> {
                 _ => None,
             }
         })?;
-        let kind = ParameterKind::Family { name: name.clone(), part, source };
+        let kind = ParameterKind::Dimension { name: name.clone(), part, source };
         Some(Parameter { name: of.name.clone(), quantity: of.quantity, before, kind })
     };
     let sources = model.sources().iter().enumerate().filter(|(_, source)| source.is_parameter());
@@ -273,35 +295,31 @@ fn of_joints(manipulator: &Manipulator, model: &Model<'_>) -> Vec<Parameter> {
     all
 }
 
-/// The file with changes of its parameters.
-fn apply(
+/// The file with changes of its dimensions.
+fn dimensioned(
     file: &MechanismFile,
     parameters: &[Parameter],
     changes: &[f64],
 ) -> Result<MechanismFile, ParameterErrors> {
-    if file.family.is_none() {
-        let mut file = file.clone();
-        displace(&mut file.mechanism, parameters, changes);
-        return Ok(file);
-    }
     let mut pairs: Vec<(&str, ParameterValue)> = Vec::new();
     for (parameter, change) in parameters.iter().zip(changes) {
         let value = parameter.before + change;
         match &parameter.kind {
-            ParameterKind::Family { name, part: None, .. } | ParameterKind::Offset { name, .. } => {
+            ParameterKind::Dimension { name, part: None, .. }
+            | ParameterKind::Offset { name, .. } => {
                 // An offset that is not given stays away where nothing is changed.
                 if *change != 0.0 {
                     pairs.push((name, ParameterValue::Number(value)));
                 }
             }
-            ParameterKind::Family { name, part: Some(part), .. } => {
+            ParameterKind::Dimension { name, part: Some(part), .. } => {
                 let known = pairs.iter_mut().find(|(known, _)| known == name);
                 match known {
                     Some((_, ParameterValue::Pair(pair))) => pair[*part] = value,
                     _ => {
                         let of = |number: usize| {
                             let other = parameters.iter().find(|other| {
-                                matches!(&other.kind, ParameterKind::Family { name: known, part: Some(part), .. }
+                                matches!(&other.kind, ParameterKind::Dimension { name: known, part: Some(part), .. }
                                     if known == name && *part == number)
                             });
                             other.map_or(0.0, |other| other.before)
@@ -353,7 +371,7 @@ fn displace(mechanism: &mut Mechanism, parameters: &[Parameter], changes: &[f64]
                     place(joint, &moved);
                 }
             }
-            ParameterKind::Family { .. } | ParameterKind::Offset { .. } => {}
+            ParameterKind::Dimension { .. } | ParameterKind::Offset { .. } => {}
         }
     }
 }
@@ -365,9 +383,4 @@ fn place(joint: &mut Joint, moved: &[Isometry3<f64>]) {
     if let JointKind::Universal { second } = &mut joint.kind {
         *second = moved[1].rotation * *second;
     }
-}
-
-/// The text of a file in the form of another.
-pub fn text(file: &MechanismFile) -> String {
-    file::text(&file.mechanism, file.family.as_ref(), file.units)
 }

@@ -562,10 +562,49 @@ joints = [
 ]
 "#;
 
-/// A platform that legs hold in a subgroup only with the joints of the file has no parameters; a hexapod's legs have them.
+/// A Delta is calibrated by the dimensions that its file names. Of `rb` and `rp` the difference alone matters.
+#[test]
+fn a_delta_is_calibrated_by_its_dimensions() {
+    let mut rng = Rng::with_seed(12);
+    let machine = Machine::new(read("delta"), &mut rng);
+    let poses = machine.poses(40, &mut rng);
+    let measured = machine.measured(&["x", "y", "z", "A1", "A2", "A3"], &poses, 0.0, &mut rng);
+    let found = solve(&machine, &measured, &options());
+    let of = |name: &str| {
+        let place = |p: &opm_calibrate::Estimate| p.name == name;
+        let k = found.parameters.iter().position(place).unwrap();
+        let estimate = &found.parameters[k];
+        (estimate.identifiable, estimate.after - estimate.before, machine.off[k])
+    };
+    for name in ["crank", "rod", "start", "A1.home", "A2.home", "A3.home"] {
+        let (told, after, off) = of(name);
+        assert!(told && (after - off).abs() < 1e-9, "{name}: {after} {off}");
+    }
+    let [(rb_told, rb, rb_off), (rp_told, rp, rp_off)] = ["rb", "rp"].map(of);
+    assert!(!rb_told && !rp_told && found.held.len() == 1);
+    assert!((rb - rp - (rb_off - rp_off)).abs() < 1e-9, "{rb} {rp}");
+    // What is written has the rods and the offsets of the machine.
+    let written = Manipulator::new(file::read(&found.text()).unwrap().mechanism).unwrap();
+    let joints = |m: &Manipulator| {
+        let mut at = m.solution();
+        let found = m.inverse(&[0.1, -0.2, -1.0], m.home_mode(), &mut at).unwrap();
+        found.unwrap().joints().to_vec()
+    };
+    let (written, real) = (joints(&written), joints(&machine.real));
+    for &k in machine.real.actuated() {
+        assert!((written[k] - real[k]).abs() < 1e-9, "{} {}", written[k], real[k]);
+    }
+}
+
+/// A platform that legs hold in a subgroup only with the joints of the file has no parameters, but for dimensions that the file
+/// names; a hexapod's legs have them.
 #[test]
 fn parameters_of_legs_that_are_solved_whole() {
-    let delta = file::read(find("delta").unwrap().text).unwrap();
+    let named = file::read(find("delta").unwrap().text).unwrap();
+    let names: Vec<String> = parameters_of(&named).unwrap().into_iter().map(|p| p.name).collect();
+    assert_eq!(names, ["rb", "rp", "crank", "rod", "start", "A1.home", "A2.home", "A3.home"]);
+    let text = file::write(&named.mechanism, named.units, file::Digits::All);
+    let delta = file::read(&text).unwrap();
     let refused = parameters_of(&delta).unwrap_err().to_string();
     assert!(refused.contains("each solved by itself"), "{refused}");
     let stewart = file::read(find("stewart").unwrap().text).unwrap();

@@ -285,7 +285,7 @@ fn a_change_changes_the_mechanism_and_none_is_the_file_again() {
 
 #[test]
 fn joints_of_a_list_are_moved() {
-    let (mut session, before) = opened("planar-3rrr");
+    let (mut session, before) = opened("planar-3rpr");
     let dimensions = before["dimensions"].as_array().unwrap();
     let of_joint =
         |d: &&Value| d["group"] == "leg1" && d["label"].as_str().unwrap().ends_with(".point");
@@ -315,7 +315,7 @@ fn what_is_wrong_is_said_with_its_place() {
     let broken = good.replace("alpha = 30 ", "alpha = \"thirty\" ");
     let found = problems(&mut session, &json!({ "do": "open", "text": broken }));
     let line = 1 + good.lines().position(|line| line.starts_with("alpha = 30 ")).unwrap();
-    assert_eq!(found[0]["place"], json!([line, 9]));
+    assert_eq!(found[0]["place"], json!([line, 10]));
     assert_eq!(
         file::read(&broken).unwrap_err().problems[0].message,
         found[0]["message"].as_str().unwrap()

@@ -148,6 +148,25 @@ class Explorer:
 
 @final
 class Joint:
+    def __init__(
+        self,
+        name: str,
+        kind: str,
+        *,
+        axis: Sequence[float] | None = None,
+        point: Sequence[float] = (0.0, 0.0, 0.0),
+        axis2: Sequence[float] | None = None,
+        pitch: float | None = None,
+        actuated: bool = False,
+        home: float | Sequence[float] | None = None,
+        limits: tuple[float, float] | Sequence[tuple[float, float] | None] | None = None,
+        max_rate: float | Sequence[float | None] | None = None,
+        max_acceleration: float | Sequence[float | None] | None = None,
+        max_effort: float | Sequence[float | None] | None = None,
+        cone: float | tuple[float, Sequence[float] | None] | None = None,
+    ) -> None: ...
+    @property
+    def cone(self) -> tuple[float, tuple[float, float, float] | None] | None: ...
     @property
     def name(self) -> str: ...
     @property
@@ -227,10 +246,27 @@ class Manipulator:
     @property
     def text(self) -> str: ...
     @property
-    def parameters(self) -> dict[str, float | tuple[float, float] | None]: ...
+    def parameters(self) -> dict[str, float | tuple[float, float] | tuple[float, float, float] | None]: ...
     def with_parameters(
         self, changes: Mapping[str, _Parameter] | None = None, /, **named: _Parameter
     ) -> Manipulator: ...
+    @staticmethod
+    def from_joints(
+        legs: Mapping[str, Sequence[Joint]] | Sequence[Sequence[Joint]],
+        *,
+        platform: Sequence[float] = (0.0, 0.0, 0.0),
+        name: str = "mechanism",
+        tolerance: float | None = None,
+    ) -> Manipulator: ...
+    def with_joints(self, changes: Mapping[str, Mapping[str, Any]]) -> Manipulator: ...
+    def parameter_jacobian(
+        self,
+        poses: _Rows,
+        *,
+        parameters: Sequence[str] | None = None,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> ParameterJacobian: ...
     def with_coordinates(self, coordinates: str) -> Manipulator: ...
     @property
     def task_coordinates(self) -> list[TaskCoordinate]: ...
@@ -384,6 +420,17 @@ class Manipulator:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+
+@final
+class ParameterJacobian:
+    @property
+    def joints(self) -> NDArray[np.float64]: ...
+    @property
+    def pose(self) -> NDArray[np.float64]: ...
+    @property
+    def parameters(self) -> list[str]: ...
+    @property
+    def reachable(self) -> NDArray[np.bool_]: ...
 
 @final
 class Accuracy:

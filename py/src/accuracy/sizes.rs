@@ -28,7 +28,7 @@ impl ErrorArguments<'_, '_> {
             let given = self.errors;
             return Err(wrong(format!("errors is {given:?}, expected \"axes\" or \"links\"")));
         };
-        let model = Model::new(inner, manipulator.family.as_ref(), errors).with_length(length);
+        let model = Model::new(inner, Some(&manipulator.file()), errors).with_length(length);
         let sources = model.sources();
         let mut sizes = match self.tolerances {
             Some(given) => tolerances(given, sources)?,

@@ -171,15 +171,54 @@ pub const EXAMPLES: &[Example] = &[
     },
 ];
 
+/// Further architectures, which `opm new` writes with dimensions of one's own.
+pub const TEMPLATES: &[Example] = &[
+    Example {
+        name: "planar-3rpr-symmetric",
+        description: "planar 3-RPR, all legs alike: two translations, one rotation",
+        text: include_str!("../../templates/planar-3rpr-symmetric.toml"),
+    },
+    Example {
+        name: "spherical-3rrr",
+        description: "spherical 3-RRR by its arcs (Gosselin and Angeles): three rotations",
+        text: include_str!("../../templates/spherical-3rrr.toml"),
+    },
+    Example {
+        name: "hexapod",
+        description: "Gough-Stewart platform 6-6, 6-UPS: six freedoms",
+        text: include_str!("../../templates/hexapod.toml"),
+    },
+    Example {
+        name: "hexapod-6-3",
+        description: "Gough-Stewart platform 6-3, 6-UPS: six freedoms",
+        text: include_str!("../../templates/hexapod-6-3.toml"),
+    },
+    Example {
+        name: "3-rps",
+        description: "3-RPS (Hunt): a height, two tilts, and a drift that follows",
+        text: include_str!("../../templates/3-rps.toml"),
+    },
+    Example {
+        name: "3-prs",
+        description: "3-PRS with upright rails (Carretero): a height, two tilts, and a drift that follows",
+        text: include_str!("../../templates/3-prs.toml"),
+    },
+    Example {
+        name: "exechon",
+        description: "Exechon, 2-UPR + SPR (Neumann): a height, two tilts, and a drift that follows",
+        text: include_str!("../../templates/exechon.toml"),
+    },
+];
+
 /// Those whose legs are split into two sections, or move in one subspace.
 pub const SPLIT: &[Example] = EXAMPLES.split_at(EXAMPLES.len() - WHOLE).0;
 
 /// The number of those whose legs are solved whole, which come last.
 const WHOLE: usize = 10;
 
-/// The example with this name, if there is one.
+/// The example or the template with this name, if there is one.
 pub fn find(name: &str) -> Option<&'static Example> {
-    EXAMPLES.iter().find(|example| example.name == name)
+    EXAMPLES.iter().chain(TEMPLATES).find(|example| example.name == name)
 }
 
 #[cfg(test)]

@@ -138,8 +138,19 @@ pub struct MechanismFile {
     pub places: Locations,
     /// The numbers and points that the file names in `[parameters]`, in its order.
     pub parameters: Vec<NamedParameter>,
+    /// Which legs are copies of each other, where the file says so by a pattern.
+    pub patterns: Vec<LegPattern>,
     /// The text that it was read from, whose order and comments a changed text keeps.
     pub source: Option<Arc<Source>>,
+}
+
+/// Legs that one description gives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LegPattern {
+    /// Their names.
+    pub legs: Vec<String>,
+    /// How they lie, for people: `120 deg apart about (0, 0, 1)`.
+    pub text: String,
 }
 
 /// The text of a file, and what it gives.

@@ -146,19 +146,21 @@ impl Conditions {
                 FitSample { values, factors: joints.iter().map(|&joint| factors[joint]).collect() }
             });
             let quantities: Vec<Quantity> = joints.iter().map(|&j| self.quantities[j]).collect();
+            let mut own = Vec::new();
             for Equation { degree, coefficients } in
                 equations(&samples.collect::<Vec<_>>(), &quantities)
             {
                 let parts = coefficients.as_slice().chunks(self.terms.len());
                 let mut forms: Vec<RealForm> = parts.map(|part| self.form(part)).collect();
                 if degree > 0 {
-                    demands.push((degree, Condition::new(joints, forms, self.free)));
+                    own.push((degree, Condition::new(joints, forms, self.free)));
                     continue;
                 }
                 let form = forms.swap_remove(0);
                 gradients.take(&(form * place));
                 self.all_fixed.push(form);
             }
+            demands.extend(in_general_position(own, &mut rng));
         }
         // At special places, as where the platform is turned by half a turn, some depend on each other that do not elsewhere.
         for _ in 0..gradients.units.len() {
@@ -193,6 +195,22 @@ impl Conditions {
         };
         actuated.iter().zip(&self.quantities).map(of).collect()
     }
+}
+
+/// Sums of a leg's demands in place of these: `a (b - q c) = 0` says nothing where `a` is zero, and there another one says it. Spheres
+/// say all that they can.
+fn in_general_position(demands: Vec<(usize, Condition)>, rng: &mut Rng) -> Vec<(usize, Condition)> {
+    let mut mixed = demands.clone();
+    for (i, (degree, sum)) in mixed.iter_mut().enumerate().filter(|(_, (_, sum))| !sum.sphere) {
+        for (j, (other, of)) in demands.iter().enumerate() {
+            if i != j && other == degree && !of.sphere {
+                let weight = 2.0 * rng.f64() - 1.0;
+                let forms = sum.forms.iter_mut().zip(&of.forms);
+                forms.for_each(|(form, more)| *form += more * weight);
+            }
+        }
+    }
+    mixed
 }
 
 fn complex(values: &[f64]) -> Vec<C> {

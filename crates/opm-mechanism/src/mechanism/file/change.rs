@@ -2,8 +2,8 @@
 //! the joints of a list.
 
 use super::{
-    Digits, FileUnits, Locations, MechanismFile, NamedParameter, ParameterUnit, Source, checks,
-    nearest, write, writer,
+    Digits, FileUnits, Locations, MechanismFile, NamedParameter, NamedValue, ParameterUnit, Source,
+    checks, nearest, write, writer,
 };
 use crate::mechanism::family::{Family, ParameterErrors, ParameterValue};
 use crate::mechanism::joint::{DriveLimit, JointCoordinate};
@@ -11,6 +11,19 @@ use crate::mechanism::{Mechanism, TaskHints};
 use crate::numeric::Quantity;
 
 impl MechanismFile {
+    /// The dimensions that the file gives by name, SI: its named parameters that are numbers and follow from no others, then
+    /// the parameters of its family ([`Family::parameters`]).
+    pub fn dimensions(&self) -> Vec<(String, ParameterValue)> {
+        let named = self.parameters.iter().filter(|parameter| parameter.formula.is_none());
+        let named = named.filter_map(|parameter| match parameter.value {
+            NamedValue::Number(value) => {
+                Some((parameter.name.clone(), ParameterValue::Number(value)))
+            }
+            NamedValue::Point(_) => None,
+        });
+        named.chain(self.family.iter().flat_map(Family::parameters)).collect()
+    }
+
     /// The parameter that the file names so.
     pub fn parameter(&self, name: &str) -> Option<&NamedParameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
@@ -133,7 +146,7 @@ impl MechanismFile {
     fn settled(mut self) -> Self {
         let text = self.edited();
         if text.is_none() {
-            self.parameters = Vec::new();
+            (self.parameters, self.patterns) = (Vec::new(), Vec::new());
         }
         self.source = text.map(|text| Source::of(text, &self));
         self

@@ -1,10 +1,10 @@
 //! Reading the form of mechanism file that lists the joints at the assembled home pose.
 
-use super::FileUnits;
 use super::leg_name;
 use super::pattern::{self, Pattern, Placement};
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
+use super::{FileUnits, LegPattern};
 use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
 use crate::mechanism::leg::{Leg, Section, placed};
 use crate::mechanism::{
@@ -120,7 +120,7 @@ impl Type {
 
 /// Reads the mechanism. What cannot be read is reported and replaced by a harmless value, so that
 /// the rest is checked too.
-pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>) {
+pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>, Vec<LegPattern>) {
     root.allow(KEYS);
     let point = "the platform's reference point [x, y, z] at home";
     let platform = root
@@ -135,7 +135,8 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         .map_or_else(TaskHints::default, |task| read_task(&task, &mut locations));
 
     let tables = root.tables("leg", LEG_KEYS);
-    let described = legs(&tables);
+    let mut patterns = Vec::new();
+    let described = legs(&tables, &mut patterns);
     let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
     for name in RESERVED {
         joint_names.reserve(name, "a task coordinate or a column of tables");
@@ -166,7 +167,7 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
     let units = root.reader.units();
     let name = name.to_owned();
-    (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations)
+    (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations, patterns)
 }
 
 /// A leg of the file, or one of those that a pattern makes of it.
@@ -179,7 +180,7 @@ struct Described<'t, 'a> {
 }
 
 /// The legs of the file, in order, those of patterns one by one.
-fn legs<'t, 'a>(tables: &'t [Table<'a>]) -> Vec<Described<'t, 'a>> {
+fn legs<'t, 'a>(tables: &'t [Table<'a>], patterns: &mut Vec<LegPattern>) -> Vec<Described<'t, 'a>> {
     let mut legs = Vec::new();
     for table in tables {
         let pattern = table.get("pattern");
@@ -201,6 +202,9 @@ fn legs<'t, 'a>(tables: &'t [Table<'a>]) -> Vec<Described<'t, 'a>> {
             let (number, place) = (Some((number, count)), Some(pattern.place(number)));
             legs.push(Described { table, name, number, place });
         }
+        let names = legs[legs.len() - count..].iter().map(|leg| leg.name.clone());
+        let text = pattern.describe(table.reader.units());
+        patterns.push(LegPattern { legs: names.collect(), text });
     }
     legs
 }

@@ -75,7 +75,7 @@ pub struct NamedParameter {
     pub unit: ParameterUnit,
     /// Its value, SI.
     pub value: NamedValue,
-    /// The expression that gives it; `None` for a number.
+    /// How it follows from others, as it was typed; `None` where it is given by itself.
     pub formula: Option<String>,
     /// The least and the largest value that it may have, SI.
     pub range: [Option<f64>; 2],

@@ -2,8 +2,10 @@
 
 use super::expression::turned;
 use super::reader::Value;
+use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
 use crate::numeric::Quantity;
+use crate::numeric::number::readable;
 use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::TAU;
 
@@ -65,6 +67,32 @@ impl Pattern {
         self.angles.len() * if self.mirror.is_some() { 2 } else { 1 }
     }
 
+    /// How the legs lie, for people.
+    pub(super) fn describe(&self, units: FileUnits) -> String {
+        let vector = |axis: &Vector3<f64>| {
+            let short = |c: f64| readable((c * 1e4).round() / 1e4);
+            format!("({})", [axis.x, axis.y, axis.z].map(short).join(", "))
+        };
+        let show = |angle: f64| units.show(angle, Quantity::Angle).to_string();
+        let mut parts = Vec::new();
+        if let [first, second, ..] = *self.angles {
+            let step = second - first;
+            let even = self.angles.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-9);
+            let turns = match even {
+                true => format!("{} apart", show(step)),
+                false => {
+                    let all: Vec<String> = self.angles.iter().copied().map(show).collect();
+                    format!("turned by {}", all.join(", "))
+                }
+            };
+            parts.push(format!("{turns} about {}", vector(&self.axis)));
+        }
+        if let Some((normal, _)) = &self.mirror {
+            parts.push(format!("mirrored across the plane with the normal {}", vector(normal)));
+        }
+        parts.join(", and ")
+    }
+
     /// Where the leg of a number, from 0, is.
     pub(super) fn place(&self, number: usize) -> Placement {
         let (turn, mirrored) = match self.mirror {
@@ -115,9 +143,15 @@ impl Placement {
     /// counted so that equal values are images of each other.
     pub fn place(&self, joint: &mut Joint) {
         joint.point = self.point(joint.point);
-        // An axis of rotation turns the other way in a mirror.
-        let turns = !matches!(joint.kind, JointKind::Prismatic);
-        joint.axis = self.axis(joint.axis, turns);
+        match &mut joint.kind {
+            // It has no axis of its own.
+            JointKind::Spherical => {}
+            kind => {
+                // An axis of rotation turns the other way in a mirror.
+                let turns = !matches!(kind, JointKind::Prismatic);
+                joint.axis = self.axis(joint.axis, turns);
+            }
+        }
         match &mut joint.kind {
             JointKind::Universal { second } => *second = self.axis(*second, true),
             // Along its axis, which is turned round, the image advances the other way.

@@ -76,12 +76,20 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     let units = root.reader.units();
     let parameters = named::read(root);
     let Some(family) = root.get("family") else {
-        let (mut mechanism, noted) = joints::read(root, name);
+        let (mut mechanism, noted, patterns) = joints::read(root, name);
         bodies::read(root, &mut mechanism);
         mechanism.shapes.obstacles = obstacles::read(root);
         let (family, mode, places) = (None, None, Locations::default());
-        let file =
-            MechanismFile { mechanism, units, family, mode, places, parameters, source: None };
+        let file = MechanismFile {
+            mechanism,
+            units,
+            family,
+            mode,
+            places,
+            parameters,
+            patterns,
+            source: None,
+        };
         return Some((file, noted));
     };
     let form = family.word(&FORMS)?;
@@ -95,7 +103,16 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     bodies::read(root, &mut mechanism);
     mechanism.shapes.obstacles = obstacles::read(root);
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
-    let file = MechanismFile { mechanism, units, mode, family, places, parameters, source: None };
+    let file = MechanismFile {
+        mechanism,
+        units,
+        mode,
+        family,
+        places,
+        parameters,
+        patterns: Vec::new(),
+        source: None,
+    };
     Some((file, noted))
 }
 

@@ -105,6 +105,21 @@ impl<'a> Value<'a> {
         self.key
     }
 
+    /// The expressions of a parameter, as they were typed.
+    pub(super) fn formula(&self) -> String {
+        match self.value {
+            DeValue::String(text) => text.to_string(),
+            DeValue::Array(items) => {
+                let items =
+                    items.iter().map(|item| Value::new(self.key, item, self.reader).formula());
+                format!("[{}]", items.collect::<Vec<_>>().join(", "))
+            }
+            DeValue::Integer(number) => number.to_string(),
+            DeValue::Float(number) => number.to_string(),
+            _ => String::new(),
+        }
+    }
+
     /// Its text, if it is one.
     pub(super) fn text(&self) -> Option<&'a str> {
         self.value.as_str()

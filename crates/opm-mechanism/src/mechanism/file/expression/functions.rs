@@ -5,7 +5,7 @@ use super::construct::{self, Place};
 use crate::mechanism::file::FileUnits;
 use crate::mechanism::file::hint::nearest;
 use crate::numeric::Quantity;
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Matrix3, Unit, Vector3};
 
 /// Every function: its name, its values, and what it gives.
 pub const FUNCTIONS: [(&str, &str, &str); 25] = [
@@ -185,8 +185,16 @@ pub(in crate::mechanism::file) fn turned(
     vector: Vector3<f64>,
 ) -> Vector3<f64> {
     let (sin, cos) = sine_and_cosine(angle);
-    let along = *axis * axis.dot(&vector);
-    along + (vector - along) * cos + axis.cross(&vector) * sin
+    let along = axis.into_inner() * axis.transpose();
+    let rotation = along * (1.0 - cos) + Matrix3::identity() * cos + axis.cross_matrix() * sin;
+    // A third of a turn about [1, 1, 1] exchanges the axes: its entries are 0 and 1.
+    rotation.map(tidy) * vector
+}
+
+/// A number that is a multiple of a half but for rounding, without that.
+fn tidy(number: f64) -> f64 {
+    let half = (2.0 * number).round() / 2.0;
+    if (number - half).abs() <= 4.0 * f64::EPSILON { half } else { number }
 }
 
 fn origin(name: &str, rest: &[Term]) -> Result<Vector3<f64>, String> {

@@ -5,7 +5,7 @@ use crate::mechanism::file::checks;
 use crate::mechanism::file::expression::{Found, Scope, Term, evaluate, is_function, is_name};
 use crate::mechanism::file::reader::{Table, Value};
 use crate::mechanism::file::units::FileUnits;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// The keys of a parameter's table.
 pub(in crate::mechanism::file) const KEYS: &[&str] = &["value", "unit", "min", "max", "text"];
@@ -76,13 +76,15 @@ pub(in crate::mechanism::file) fn read(root: &Table<'_>) -> Vec<NamedParameter> 
         entries: &entries,
         states: RefCell::new(vec![State::Open; entries.len()]),
         chain: RefCell::default(),
+        follows: Cell::default(),
         units,
     };
-    let terms: Vec<Option<Term>> = (0..entries.len()).map(|index| values.of(index)).collect();
+    let all: Vec<Option<Evaluated>> = (0..entries.len()).map(|index| values.of(index)).collect();
     let names = entries.iter().map(|entry| entry.name.to_owned());
-    root.reader.set_names(known(names.zip(terms.iter().copied()).collect()));
-    let read = entries.iter().zip(terms);
-    read.filter_map(|(entry, term)| entry.parameter(term?, units)).collect()
+    let terms = all.iter().map(|value| value.map(|value| value.term));
+    root.reader.set_names(known(names.zip(terms).collect()));
+    let read = entries.iter().zip(all);
+    read.filter_map(|(entry, value)| entry.parameter(value?, units)).collect()
 }
 
 fn entry<'a>(value: &Value<'a>) -> Entry<'a> {
@@ -109,8 +111,8 @@ fn entry<'a>(value: &Value<'a>) -> Entry<'a> {
 
 impl Entry<'_> {
     /// The parameter with its value in the units of the file.
-    fn parameter(&self, term: Term, units: FileUnits) -> Option<NamedParameter> {
-        let unit = self.unit;
+    fn parameter(&self, evaluated: Evaluated, units: FileUnits) -> Option<NamedParameter> {
+        let (unit, Evaluated { term, follows }) = (self.unit, evaluated);
         let value = match term {
             Term::Number(number) => NamedValue::Number(unit.si(number, units)),
             Term::Vector(v) => NamedValue::Point(v.map(|c| unit.si(c, units)).into()),
@@ -136,7 +138,7 @@ impl Entry<'_> {
             (Term::Vector(_), _) => self.report("is a point, which has no min and max"),
         }
         let text = self.table.and_then(|table| table.get("text")).and_then(|text| text.string());
-        let formula = named.text().map(str::to_owned);
+        let formula = follows.then(|| named.formula());
         let range = range.map(|bound| bound.map(|bound| unit.si(bound, units)));
         let (name, text) = (self.name.to_owned(), text.map(str::to_owned));
         Some(NamedParameter { name, unit, value, formula, range, text })
@@ -154,7 +156,14 @@ enum State {
     Open,
     /// It is being evaluated: what needs it now depends on itself.
     Begun,
-    Done(Option<Term>),
+    Done(Option<Evaluated>),
+}
+
+/// A value, and whether it follows from other parameters.
+#[derive(Clone, Copy)]
+struct Evaluated {
+    term: Term,
+    follows: bool,
 }
 
 /// The values of parameters, each evaluated once, when it is first needed.
@@ -163,20 +172,25 @@ struct Values<'a> {
     states: RefCell<Vec<State>>,
     /// Those that are being evaluated, each of which needs the next.
     chain: RefCell<Vec<usize>>,
+    /// Whether the one that is being evaluated has named another.
+    follows: Cell<bool>,
     units: FileUnits,
 }
 
 impl Values<'_> {
-    fn of(&self, index: usize) -> Option<Term> {
-        if let State::Done(term) = self.states.borrow()[index] {
-            return term;
+    fn of(&self, index: usize) -> Option<Evaluated> {
+        if let State::Done(value) = self.states.borrow()[index] {
+            return value;
         }
         self.states.borrow_mut()[index] = State::Begun;
         self.chain.borrow_mut().push(index);
+        let outer = self.follows.replace(false);
         let term = self.evaluated(&self.entries[index]);
+        let follows = self.follows.replace(outer);
         self.chain.borrow_mut().pop();
-        self.states.borrow_mut()[index] = State::Done(term);
-        term
+        let value = term.map(|term| Evaluated { term, follows });
+        self.states.borrow_mut()[index] = State::Done(value);
+        value
     }
 
     fn evaluated(&self, entry: &Entry<'_>) -> Option<Term> {
@@ -205,9 +219,10 @@ impl Scope for Values<'_> {
         let Some(index) = self.entries.iter().position(|entry| entry.name == name) else {
             return Found::Nothing;
         };
+        self.follows.set(true);
         let state = self.states.borrow()[index];
         match state {
-            State::Done(Some(term)) => Found::Term(term),
+            State::Done(Some(value)) => Found::Term(value.term),
             State::Done(None) => Found::Without(None),
             State::Begun => {
                 let chain = self.chain.borrow();
@@ -220,7 +235,7 @@ impl Scope for Values<'_> {
                 "`{name}` is the end of a chain of more than {LONGEST} parameters"
             ))),
             State::Open => match self.of(index) {
-                Some(term) => Found::Term(term),
+                Some(value) => Found::Term(value.term),
                 None => Found::Without(None),
             },
         }

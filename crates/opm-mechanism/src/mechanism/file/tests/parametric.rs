@@ -44,7 +44,9 @@ fn a_delta_by_its_drawing_is_the_one_that_was_typed() {
     assert_eq!((crank.value, crank.unit), (NamedValue::Number(0.524), ParameterUnit::Length));
     assert_eq!((crank.range, &crank.formula), ([Some(0.1), None], &None));
     assert!(file.parameter("rb").unwrap().text.as_deref().unwrap().contains("motors"));
-    assert_eq!(file.parameter("level").unwrap().formula.as_deref(), Some("2^0"));
+    // It follows from no other.
+    assert_eq!(file.parameter("level").unwrap().formula, None);
+    assert_eq!(file.parameter("A").unwrap().formula.as_deref(), Some("polar(rb, start)"));
     assert_eq!(file.quantity_of("start"), Some(Quantity::Angle));
     assert!(file.is_plain("level") && file.quantity_of("level").is_none());
     let NamedValue::Point([_, y, _]) = file.parameter("B").unwrap().value else {
@@ -187,7 +189,7 @@ fn every_number_may_be_an_expression() {
     let with = text.replacen("h = 120", "h = \"60*2\"", 1);
     assert_ne!(with, text);
     assert_eq!(read(&with).unwrap().mechanism, file.mechanism);
-    let joints = find("planar-3rrr").unwrap().text;
+    let joints = find("planar-3rpr").unwrap().text;
     let said = problems(&joints.replacen("point = [0, ", "point = [\"rb\", ", 1));
     assert!(
         said[0].contains("expected a point") || said[0].contains("is not a parameter"),
@@ -271,7 +273,7 @@ fn wrong_patterns_say_what_is_expected() {
         said.contains("`name` is \"A\" in every leg of the pattern, expected a name with {i}"),
         "{said}"
     );
-    let said = problems(&find("planar-3rrr").unwrap().text.replacen("\"leg1\"", "\"leg{i}\"", 1));
+    let said = problems(&find("planar-3rpr").unwrap().text.replacen("\"leg1\"", "\"leg{i}\"", 1));
     assert!(
         said[0].contains("`name` has {i}, which is the number of a leg of a `pattern`"),
         "{said:?}"
@@ -281,50 +283,55 @@ fn wrong_patterns_say_what_is_expected() {
 /// What is changed of a shipped file by name changes its numbers, and nothing else of its text.
 #[test]
 fn texts_keep_what_is_not_changed() {
-    for (name, changes, from, to) in [
-        ("planar-3rpr", vec![], "", ""),
+    let pair = ParameterValue::Pair;
+    let number = ParameterValue::Number;
+    let slider = "home = 14.98, limits = [5, 35] },";
+    for (name, change, from, to) in [
         (
-            "stewart",
-            vec![("S1.limits", ParameterValue::Pair([0.46, 0.65]))],
-            "limits = [450, 650] },",
-            "limits = [460, 650] },",
+            "planar-3rpr",
+            ("S1.limits", pair([0.006, 0.035])),
+            slider,
+            "home = 14.98, limits = [6, 35] },",
         ),
+        ("planar-3rpr", ("S1.limits", ParameterValue::None), slider, "home = 14.98 },"),
+        (
+            "planar-3rpr",
+            ("S1.max_rate", number(0.2)),
+            slider,
+            "home = 14.98, limits = [5, 35], max_rate = 200 },",
+        ),
+        (
+            "planar-3rpr",
+            ("A1.limits", pair([-0.5, 0.5])),
+            "axis = [0, 0, 1], point = [0, 0, 0] },",
+            "axis = [0, 0, 1], point = [0, 0, 0], limits = [-28.64788975654116, 28.64788975654116] },",
+        ),
+        ("plano-spherical-5dof", ("leg1.h", number(0.13)), "h = 120", "h = 130"),
         (
             "plano-spherical-5dof",
-            vec![("leg1.h", ParameterValue::Number(0.13))],
-            "h = 120",
-            "h = 130",
+            ("leg4.base", pair([0.01, 0.075])),
+            "base = [0, 75] ",
+            "base = [10, 75] ",
         ),
+        // A limit of all legs is that of the pattern, whose numbers are no expressions any more.
         (
-            "delta",
-            vec![("A1.limits", ParameterValue::Pair([-0.5, 0.5]))],
-            "point = [0, -164, 0], actuated = true }",
-            "point = [0, -164, 0], actuated = true, limits = [-28.64788975654116, 28.64788975654116] }",
+            "3-upu",
+            ("limits", pair([0.4, 0.55])),
+            "limits = [\"shortest\", \"longest\"]",
+            "limits = [400, 550]",
         ),
-        (
-            "stewart",
-            vec![("S1.limits", ParameterValue::None)],
-            ", home = 537.496046497088, limits = [450, 650] }",
-            ", home = 537.496046497088 }",
-        ),
-        (
-            "stewart",
-            vec![("S2.max_rate", ParameterValue::Number(0.2))],
-            "point = [63.5, 82, 266.5], actuated = true, home = 537.496046497088, limits = [450, 650] }",
-            "point = [63.5, 82, 266.5], actuated = true, home = 537.496046497088, limits = [450, 650], max_rate = 200 }",
-        ),
-        ("plano-spherical-5dof", vec![("leg1.max_rate.S", ParameterValue::Number(0.2))], "", ""),
     ] {
         let text = find(name).unwrap().text;
-        let changed = read(text).unwrap().with(changes.clone()).unwrap();
-        if !from.is_empty() {
-            assert!(text.contains(from), "{name}: {from}");
-            assert_eq!(changed.text(), text.replacen(from, to, 1), "{name}");
-        }
+        let changed = read(text).unwrap().with([change]).unwrap();
+        assert!(text.contains(from), "{name}: {from}");
+        assert_eq!(changed.text(), text.replacen(from, to, 1), "{name}");
         let again = read(&changed.text()).unwrap();
         assert_eq!(again.mechanism, changed.mechanism, "{name}");
-        assert_eq!(again.family, changed.family);
-        let comment = text.lines().next().unwrap();
-        assert!(changed.text().starts_with(comment), "{name} {changes:?}");
+        assert_eq!((again.family, again.parameters), (changed.family, changed.parameters));
     }
+    // A table that is not there yet.
+    let text = find("plano-spherical-5dof").unwrap().text;
+    let changed = read(text).unwrap().with([("leg1.max_rate.S", number(0.2))]).unwrap();
+    assert_eq!(read(&changed.text()).unwrap().family, changed.family);
+    assert!(changed.text().starts_with(text.lines().next().unwrap()));
 }
