@@ -12,8 +12,11 @@ use crate::motion::{self, LoadedMotion, Reading};
 use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
 use crate::text::count;
+use nalgebra::Vector3;
+use opm_analysis::Gravity;
 use opm_core::manipulator::Manipulator;
 use opm_core::motion::TimingError;
+use opm_core::skeleton::Density;
 use opm_mcap::RecordError;
 use opm_study::recording::{
     MotionRecorder, TableOptions, is_motion_table, partial, write_motion_csv, write_motion_table,
@@ -54,6 +57,7 @@ impl<'a> Target<'a> {
         };
         if let Self::Recording(_) = target {
             let options = [
+                ("--efforts", args.efforts, "a recording has none"),
                 ("--rates", args.rates, "a recording has them anyway"),
                 ("--accelerations", args.accelerations, "a recording has them anyway"),
                 ("--units", args.units == TableUnits::File, "a recording is in metres and radians"),
@@ -86,6 +90,11 @@ fn given_setup(setup: &SetupOptions) -> &'static str {
         SetupOptions { gravity: Some(_), .. } => "--gravity",
         _ => "--link-stiffness",
     }
+}
+
+/// The acceleration of what falls, where it is not given.
+fn standard_gravity() -> Gravity {
+    Gravity { acceleration: Vector3::new(0.0, 0.0, -9.81), density: Density::default() }
 }
 
 /// The motion of the flags, and the duration that it was given with if it got another timing.
@@ -136,9 +145,13 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let manipulator = loaded.compile()?;
     let (motion, given_duration) = motion(args, (&loaded, &manipulator))?;
     motion.note_doubts(output);
-    let setup = args.setup.options(None)?;
-    if setup != SetupOptions::default() && !args.indices {
-        let problem = "nothing uses it; --indices does";
+    let mut setup = args.setup.options(None)?;
+    if args.efforts {
+        // Motors carry the mechanism.
+        setup.gravity = setup.gravity.or(Some(standard_gravity()));
+    }
+    if setup != SetupOptions::default() && !args.indices && !args.efforts {
+        let problem = "nothing uses it; --indices and --efforts do";
         return Err(Failure::flag(given_setup(&setup), problem));
     }
     let setup = setup.check(&manipulator)?;
@@ -147,6 +160,9 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let mut request = request(args, &manipulator, &motion, clearance);
     if args.indices {
         request = request.indices(&setup);
+    }
+    if args.efforts {
+        request = request.efforts(&setup);
     }
     let trajectory = request.trajectory()?;
     if let Some(path) = target.path() {

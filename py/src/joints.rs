@@ -419,7 +419,9 @@ impl Manipulator {
                     expected_one_of(&name, &names)
                 )));
             };
+            let drives: Vec<_> = joint.coordinates.iter().map(|c| c.drive).collect();
             *joint = Joint::of(joint).with(&changes)?.to_core()?;
+            joint.coordinates.iter_mut().zip(drives).for_each(|(c, drive)| c.drive = drive);
         }
         Self::of_text(py, file.text(), &self.label().to_owned(), None)
     }

@@ -89,7 +89,11 @@ pub struct LinkageArgs {
 /// as fast as the limits of rates and accelerations in the mechanism file let it. Every actuated joint needs a
 /// max_acceleration.
 ///
-/// --indices needs -o. --wrench, --gravity and --link-stiffness are those of `opm analyze`, and need --indices.
+/// --indices needs -o. --wrench, --gravity and --link-stiffness are those of `opm analyze`, and need --indices or --efforts.
+///
+/// --efforts gives what a motor is bought by: the peak and the root mean square of each actuator's effort along the motion, and its
+/// power, with the inertia and the weight of all bodies (docs/dynamics.md). Masses are those of [bodies] in the file, or follow from
+/// the shapes; gravity is 9.81 m/s² along -z if --gravity does not say otherwise.
 ///
 /// The recording (.mcap) has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
 /// and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of /bodies in
@@ -98,13 +102,14 @@ pub struct LinkageArgs {
 /// A table (.csv, or .npy for NumPy) has a row for each sample: `t`, the task coordinates, those that depend on
 /// them, every joint, actuated or passive, and the imaginary joints, by their names. --rates adds `d.NAME` for each
 /// of these but `t`, and --accelerations `dd.NAME`: derivatives of the coordinates themselves, so those of an
-/// Euler angle are no angular velocity. Out of reach, and where a joint has no rate, a cell is empty (NaN in NPY).
+/// Euler angle are no angular velocity. --efforts adds `effort.NAME` for each actuated joint, N and N m. Out of reach, and where a joint has no rate, a cell is empty (NaN in NPY).
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o play.mcap
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids -o joints.csv --rates
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --efforts
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids \\
     --time-optimal --set max_acceleration.S=2
@@ -129,7 +134,11 @@ pub struct TrajectoryArgs {
     /// efforts of joints with --wrench or --gravity, as effort.NAME
     #[arg(long, requires = "output")]
     pub indices: bool,
-    /// What indices are computed with.
+    /// The efforts of the actuators that move the mechanism: peak, root mean square and power of each, and effort.NAME in the
+    /// table
+    #[arg(long, conflicts_with = "indices")]
+    pub efforts: bool,
+    /// What indices and efforts are computed with.
     #[command(flatten)]
     pub setup: SetupArgs,
     /// Units of the table: SI and radians, or those of the mechanism file, which the header then names

@@ -7,7 +7,7 @@ use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Violation, ViolationReport};
 use opm_interference::Contact;
 use opm_study::recording::violation_fields;
-use opm_study::{Contacts, CoordinateRanges, MotionRequest, MotionSummary};
+use opm_study::{Contacts, CoordinateRanges, Duty, MotionRequest, MotionSummary};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -72,6 +72,17 @@ impl Report<'_> {
         if let Some(contacts) = &summary.contacts {
             json["interference"] = contacts_json(contacts);
         }
+        if request.efforts.is_some() {
+            let motor = |(name, duty): (String, &Duty)| {
+                let [peak, time] = duty.peak.map_or([None; 2], |peak| peak.map(Some));
+                let [gives, takes] = duty.power;
+                let duty = json!({
+                    "peak": peak, "time": time, "rms": duty.rms(), "power": [takes, gives],
+                });
+                (name, duty)
+            };
+            json["efforts"] = self.motors().map(motor).collect::<Map<_, _>>().into();
+        }
         if let Some(given) = given_duration {
             json["given_duration"] = json!(given);
         }
@@ -133,6 +144,7 @@ impl Report<'_> {
             let worst = if worst.is_finite() { short(worst) } else { "infinite".into() };
             let _ = writeln!(text, "\ncondition number at most {worst}, at t = {} s", short(time));
         }
+        text += &self.motors_text();
         for violation in summary.violations.iter().take(MOST_SHOWN) {
             let _ = writeln!(text, "{}", self.line(violation));
         }
@@ -144,6 +156,53 @@ impl Report<'_> {
             text += &self.contacts_text(contacts);
         }
         text
+    }
+
+    /// What each motor has to do.
+    fn motors(&self) -> impl Iterator<Item = (String, &Duty)> {
+        let manipulator = self.request.manipulator;
+        let name = |&number: &usize| manipulator.coordinates()[number].name.clone();
+        manipulator.actuated().iter().map(name).zip(&self.summary.motors)
+    }
+
+    /// The table from which motors are bought; nothing without efforts.
+    fn motors_text(&self) -> String {
+        if self.request.efforts.is_none() {
+            return String::new();
+        }
+        let (manipulator, units) = (self.request.manipulator, self.units);
+        let mut table = Table::new([
+            "motor",
+            "unit",
+            ">peak",
+            ">at t [s]",
+            ">rms",
+            ">peak rate",
+            "unit",
+            ">gives [W]",
+            ">takes [W]",
+        ]);
+        for ((name, duty), &number) in self.motors().zip(manipulator.actuated()) {
+            let quantity = manipulator.coordinates()[number].quantity;
+            let unit = if quantity == Quantity::Angle { "N m" } else { "N" };
+            let known = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), short);
+            let rate = self.summary.joints[number][1].get();
+            let rate = rate.map(|[low, high]| low.abs().max(high.abs()));
+            let shown =
+                rate.map_or_else(|| "-".to_owned(), |rate| text::number(rate, quantity, units));
+            table.row([
+                name,
+                unit.to_owned(),
+                known(duty.peak.map(|[peak, _]| peak)),
+                known(duty.peak.map(|[_, time]| time)),
+                known(duty.rms()),
+                shown,
+                format!("{}/s", units.symbol(quantity)),
+                short(duty.power[0]),
+                short(0.0 - duty.power[1]),
+            ]);
+        }
+        format!("\n{table}")
     }
 
     /// The nearest bodies, and the contacts, in words.

@@ -9,6 +9,7 @@ mod check;
 mod convert;
 mod decompose;
 mod design;
+mod efforts;
 mod explore;
 mod export;
 mod fk;

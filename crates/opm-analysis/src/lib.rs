@@ -57,5 +57,5 @@ pub use stiffness::{Compliant, Reactions, Stiffness};
 pub use transmission::{
     ConstraintIndex, InputIndices, NoTransmission, Transmission, Transmissions,
 };
-pub use weights::{Gravity, Weights};
+pub use weights::{Gravity, JointMotion, Weights};
 pub use wrench::{Load, LoadAxes, LoadPoint, Wrench};

@@ -3,7 +3,7 @@
 use crate::efforts::{Balance, Efforts};
 use crate::springs::Springs;
 use crate::statics::{Statics, Velocity};
-use crate::weights::{Gravity, Weights};
+use crate::weights::{Gravity, JointMotion, Weights};
 use crate::wrench::{Load, Wrench};
 use opm_core::manipulator::{Manipulator, Solution};
 
@@ -89,9 +89,19 @@ impl<'a> Loads<'a> {
     /// The work of all loads for each independent velocity at a pose, of which `statics` has taken the solution. `None` where
     /// the velocity of a link is not known.
     pub fn work(&mut self, statics: &Statics<'_>, at: &Solution) -> Option<Velocity> {
+        self.work_in(statics, at, None)
+    }
+
+    /// The same with what resists a motion, if bodies have masses.
+    pub fn work_in(
+        &mut self,
+        statics: &Statics<'_>,
+        at: &Solution,
+        motion: Option<JointMotion<'_>>,
+    ) -> Option<Velocity> {
         let mut work = statics.work(&self.wrench(at));
         if let Some(weights) = &mut self.weights {
-            let own = weights.work(statics, at)?;
+            let own = weights.work_in(statics, at, motion)?;
             work.iter_mut().zip(own).for_each(|(part, own)| *part += own);
         }
         Some(work)
@@ -99,8 +109,44 @@ impl<'a> Loads<'a> {
 
     /// The efforts that balance all loads.
     pub fn efforts(&mut self, statics: &Statics<'_>, at: &Solution) -> Efforts {
+        self.efforts_in(statics, at, None)
+    }
+
+    /// The efforts that move the mechanism under all loads: inverse dynamics.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use opm_analysis::{Gravity, JointMotion, Loads, Setup, Statics};
+    /// use opm_core::Manipulator;
+    /// use opm_core::skeleton::Density;
+    ///
+    /// let manipulator = Manipulator::example("delta")?;
+    /// let gravity = Gravity { acceleration: -9.81 * Vector3::z(), density: Density::default() };
+    /// let setup = Setup { gravity: Some(gravity), ..Setup::new(1.0) };
+    /// let mut loads = Loads::new(&manipulator, &setup).expect("links are heavy");
+    /// let mut statics = Statics::new(&manipulator, 1.0);
+    /// let at = manipulator.solution(); // home
+    /// statics.update(&at)?;
+    /// // All cranks are accelerated downwards: their motors carry less.
+    /// let (rates, mut accelerations) = ([0.0; 15], [0.0; 15]);
+    /// let still = loads.efforts(&statics, &at).actuated[0].expect("an effort");
+    /// let mut jacobians = manipulator.jacobians();
+    /// manipulator.differentiate(&at, &mut jacobians)?;
+    /// let down = jacobians.joints_by_pose().column(2) * -1.0; // 1 m/s² along -z
+    /// accelerations.copy_from_slice(down.as_slice());
+    /// let motion = JointMotion { rates: &rates, accelerations: &accelerations };
+    /// let falling = loads.efforts_in(&statics, &at, Some(motion)).actuated[0].expect("an effort");
+    /// assert!(falling.abs() < still.abs());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn efforts_in(
+        &mut self,
+        statics: &Statics<'_>,
+        at: &Solution,
+        motion: Option<JointMotion<'_>>,
+    ) -> Efforts {
         let regular = statics.is_regular();
-        match regular.then(|| self.work(statics, at)).flatten() {
+        match regular.then(|| self.work_in(statics, at, motion)).flatten() {
             Some(work) => statics.efforts_for(&work),
             None => Efforts {
                 balance: Balance::Singular,

@@ -1,4 +1,9 @@
-//! The weight of a mechanism's bodies, as the work that it does for virtual motions.
+//! The weight of a mechanism's bodies, and what resists their acceleration, as the work that both do for virtual motions.
+//!
+//! A body of mass `m` and inertia `I` about its centre of mass, which moves with `ω` and is accelerated by `α` and `a`, is at rest
+//! in its own frame under its weight and `-m a`, `-I α - ω × I ω` (d'Alembert). The acceleration of a leg's body follows joint by joint
+//! from the base on, since each screw moves with the bodies before it: `V' = V + s q̇`, `A' = A + s q̈ + [V, s] q̇` (R. Featherstone,
+//! *Rigid Body Dynamics Algorithms*, 2008, section 5.3, without the forces).
 //!
 //! The centre of mass of a link moves with the joints before it: by the rate of each along its screw. The rates of a
 //! spherical joint are those of its rotation vector `r`; the angular velocity that belongs to them is
@@ -7,10 +12,21 @@
 
 use crate::screws::Screws;
 use crate::statics::{MOST, Statics, Velocity};
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use opm_core::group::screw::Screw;
 use opm_core::manipulator::{Manipulator, Solution};
-use opm_core::skeleton::{Density, Skeleton};
+use opm_core::mechanism::joint::Drive;
+use opm_core::skeleton::{Density, Mass, Skeleton};
 use std::ops::Range;
+
+/// How the joints of a mechanism move.
+#[derive(Clone, Copy, Debug)]
+pub struct JointMotion<'a> {
+    /// The rate of every joint coordinate, rad/s and m/s.
+    pub rates: &'a [f64],
+    /// The acceleration of every joint coordinate, rad/s² and m/s².
+    pub accelerations: &'a [f64],
+}
 
 /// What makes bodies heavy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,20 +44,27 @@ pub struct Weights<'a> {
     manipulator: &'a Manipulator,
     gravity: Vector3<f64>,
     links: Vec<Link>,
-    /// The platform's mass, kilograms, and its centre at home, base coordinates, metres.
-    platform: (f64, Point3<f64>),
+    /// The platform's mass, in base coordinates at home.
+    platform: Mass,
     screws: Screws,
+    /// The twist and its rate of what each freedom moves, base coordinates.
+    moving: Vec<[Screw; 2]>,
+    /// The force and the moment on each link, about its centre of mass.
+    acting: Vec<Acting>,
+    /// The efforts that drives need by themselves, by the numbers of their coordinates.
+    drives: Vec<(usize, f64)>,
 }
+
+/// What acts on a body: a force at its centre of mass, newtons, and a moment, newton metres.
+type Acting = [Vector3<f64>; 2];
 
 #[derive(Clone, Debug)]
 struct Link {
     leg: usize,
     /// The coordinates of the joints that move it.
     moved_by: Range<usize>,
-    /// Kilograms.
-    mass: f64,
-    /// The centre of mass at home, base coordinates, metres.
-    home: Point3<f64>,
+    /// In base coordinates at home.
+    mass: Mass,
 }
 
 impl<'a> Weights<'a> {
@@ -51,8 +74,7 @@ impl<'a> Weights<'a> {
         let skeleton = Skeleton::new(mechanism, None);
         let masses = skeleton.masses(mechanism, gravity.density);
         let each = skeleton.bodies().iter().zip(&masses);
-        let mut each =
-            each.map(|(body, mass)| (mass.mass, body.origin + mass.centre.coords)).skip(1);
+        let mut each = each.map(|(body, mass)| mass.moved(body.origin.coords)).skip(1);
         let (mut links, mut first) = (Vec::new(), 0);
         for (leg, own) in mechanism.legs.iter().enumerate() {
             let mut moved_by = first..first;
@@ -60,21 +82,27 @@ impl<'a> Weights<'a> {
                 moved_by.end += joint.coordinates.len();
                 // The last joint moves the platform.
                 if number + 1 < own.joints.len()
-                    && let Some((mass, home)) = each.next()
+                    && let Some(mass) = each.next()
                 {
-                    links.push(Link { leg, moved_by: moved_by.clone(), mass, home });
+                    links.push(Link { leg, moved_by: moved_by.clone(), mass });
                 }
             }
             first = moved_by.end;
         }
-        let platform = each.next().unwrap_or((0.0, mechanism.platform));
+        let none = Mass { mass: 0.0, centre: mechanism.platform, inertia: Matrix3::zeros() };
+        let platform = each.next().unwrap_or(none);
         let (gravity, screws) = (gravity.acceleration, Screws::new(manipulator));
-        Self { manipulator, gravity, links, platform, screws }
+        let acting = vec![[Vector3::zeros(); 2]; links.len()];
+        let moving = vec![[Screw::default(); 2]; screws.freedoms.len()];
+        let driven = manipulator.coordinates().iter().enumerate();
+        let driven = driven.filter(|(_, c)| c.drive != Drive::default());
+        let drives = driven.map(|(number, _)| (number, 0.0)).collect();
+        Self { manipulator, gravity, links, platform, screws, moving, acting, drives }
     }
 
     /// The mass of all links and of the platform, kilograms.
     pub fn mass(&self) -> f64 {
-        self.links.iter().map(|link| link.mass).sum::<f64>() + self.platform.0
+        self.links.iter().map(|link| link.mass.mass).sum::<f64>() + self.platform.mass
     }
 
     /// The weight of each link at a pose: the coordinates of the joints that move it, the force, newtons, and the centre of mass,
@@ -84,20 +112,29 @@ impl<'a> Weights<'a> {
         screws: &Screws,
     ) -> impl Iterator<Item = (Range<usize>, Vector3<f64>, Point3<f64>)> {
         self.links.iter().map(|link| {
-            let centre = screws.freedoms[link.moved_by.end - 1].after * link.home;
-            (link.moved_by.clone(), self.gravity * link.mass, centre)
+            let centre = screws.freedoms[link.moved_by.end - 1].after * link.mass.centre;
+            (link.moved_by.clone(), self.gravity * link.mass.mass, centre)
         })
     }
 
     /// The weight of the platform, and its centre of mass, where the platform is displaced from home.
     pub(crate) fn platform(&self, displacement: &Isometry3<f64>) -> (Vector3<f64>, Point3<f64>) {
-        let (mass, home) = self.platform;
-        (self.gravity * mass, displacement * home)
+        (self.gravity * self.platform.mass, displacement * self.platform.centre)
     }
 
     /// The work of the weights for each independent velocity at a pose, of which `statics` has taken the solution. `None`
     /// where the velocity of a link is not known: behind a spherical joint after a full revolution.
     pub fn work(&mut self, statics: &Statics<'_>, at: &Solution) -> Option<Velocity> {
+        self.work_in(statics, at, None)
+    }
+
+    /// The same with what resists the accelerations of a motion.
+    pub fn work_in(
+        &mut self,
+        statics: &Statics<'_>,
+        at: &Solution,
+        motion: Option<JointMotion<'_>>,
+    ) -> Option<Velocity> {
         self.screws.update(at);
         let unknown = |link: &Link| {
             let mut singular = statics.singular().iter().filter(|s| s.leg == link.leg);
@@ -108,27 +145,95 @@ impl<'a> Weights<'a> {
         }
         let displacement = at.displacement(self.manipulator);
         let reference = displacement * self.manipulator.mechanism().platform;
-        let (mass, home) = self.platform;
-        let arm = displacement * home - reference;
+        let arm = displacement * self.platform.centre - reference;
+        let on_platform = self.act(&displacement, motion);
         let mut work = [0.0; MOST];
         for (k, work) in work.iter_mut().enumerate().take(statics.free) {
             let twist = statics.twists.column(k);
             let angular = Vector3::new(twist[0], twist[1], twist[2]);
             let linear = Vector3::new(twist[3], twist[4], twist[5]) * statics.length();
-            let mut momentum = (linear + angular.cross(&arm)) * mass;
-            for link in &self.links {
-                momentum += self.velocity(link, |number| statics.joint_rate(number, k)) * link.mass;
+            // Rotors and friction.
+            for &(number, effort) in &self.drives {
+                *work -= effort * statics.joint_rate(number, k);
             }
-            *work = momentum.dot(&self.gravity);
+            let [force, moment] = on_platform;
+            *work += (linear + angular.cross(&arm)).dot(&force) + angular.dot(&moment);
+            for (link, [force, moment]) in self.links.iter().zip(&self.acting) {
+                let [angular, linear] = self.velocity(link, |number| statics.joint_rate(number, k));
+                *work += linear.dot(force) + angular.dot(moment);
+            }
         }
         Some(work)
     }
 
-    /// The velocity of the centre of mass of a link for rates of the joint coordinates.
-    fn velocity(&self, link: &Link, rate: impl Fn(usize) -> f64) -> Vector3<f64> {
+    /// Finds what acts on all links, and returns what acts on the platform.
+    fn act(&mut self, displacement: &Isometry3<f64>, motion: Option<JointMotion<'_>>) -> Acting {
+        let weight = |mass: &Mass| [self.gravity * mass.mass, Vector3::zeros()];
+        for (number, effort) in &mut self.drives {
+            let drive = self.manipulator.coordinates()[*number].drive;
+            *effort = motion.map_or(0.0, |motion| {
+                drive.effort(motion.rates[*number], motion.accelerations[*number])
+            });
+        }
+        let Some(motion) = motion else {
+            for (acting, link) in self.acting.iter_mut().zip(&self.links) {
+                *acting = weight(&link.mass);
+            }
+            return weight(&self.platform);
+        };
+        self.move_freedoms(motion);
+        for (acting, link) in self.acting.iter_mut().zip(&self.links) {
+            let last = link.moved_by.end - 1;
+            let after = &self.screws.freedoms[last].after;
+            *acting = inertial(&link.mass, after, &self.moving[last], &self.gravity);
+        }
+        // All legs end at the platform.
+        let last = self.screws.legs.first().and_then(|leg| leg.clone().last());
+        let moving = last.map_or([Screw::default(); 2], |last| self.moving[last]);
+        inertial(&self.platform, displacement, &moving, &self.gravity)
+    }
+
+    /// The twist of what each freedom moves, and its rate.
+    fn move_freedoms(&mut self, motion: JointMotion<'_>) {
+        for leg in self.screws.legs.clone() {
+            let [mut twist, mut rate] = [Screw::default(); 2];
+            let mut number = leg.start;
+            while number < leg.end {
+                let freedom = &self.screws.freedoms[number];
+                let count = if freedom.of_ball.is_some() { 3 } else { 1 };
+                let of = |values: &[f64]| {
+                    Vector3::from_fn(|i, _| if i < count { values[number + i] } else { 0.0 })
+                };
+                let [first, second] = [of(motion.rates), of(motion.accelerations)];
+                let [first, second] = match freedom.of_ball {
+                    None => [first, second],
+                    Some(_) => {
+                        let vector = self.screws.rotation_vector(number);
+                        let turning = angular_velocity(&vector, &first);
+                        [turning, angular_acceleration(&vector, &first, &second)]
+                    }
+                };
+                // The three axes of a ball are those of the body before it.
+                let before = twist;
+                for i in 0..count {
+                    let screw = self.screws.freedoms[number + i].screw;
+                    let carried = before.bracket(&screw);
+                    twist = sum(&twist, &screw, first[i]);
+                    rate = sum(&sum(&rate, &screw, second[i]), &carried, first[i]);
+                }
+                for i in 0..count {
+                    self.moving[number + i] = [twist, rate];
+                }
+                number += count;
+            }
+        }
+    }
+
+    /// The angular velocity of a link, and the velocity of its centre of mass, for rates of the joint coordinates.
+    fn velocity(&self, link: &Link, rate: impl Fn(usize) -> f64) -> [Vector3<f64>; 2] {
         let freedoms = &self.screws.freedoms;
-        let centre = freedoms[link.moved_by.end - 1].after * link.home;
-        let mut velocity = Vector3::zeros();
+        let centre = freedoms[link.moved_by.end - 1].after * link.mass.centre;
+        let mut velocity = [Vector3::zeros(); 2];
         for number in link.moved_by.clone() {
             let freedom = &freedoms[number];
             let rate = match freedom.of_ball {
@@ -140,10 +245,30 @@ impl<'a> Weights<'a> {
                 }
             };
             let screw = &freedom.screw;
-            velocity += (screw.linear + screw.angular.cross(&centre.coords)) * rate;
+            velocity[0] += screw.angular * rate;
+            velocity[1] += (screw.linear + screw.angular.cross(&centre.coords)) * rate;
         }
         velocity
     }
+}
+
+fn sum(to: &Screw, screw: &Screw, by: f64) -> Screw {
+    Screw { angular: to.angular + screw.angular * by, linear: to.linear + screw.linear * by }
+}
+
+/// The weight of a body that is displaced from home, and what resists its acceleration.
+fn inertial(
+    mass: &Mass,
+    displacement: &Isometry3<f64>,
+    [twist, rate]: &[Screw; 2],
+    gravity: &Vector3<f64>,
+) -> Acting {
+    let centre = (displacement * mass.centre).coords;
+    let turned = displacement.rotation.to_rotation_matrix();
+    let inertia = turned * mass.inertia * turned.transpose();
+    let (w, velocity) = (twist.angular, twist.linear + twist.angular.cross(&centre));
+    let acceleration = rate.linear + rate.angular.cross(&centre) + w.cross(&velocity);
+    [(gravity - acceleration) * mass.mass, -inertia * rate.angular - w.cross(&(inertia * w))]
 }
 
 /// The angular velocity of a rotation for rates of its rotation vector, in the frame that it starts from.
@@ -160,10 +285,63 @@ fn angular_velocity(vector: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64>
     rates + crossed * first + vector.cross(&crossed) * second
 }
 
+/// The rate of the angular velocity ([`angular_velocity`]) for rates and accelerations of the rotation vector.
+fn angular_acceleration(
+    vector: &Vector3<f64>,
+    rates: &Vector3<f64>,
+    accelerations: &Vector3<f64>,
+) -> Vector3<f64> {
+    /// Below this angle two terms of the series are exact to some 1e-12.
+    const SMALL: f64 = 1e-2;
+    let angle = vector.norm();
+    let (square, along) = (angle * angle, vector.dot(rates));
+    // Of the two coefficients: what they are, and their derivatives by the angle over the angle.
+    let [[_, by_first], [second, by_second]] = match angle < SMALL {
+        true => [
+            [0.5 - square / 24.0, -1.0 / 12.0 + square / 180.0],
+            [1.0 / 6.0 - square / 120.0, -1.0 / 60.0 + square / 1260.0],
+        ],
+        false => {
+            let (sin, cos) = angle.sin_cos();
+            let cube = square * angle;
+            [
+                [(1.0 - cos) / square, (angle * sin - 2.0 * (1.0 - cos)) / (square * square)],
+                [
+                    (angle - sin) / cube,
+                    (angle * (1.0 - cos) - 3.0 * (angle - sin)) / (cube * square),
+                ],
+            ]
+        }
+    };
+    let crossed = vector.cross(rates);
+    angular_velocity(vector, accelerations)
+        + crossed * (by_first * along)
+        + vector.cross(&crossed) * (by_second * along)
+        + rates.cross(&crossed) * second
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use nalgebra::UnitQuaternion;
+
+    /// Differences of the angular velocity, also near zero and where the series ends.
+    #[test]
+    fn the_angular_acceleration_is_the_rate_of_the_angular_velocity() {
+        let (rates, accelerations) = (Vector3::new(0.3, -0.7, 0.5), Vector3::new(-1.1, 0.2, 0.9));
+        let directions = Vector3::new(0.6, 0.48, -0.64);
+        for angle in [2.8, 1.1, 0.011, 0.009, 1e-4, 0.0] {
+            let vector = directions * angle;
+            let h = 1e-5;
+            let at = |t: f64| {
+                let moved = vector + rates * t + accelerations * (0.5 * t * t);
+                angular_velocity(&moved, &(rates + accelerations * t))
+            };
+            let expected = (at(h) - at(-h)) / (2.0 * h);
+            let found = angular_acceleration(&vector, &rates, &accelerations);
+            assert!((found - expected).norm() < 1e-9, "{angle}: {found} {expected}");
+        }
+    }
 
     /// Differences of the rotation itself.
     #[test]

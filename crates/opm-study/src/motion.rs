@@ -1,8 +1,11 @@
 //! Motions of the platform, followed from end to end.
 
 mod batch;
+mod driven;
 mod summary;
 
+pub(crate) use driven::Driven;
+pub use driven::Duty;
 pub use summary::{Contacts, CoordinateRanges, MOST_LISTED, MotionSummary, Range};
 
 use crate::error::StudyError;
@@ -35,6 +38,8 @@ pub struct MotionRequest<'a> {
     pub clearance: Option<f64>,
     /// What the poses are judged by, if indices are to be recorded or written beside the joints.
     pub indices: Option<&'a Setup>,
+    /// What acts on the mechanism, if the efforts are asked for that move it.
+    pub efforts: Option<&'a Setup>,
 }
 
 impl<'a> MotionRequest<'a> {
@@ -43,8 +48,8 @@ impl<'a> MotionRequest<'a> {
     pub fn new(manipulator: &'a Manipulator, motion: &'a PlatformMotion, label: &'a str) -> Self {
         let mode = motion.mode.unwrap_or_else(|| manipulator.home_mode());
         let rate = motion.rate.unwrap_or(DEFAULT_RATE);
-        let (clearance, indices) = (None, None);
-        Self { manipulator, motion, label, mode, rate, clearance, indices }
+        let (clearance, indices, efforts) = (None, None, None);
+        Self { manipulator, motion, label, mode, rate, clearance, indices, efforts }
     }
 
     /// Selects another working mode.
@@ -70,6 +75,13 @@ impl<'a> MotionRequest<'a> {
     #[must_use]
     pub fn indices(self, setup: &'a Setup) -> Self {
         Self { indices: Some(setup), ..self }
+    }
+
+    /// Adds the efforts of the actuators that move the mechanism against its inertia and everything in a setup, as `effort.NAME`
+    /// to tables, and what each motor has to do to the summary.
+    #[must_use]
+    pub fn efforts(self, setup: &'a Setup) -> Self {
+        Self { efforts: Some(setup), ..self }
     }
 
     /// The trajectory, checked, before its first sample.
@@ -109,10 +121,14 @@ impl<'a> MotionRequest<'a> {
                 let of = Watched { manipulator, motion, mode, clearance };
                 Watch::new(of, Distances::new(interference))
             });
+        let mut driven = self.efforts.map(|setup| Driven::new(self.manipulator, setup));
         let mut number = 0;
         let open = self.each_batch(trajectory, |batch| {
             for (sample, changes) in batch {
                 summary.add(sample);
+                if let Some(driven) = &mut driven {
+                    summary.add_efforts(sample, driven.values(sample), self.manipulator);
+                }
                 if let Some(watch) = &mut watch {
                     let solution = Some(&sample.solution).filter(|_| sample.reached);
                     let time = sample.time;

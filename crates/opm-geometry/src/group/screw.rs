@@ -22,7 +22,7 @@ use nalgebra::{Isometry3, Point3, Quaternion, Unit, UnitQuaternion, Vector3, Vec
 /// let meets = Screw::rotation(Vector3::y_axis(), Point3::new(1.0, 0.0, 0.0));
 /// assert_eq!(hinge.reciprocal(&meets), 0.0);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Screw {
     /// The angular part `ω`.

@@ -1,5 +1,6 @@
 //! The summary of a motion: ranges of all joints, the worst condition number, violations.
 
+use super::driven::Duty;
 use opm_core::manipulator::Manipulator;
 use opm_core::trajectory::{Sample, Violation};
 use opm_interference::{Contact, Interference, Nearest};
@@ -52,6 +53,8 @@ pub struct MotionSummary {
     pub violation_count: u64,
     /// Where two bodies are nearer than the clearance, if that was watched for.
     pub contacts: Option<Contacts>,
+    /// What each motor has to do, if that was asked for, in the order of the actuated coordinates; else nothing.
+    pub motors: Vec<Duty>,
 }
 
 /// The contacts of a motion.
@@ -78,6 +81,20 @@ impl MotionSummary {
             violations: Vec::new(),
             violation_count: 0,
             contacts: None,
+            motors: Vec::new(),
+        }
+    }
+
+    pub(super) fn add_efforts(
+        &mut self,
+        sample: &Sample,
+        efforts: &[f64],
+        manipulator: &Manipulator,
+    ) {
+        self.motors.resize(efforts.len(), Duty::default());
+        let each = self.motors.iter_mut().zip(efforts).zip(manipulator.actuated());
+        for ((motor, &effort), &joint) in each {
+            motor.add(effort, sample.motion.joint_rates[joint], sample.time);
         }
     }
 

@@ -3,7 +3,7 @@
 use super::judged::Judged;
 use super::{create, refuse_standard_output};
 use crate::error::{RequestError, StudyError};
-use crate::motion::{MotionRequest, MotionSummary};
+use crate::motion::{Driven, MotionRequest, MotionSummary};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Sample, Trajectory};
@@ -31,10 +31,13 @@ enum Format {
 }
 
 /// The columns of a table: `t`, task coordinates, dependent coordinates, joints, imaginary joints; then the rates of
-/// all of them but `t`, in the same order, and their accelerations; then indices.
+/// all of them but `t`, in the same order, and their accelerations; then efforts, and indices.
 struct Columns<'a> {
     options: TableOptions,
     indices: Option<Judged<'a>>,
+    efforts: Option<Driven<'a>>,
+    /// The actuated joints, with the units of their efforts.
+    motors: Vec<(String, &'static str)>,
     /// Names and quantities, without `t`.
     coordinates: Vec<(String, Quantity)>,
 }
@@ -49,7 +52,14 @@ impl<'a> Columns<'a> {
         let imaginary = manipulator.imaginary().iter().map(|j| (j.name.clone(), j.quantity));
         let coordinates =
             tasks.map(|c| (c.name.to_owned(), c.quantity)).chain(joints).chain(imaginary).collect();
-        Self { options, indices, coordinates }
+        let efforts = request.efforts.map(|setup| Driven::new(manipulator, setup));
+        let motor = |&number: &usize| {
+            let c = &manipulator.coordinates()[number];
+            let unit = if c.quantity == Quantity::Angle { "N m" } else { "N" };
+            (format!("effort.{}", c.name), unit)
+        };
+        let motors = manipulator.actuated().iter().map(motor).collect();
+        Self { options, indices, efforts, motors, coordinates }
     }
 
     /// The prefix of the name and the suffix of the unit of each derivative that is asked for.
@@ -71,6 +81,12 @@ impl<'a> Columns<'a> {
             names.extend(self.coordinates.iter().map(|(name, quantity)| match units {
                 Some(units) => format!("{prefix}{name} [{}{per}]", units.symbol(*quantity)),
                 None => format!("{prefix}{name}"),
+            }));
+        }
+        if self.efforts.is_some() {
+            names.extend(self.motors.iter().map(|(name, unit)| match units {
+                Some(_) => format!("{name} [{unit}]"),
+                None => name.clone(),
             }));
         }
         for (name, unit) in self.indices.iter().flat_map(Judged::columns) {
@@ -116,6 +132,9 @@ impl<'a> Columns<'a> {
             row.extend(values.zip(&self.coordinates).map(|(value, (_, quantity))| {
                 value / self.options.units.map_or(1.0, |units| units.factor(*quantity))
             }));
+        }
+        if let Some(efforts) = &mut self.efforts {
+            row.extend(efforts.values(sample));
         }
         if let Some(indices) = &mut self.indices {
             row.extend(indices.values(reached.then_some(solution)));

@@ -147,6 +147,11 @@ fn edit_joint(
         kinds
             && before.actuated == after.actuated
             && before.cone == after.cone
+            && before
+                .coordinates
+                .iter()
+                .map(|c| c.drive)
+                .eq(after.coordinates.iter().map(|c| c.drive))
             && (is_pattern || before.name == after.name)
     };
     if !pairs.iter().all(alike) {

@@ -428,6 +428,16 @@ impl<'a> Value<'a> {
         checked.map_err(|problem| self.report(problem)).ok()
     }
 
+    /// Reads a number of at least zero without a unit.
+    pub(super) fn not_negative(&self, _: Quantity) -> Option<f64> {
+        let number = self.number()?;
+        if (0.0..=checks::LARGEST).contains(&number) {
+            return Some(number);
+        }
+        self.report(format!("is {number}, expected 0 to {:e}", checks::LARGEST));
+        None
+    }
+
     /// Whether the value is a table.
     pub fn is_table(&self) -> bool {
         matches!(self.value, DeValue::Table(_))

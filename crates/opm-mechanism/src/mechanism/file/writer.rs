@@ -1,7 +1,7 @@
 //! Writing a mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
-use crate::mechanism::joint::{DriveLimit, Joint, JointKind};
+use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointCoordinate, JointKind};
 use crate::mechanism::{Cone, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, TaskHints};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
@@ -207,6 +207,18 @@ impl Writer {
                 coordinates.iter().map(|c| Some(self.drive_limit(limit, limit.of(c)?, c.quantity)));
             if let Some(largest) = largest.collect() {
                 entries.push(format!("{} = {}", limit.key(), one_or_all(largest)));
+            }
+        }
+        for (number, key) in Drive::KEYS.into_iter().enumerate() {
+            let of = |drive: Drive| drive.numbers()[number];
+            let value = |c: &JointCoordinate| {
+                let per_length = key == "gear" && c.quantity == Quantity::Length;
+                let unit = if per_length { self.units.factor(Quantity::Length) } else { 1.0 };
+                format!("{:?}", of(c.drive) * unit)
+            };
+            if coordinates.iter().any(|c| of(c.drive) != of(Drive::default())) {
+                let values = coordinates.iter().map(value).collect();
+                entries.push(format!("{key} = {}", one_or_all(values)));
             }
         }
         entries

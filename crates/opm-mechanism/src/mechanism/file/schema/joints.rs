@@ -7,7 +7,7 @@ use super::values::{
 use crate::mechanism::file::joints::{
     FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
 };
-use crate::mechanism::joint::{DriveLimit, Joint, JointKind, MotionLimit};
+use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointKind, MotionLimit};
 use crate::mechanism::{HOME_COORDINATES, OrientationCoordinates};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
@@ -129,6 +129,10 @@ fn joint() -> Value {
             json!({ "description": MAX_ACCELERATION }),
         ),
         (DriveLimit::Effort.key(), json!({ "description": MAX_EFFORT })),
+        (Drive::KEYS[0], json!({ "description": ROTOR_INERTIA })),
+        (Drive::KEYS[1], json!({ "description": GEAR })),
+        (Drive::KEYS[2], json!({ "description": VISCOUS })),
+        (Drive::KEYS[3], json!({ "description": COULOMB })),
     ];
     let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
     let mut joint = described("A joint, at home.", object(properties));
@@ -149,7 +153,7 @@ fn cone() -> Value {
     let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
     let mut table = object(properties);
     table["required"] = json!(["angle"]);
-    described(CONE, json!({ "anyOf": [{ "type": "number" }, table] }))
+    described(CONE, json!({ "anyOf": [{ "type": ["number", "string"] }, table] }))
 }
 
 const CONE: &str = "How far the rod at the joint may tilt: half the angle of a cone about the rod at home, or about a \
@@ -171,6 +175,12 @@ const MAX_EFFORT: &str = "The largest absolute effort of the actuator, above 0, 
                           follows. A number, or for a joint of several coordinates an array with one for each. In N m \
                           for an angle, in N for a length, whatever the units.";
 
+const ROTOR_INERTIA: &str =
+    "The inertia of the actuator's rotor, kg m^2. For a joint of several coordinates an array.";
+const GEAR: &str = "How much faster than the joint the rotor turns, 1 if it is not given; of a slider, radians per units.length.";
+const VISCOUS: &str = "The joint's friction for a rate of one, N m s/rad, of a slider N s/m. For a joint of several coordinates an array.";
+const COULOMB: &str = "The joint's friction against its rate, N m, of a slider N. For a joint of several coordinates an array.";
+
 /// The keys of a joint of one type.
 fn joint_form(kind: Type) -> Value {
     // Only the number of its coordinates counts.
@@ -183,16 +193,18 @@ fn joint_form(kind: Type) -> Value {
         Type::Spherical => JointKind::Spherical,
     };
     let joint = Joint::new("", like, Vector3::z_axis(), Point3::origin());
-    let number = json!({ "type": "number" });
+    let number = json!({ "type": ["number", "string"] });
     let pair = exactly(2, json!({ "type": "array", "items": number }));
     let several = |item: &Value, count| exactly(count, json!({ "type": "array", "items": item }));
-    let positive = json!({ "type": "number", "exclusiveMinimum": 0 });
-    let [home, limits, largest] =
-        [number.clone(), pair, positive].map(|item| match joint.freedoms() {
+    let positive = json!({ "type": ["number", "string"], "exclusiveMinimum": 0 });
+    let not_negative = json!({ "type": ["number", "string"], "minimum": 0 });
+    let [home, limits, largest, drive] =
+        [number.clone(), pair, positive, not_negative].map(|item| match joint.freedoms() {
             1 => item,
             count => several(&item, count),
         });
     let [rate, acceleration, effort] = DriveLimit::ALL.map(|limit| (limit.key(), largest.clone()));
-    let narrower = [("home", home), ("limits", limits), rate, acceleration, effort];
+    let mut narrower = vec![("home", home), ("limits", limits), rate, acceleration, effort];
+    narrower.extend(Drive::KEYS.map(|key| (key, drive.clone())));
     form(&kind.keys(), &kind.needs(), &narrower)
 }

@@ -1,0 +1,110 @@
+//! `opm trajectory --efforts`: what motors have to do.
+
+use crate::run::{Folder, opm};
+
+/// Two sliders lift a platform of 3 kg; the second one is passive.
+const LIFT: &str = r#"
+format = 1
+name = "lift"
+units = { length = "mm", angle = "deg" }
+[parameters]
+gear = { value = 0.2 }
+[platform]
+point = [0, 0, 0]
+[bodies]
+masses = { platform = 3 }
+[[leg]]
+name = "a"
+joints = [{ name = "S", type = "prismatic", axis = [0, 0, 1], point = [1, 0, 0], actuated = true, rotor_inertia = 1e-4, gear = "gear", coulomb_friction = 11 }]
+[[leg]]
+name = "b"
+joints = [{ name = "P", type = "prismatic", axis = [0, 0, 1], point = [-1, 0, 0], viscous_friction = 0.7 }]
+"#;
+
+/// From rest to rest by 100 mm: a cubic, of which all derivatives are known.
+const MOTION: &str = "format = 1\nname = \"up\"\nunits = { length = \"mm\", angle = \"deg\" }\nrate = 100\nends = \"rest\"\n[points]\nt = [0, 1]\nz = [0, 100]\n";
+
+#[test]
+fn a_lift_needs_newtons_second_law() {
+    let folder = Folder::new();
+    let (lift, motion) = (folder.write("lift.toml", LIFT), folder.write("up.toml", MOTION));
+    let table = folder.arg("up.csv");
+    let json = opm(&[
+        "trajectory",
+        &lift,
+        "--motion",
+        &motion,
+        "--rates",
+        "--efforts",
+        "-o",
+        &table,
+        "--format",
+        "json",
+    ])
+    .json();
+    let text = folder.read("up.csv");
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|known| *known == name).unwrap();
+    let (rate, effort) = (column("d.S"), column("effort.S"));
+    let (mut peak, mut squares, mut count) = (0.0_f64, 0.0, 0.0);
+    for line in lines {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let t = cells[0];
+        let (v, a) = (0.1 * (6.0 * t - 6.0 * t * t), 0.1 * (6.0 - 12.0 * t));
+        assert!((cells[rate] - v).abs() < 1e-12);
+        // A rotor of 1e-4 kg m² at 200 rad/m is as heavy as 4 kg.
+        let against = if v > 0.0 { 11.0 } else { 0.0 };
+        let expected = 3.0 * (9.81 + a) + 4.0 * a + against + 0.7 * v;
+        let rounding = if v.abs() < 1e-12 { 11.0 } else { 0.0 };
+        assert!(
+            (cells[effort] - expected).abs() < 1e-9 + rounding,
+            "{t}: {} {expected}",
+            cells[effort]
+        );
+        peak = peak.max(cells[effort].abs());
+        squares += cells[effort] * cells[effort];
+        count += 1.0;
+    }
+    let motor = &json["efforts"]["S"];
+    assert!((motor["peak"].as_f64().unwrap() - peak).abs() < 1e-9);
+    assert!((motor["rms"].as_f64().unwrap() - (squares / count).sqrt()).abs() < 1e-9);
+    assert!(motor["power"][1].as_f64().unwrap() > 0.0);
+    assert_eq!(json["efforts"].as_object().unwrap().len(), 1);
+    let text = opm(&["trajectory", &lift, "--motion", &motion, "--efforts"]).stdout;
+    assert!(text.contains("motor") && text.contains("rms"), "{text}");
+    // Without gravity and without friction the sum of what accelerates and what brakes is nothing.
+    let free = folder.write("free.toml", LIFT.replace("coulomb_friction = 11", "home = 0"));
+    let free = opm(&[
+        "trajectory",
+        &free,
+        "--motion",
+        &motion,
+        "--efforts",
+        "--gravity",
+        "0,0,0",
+        "--format",
+        "json",
+    ])
+    .json();
+    let power = &free["efforts"]["S"]["power"];
+    let [takes, gives] = [0, 1].map(|i| power[i].as_f64().unwrap());
+    assert!((takes + gives).abs() < 0.02 * gives, "{takes} {gives}");
+}
+
+#[test]
+fn wrong_drives_and_flags_are_told() {
+    let folder = Folder::new();
+    let motion = folder.write("up.toml", MOTION);
+    let wrong =
+        folder.write("wrong.toml", LIFT.replace("coulomb_friction = 11", "coulomb_friction = -1"));
+    opm(&["trajectory", &wrong, "--motion", &motion, "--efforts"])
+        .fails_with_one_line(1, &["wrong.toml:13:", "`coulomb_friction` is -1, expected 0 to"]);
+    let lift = folder.write("lift.toml", LIFT);
+    let recording = folder.arg("up.mcap");
+    opm(&["trajectory", &lift, "--motion", &motion, "--efforts", "-o", &recording])
+        .fails_with_one_line(2, &["--efforts", "a recording has none"]);
+    opm(&["trajectory", &lift, "--motion", &motion, "--gravity", "0,0,-9"])
+        .fails_with_one_line(2, &["--gravity", "--efforts"]);
+    assert_eq!(folder.names(), ["lift.toml", "up.toml", "wrong.toml"]);
+}

@@ -1,0 +1,202 @@
+//! Inverse dynamics, against Lagrange's equations of what moves: energies come from where bodies are, and their derivatives are
+//! differences.
+
+use fastrand::Rng;
+use nalgebra::{DVector, Vector3};
+use opm_analysis::{Gravity, JointMotion, Loads, Setup, Statics};
+use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::mechanism::examples::{EXAMPLES, TEMPLATES};
+use opm_core::skeleton::{Configuration, Density, Mass, Skeleton};
+
+/// A mechanism with its bodies.
+struct Bodies<'a> {
+    manipulator: &'a Manipulator,
+    skeleton: Skeleton,
+    masses: Vec<Mass>,
+    gravity: Vector3<f64>,
+}
+
+impl<'a> Bodies<'a> {
+    fn new(manipulator: &'a Manipulator, gravity: &Gravity) -> Self {
+        let skeleton = Skeleton::new(manipulator.mechanism(), None);
+        let masses = skeleton.masses(manipulator.mechanism(), gravity.density);
+        Self { manipulator, skeleton, masses, gravity: gravity.acceleration }
+    }
+
+    fn solved(&self, pose: &[f64]) -> Option<Solution> {
+        let mut at = self.manipulator.solution();
+        self.manipulator.inverse(pose, self.manipulator.home_mode(), &mut at).ok()??;
+        Some(at)
+    }
+
+    /// Where all bodies are at a pose.
+    fn placed(&self, pose: &[f64]) -> Option<Vec<nalgebra::Isometry3<f64>>> {
+        let at = self.solved(pose)?;
+        let platform = at.displacement(self.manipulator);
+        let configuration = Configuration { joints: at.joints(), imaginary: &[], platform };
+        self.skeleton.place_in_base(&configuration).ok()
+    }
+
+    /// The kinetic energy at a pose for rates of its coordinates.
+    fn kinetic(&self, pose: &DVector<f64>, rates: &DVector<f64>) -> Option<f64> {
+        const STEP: f64 = 1e-5;
+        let here = self.placed(pose.as_slice())?;
+        let [after, before] =
+            [STEP, -STEP].map(|step| self.placed((pose + rates * step).as_slice()));
+        let (after, before) = (after?, before?);
+        let mut energy = 0.0;
+        for (k, mass) in self.masses.iter().enumerate().skip(1) {
+            let velocity = (after[k] * mass.centre - before[k] * mass.centre) / (2.0 * STEP);
+            let turned = after[k].rotation * before[k].rotation.inverse();
+            let angular = turned.scaled_axis() / (2.0 * STEP);
+            let own = here[k].rotation.inverse() * angular;
+            energy += 0.5 * (mass.mass * velocity.norm_squared() + own.dot(&(mass.inertia * own)));
+        }
+        Some(energy)
+    }
+
+    fn potential(&self, pose: &DVector<f64>) -> Option<f64> {
+        let here = self.placed(pose.as_slice())?;
+        let of = |(at, mass): (&nalgebra::Isometry3<f64>, &Mass)| {
+            -mass.mass * self.gravity.dot(&(at * mass.centre).coords)
+        };
+        Some(here.iter().zip(&self.masses).skip(1).map(of).sum())
+    }
+
+    /// The generalised forces that a motion needs: `d/dt ∂T/∂v - ∂T/∂x + ∂U/∂x`.
+    fn lagrange(
+        &self,
+        x: &DVector<f64>,
+        v: &DVector<f64>,
+        a: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        const STEP: f64 = 1e-3;
+        let unit = |j: usize| DVector::from_fn(x.len(), |i, _| f64::from(u8::from(i == j)));
+        let mut forces = DVector::zeros(x.len());
+        for j in 0..x.len() {
+            // Quadratic in the rates: this difference is exact.
+            let momentum = |t: f64| {
+                let (x, v) = (x + v * t + a * (0.5 * t * t), v + a * t);
+                Some(
+                    0.5 * (self.kinetic(&x, &(&v + unit(j)))?
+                        - self.kinetic(&x, &(&v - unit(j)))?),
+                )
+            };
+            let fourth = |f: &dyn Fn(f64) -> Option<f64>| {
+                let [one, two] = [1.0, 2.0].map(|k| Some(f(k * STEP)? - f(-k * STEP)?));
+                Some((8.0 * one? - two?) / (12.0 * STEP))
+            };
+            let along = |t: f64| {
+                let moved = x + unit(j) * t;
+                Some(self.kinetic(&moved, v)? - self.potential(&moved)?)
+            };
+            forces[j] = fourth(&momentum)? - fourth(&along)?;
+        }
+        Some(forces)
+    }
+}
+
+#[test]
+fn efforts_are_those_of_lagranges_equations() {
+    let mut rng = Rng::with_seed(50);
+    let mut compared = 0;
+    for example in EXAMPLES.iter().chain(TEMPLATES) {
+        let Ok(m) = Manipulator::example(example.name) else { continue };
+        let length = m.characteristic_length();
+        let gravity =
+            Gravity { acceleration: Vector3::new(0.3, -0.5, -9.81), density: Density::default() };
+        let setup = Setup { gravity: Some(gravity), ..Setup::new(length) };
+        let mut loads = Loads::new(&m, &setup).unwrap();
+        let mut statics = Statics::new(&m, length);
+        let bodies = Bodies::new(&m, &gravity);
+        for _ in 0..3 {
+            let mut any = |size: f64| -> DVector<f64> {
+                let number = |c: &opm_core::task::TaskCoordinate| {
+                    let unit = if c.quantity == opm_core::Quantity::Length { length } else { 1.0 };
+                    size * unit * (2.0 * rng.f64() - 1.0)
+                };
+                DVector::from_iterator(
+                    m.task_coordinates().len(),
+                    m.task_coordinates().iter().map(number),
+                )
+            };
+            let x = DVector::from_vec(m.home_pose()) + any(0.05);
+            let (v, a) = (any(1.5), any(4.0));
+            let Some(at) = bodies.solved(x.as_slice()) else { continue };
+            let mut jacobians = m.jacobians();
+            if !m.differentiate(&at, &mut jacobians).unwrap() || !statics.update(&at).unwrap() {
+                continue;
+            }
+            // The accelerations of joints by differences of their rates.
+            let rates_at = |t: f64| -> Option<DVector<f64>> {
+                let (x, v) = (&x + &v * t + &a * (0.5 * t * t), &v + &a * t);
+                let at = bodies.solved(x.as_slice())?;
+                let mut jacobians = m.jacobians();
+                m.differentiate(&at, &mut jacobians).ok()?;
+                Some(jacobians.joints_by_pose() * v)
+            };
+            let h = 1e-4;
+            let Some(rates) = rates_at(0.0) else { continue };
+            let (Some(after), Some(before)) = (rates_at(h), rates_at(-h)) else { continue };
+            let accelerations = (after - before) / (2.0 * h);
+            let motion =
+                JointMotion { rates: rates.as_slice(), accelerations: accelerations.as_slice() };
+            let efforts = loads.efforts_in(&statics, &at, Some(motion));
+            let known: Option<Vec<f64>> = efforts.actuated.iter().copied().collect();
+            let (Some(efforts), Some(expected)) = (known, bodies.lagrange(&x, &v, &a)) else {
+                continue;
+            };
+            let by_pose = jacobians.joints_by_pose();
+            let found = DVector::from_fn(x.len(), |j, _| {
+                let each = m.actuated().iter().zip(&efforts);
+                each.map(|(&i, effort)| by_pose[(i, j)] * effort).sum::<f64>()
+            });
+            let off = (&found - &expected).amax();
+            let scale = expected.amax().max(1e-3);
+            assert!(off < 2e-5 * scale, "{}: {found} {expected}", example.name);
+            compared += 1;
+        }
+    }
+    assert!(compared > 60, "{compared}");
+}
+
+/// A mass that hangs from a slider needs m (g + a), and one that a crank turns about its centre needs I α.
+#[test]
+fn a_weight_on_a_slider_needs_newtons_second_law() {
+    let text = r#"
+format = 1
+name = "lift"
+units = { length = "m", angle = "rad" }
+[platform]
+point = [0, 0, 0]
+[bodies]
+masses = { platform = 3 }
+[[leg]]
+name = "leg{i}"
+pattern = { count = 2 }
+joints = [{ name = "s{i}", type = "prismatic", axis = [0, 0, 1], point = [1, 0, 0], actuated = true }]
+"#;
+    let m = Manipulator::read(text).unwrap();
+    let gravity = Gravity { acceleration: -9.81 * Vector3::z(), density: Density::default() };
+    let setup = Setup { gravity: Some(gravity), ..Setup::new(1.0) };
+    let mut loads = Loads::new(&m, &setup).unwrap();
+    let mut statics = Statics::new(&m, 1.0);
+    let at = m.solution();
+    statics.update(&at).unwrap();
+    let motion = JointMotion { rates: &[5.0, 5.0], accelerations: &[2.0, 2.0] };
+    let work = loads.work_in(&statics, &at, Some(motion)).unwrap();
+    assert!((work[0].abs() - 3.0 * (9.81 + 2.0)).abs() < 1e-9, "{work:?}");
+
+    // A rotor of 1e-4 kg m² that turns 200 rad per metre is as heavy as 4 kg; friction is against the motion.
+    let drive = "actuated = true, rotor_inertia = 1e-4, gear = 200, viscous_friction = 0.7, coulomb_friction = 11";
+    let m = Manipulator::read(&text.replace("actuated = true", drive)).unwrap();
+    let mut loads = Loads::new(&m, &setup).unwrap();
+    let mut statics = Statics::new(&m, 1.0);
+    let at = m.solution();
+    statics.update(&at).unwrap();
+    let work = loads.work_in(&statics, &at, Some(motion)).unwrap();
+    // Both legs have such a motor.
+    let expected = 3.0 * (9.81 + 2.0) + 2.0 * (4.0 * 2.0 + 0.7 * 5.0 + 11.0);
+    assert!((work[0].abs() - expected).abs() < 1e-9, "{work:?} {expected}");
+    assert!((loads.work(&statics, &at).unwrap()[0].abs() - 3.0 * 9.81).abs() < 1e-9);
+}
