@@ -14,6 +14,9 @@ use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
+/// Half the angle of a cone, and its axis if that is given.
+type JointTilt = (f64, Option<(f64, f64, f64)>);
+
 /// A joint of a leg at home, in base coordinates. Its lists have an entry for each of its coordinates: one, two or three.
 #[pyclass(frozen, get_all, from_py_object, module = "opm_kinematics")]
 #[derive(Clone)]
@@ -47,7 +50,7 @@ pub struct Joint {
     /// The largest effort of the actuator, N or N m, or None.
     max_effort: Vec<Option<f64>>,
     /// Of a universal or spherical joint: how far its rod may tilt, radians, and from which direction, None for that at home.
-    cone: Option<(f64, Option<(f64, f64, f64)>)>,
+    cone: Option<JointTilt>,
 }
 
 pickled!(Joint {
@@ -213,7 +216,7 @@ where
 }
 
 /// A cone: half its angle, or that and its axis.
-fn cone(given: Option<&Bound<'_, PyAny>>) -> PyResult<Option<(f64, Option<(f64, f64, f64)>)>> {
+fn cone(given: Option<&Bound<'_, PyAny>>) -> PyResult<Option<JointTilt>> {
     let Some(given) = given.filter(|given| !given.is_none()) else { return Ok(None) };
     match given.extract::<f64>() {
         Ok(angle) => Ok(Some((angle, None))),
@@ -423,7 +426,7 @@ impl Manipulator {
             *joint = Joint::of(joint).with(&changes)?.to_core()?;
             joint.coordinates.iter_mut().zip(drives).for_each(|(c, drive)| c.drive = drive);
         }
-        Self::of_text(py, file.text(), &self.label().to_owned(), None)
+        Self::of_text(py, file.text(), self.label(), None)
     }
 
     /// The joints of each leg, from base to platform, by the legs' names.

@@ -33,6 +33,7 @@ def objects(manipulator):
         m.analyze(home, wrench=[1, 2, 3, 4, 5, 6]),
         m.nearest(m.transform(home)),
         m.accuracy(home, actuators=(20e-6, 20e-6)),
+        m.parameter_jacobian(home, parameters=["leg1.h"]),
         m.accuracy(home, actuators=(20e-6, 20e-6), samples=10, seed=1).samples,
         m.accuracy_over({"x": (-0.01, 0.01)}, actuators=(20e-6, 20e-6)),
         opm.calibrate(m, {name: solutions[name] for name in ("S1", "S2", "S3", "phi14", "phi24")} | {c.name: [c.home] for c in m.task_coordinates}, only=["leg1.h"]),

@@ -142,7 +142,15 @@ to = { x = -10 }
 
 # What opm refuses and a schema cannot say. Such a file is accepted by the schema.
 UNSAYABLE = [
-    # values of numbers
+    # values of numbers and of expressions
+    ": `[^`]+`: ",
+    "expected at (least|most) -?[0-9]+ (mm|deg)$",
+    "is a point, expected a number",
+    "is a point, which has no min and max",
+    "has a point in a point",
+    "is the number .*, expected a (point|direction)",
+    # names of patterns
+    "in every leg of the pattern, expected a name with {i}",
     "expected a finite number",
     "expected an absolute value of at most",
     "is zero, expected a direction",
@@ -304,7 +312,7 @@ def test_every_key_is_explained(schema):
         for key, value in found:
             assert len(value.get("description", "")) > 10, (kind, key)
             for word in [key, *value.get("enum", [])]:
-                assert word in {*page, "platform", "task", "bodies", "obstacle", "leg", "slider_leg", "arm_leg", "coordinates", "points", "moves"}, (kind, word)
+                assert word in {*page, "platform", "task", "bodies", "obstacle", "leg", "slider_leg", "arm_leg", "coordinates", "points", "moves", "parameters"}, (kind, word)
 
 
 def toml(value):

@@ -37,6 +37,7 @@ __all__ = [
     "Nearest",
     "OpmError",
     "Outline",
+    "ParameterJacobian",
     "Rejection",
     "Singularity",
     "Solid",
@@ -148,13 +149,13 @@ class Explorer:
 
 @final
 class Joint:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         name: str,
         kind: str,
         *,
         axis: Sequence[float] | None = None,
-        point: Sequence[float] = (0.0, 0.0, 0.0),
+        point: Sequence[float] = ...,
         axis2: Sequence[float] | None = None,
         pitch: float | None = None,
         actuated: bool = False,
@@ -164,7 +165,7 @@ class Joint:
         max_acceleration: float | Sequence[float | None] | None = None,
         max_effort: float | Sequence[float | None] | None = None,
         cone: float | tuple[float, Sequence[float] | None] | None = None,
-    ) -> None: ...
+    ) -> Joint: ...
     @property
     def cone(self) -> tuple[float, tuple[float, float, float] | None] | None: ...
     @property
@@ -254,7 +255,7 @@ class Manipulator:
     def from_joints(
         legs: Mapping[str, Sequence[Joint]] | Sequence[Sequence[Joint]],
         *,
-        platform: Sequence[float] = (0.0, 0.0, 0.0),
+        platform: Sequence[float] = ...,
         name: str = "mechanism",
         tolerance: float | None = None,
     ) -> Manipulator: ...

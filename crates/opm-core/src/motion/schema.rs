@@ -3,7 +3,9 @@
 use super::Ends;
 use super::file::{KEYS, MOVE_KEYS, OF_COORDINATES, OF_MOVES, OF_POINTS, SINUSOID_KEYS};
 use crate::mechanism::file::LARGEST;
-use crate::mechanism::file::schema::{HEAD, Properties, closed, document, head, number, text};
+use crate::mechanism::file::schema::{
+    HEAD, Properties, closed, document, head, plain_number, text,
+};
 use crate::numeric::Quantity;
 use crate::task::CoordinateKind;
 use serde_json::{Value, json};
@@ -168,15 +170,15 @@ fn coordinate(kind: CoordinateKind) -> Value {
 
 fn sinusoid_key(key: &str, quantity: Quantity) -> Value {
     match key {
-        "amplitude" => number("the amplitude", quantity),
+        "amplitude" => plain_number("the amplitude", quantity),
         "frequency" => json!({
             "description": "The frequency in hertz.",
             "type": "number",
             "minimum": -LARGEST,
             "maximum": LARGEST,
         }),
-        "phase" => number("the phase, 0 if it is not given", Quantity::Angle),
-        "offset" => number("the mean value, 0 if it is not given", quantity),
+        "phase" => plain_number("the phase, 0 if it is not given", Quantity::Angle),
+        "offset" => plain_number("the mean value, 0 if it is not given", quantity),
         _ => Value::Bool(true),
     }
 }

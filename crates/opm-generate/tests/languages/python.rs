@@ -66,7 +66,7 @@ impl Modules {
 fn python_solves_shipped_mechanisms_as_opm() {
     let all = shipped();
     let Some(program) = Modules::new(&all) else { return };
-    compare_all(&program, &all, 1_000, 31);
+    compare_all(&program, &all, 400, 31);
     forward_leads_from_home(&program, &all, 300, 32);
     reach_ends_where_it_does_for_opm(&program, &all, 30);
 }

@@ -169,7 +169,7 @@ impl Program for Texts {
 fn st_solves_shipped_mechanisms_as_opm() {
     let all = shipped();
     let program = Texts::new(&all);
-    compare_all(&program, &all, 1_000, 51);
+    compare_all(&program, &all, 400, 51);
     forward_leads_from_home(&program, &all, 200, 52);
     reach_ends_where_it_does_for_opm(&program, &all, 30);
 }

@@ -160,7 +160,7 @@ impl Conditions {
                 gradients.take(&(form * place));
                 self.all_fixed.push(form);
             }
-            demands.extend(in_general_position(own, &mut rng));
+            demands.extend(in_general_position(&own, &mut rng));
         }
         // At special places, as where the platform is turned by half a turn, some depend on each other that do not elsewhere.
         for _ in 0..gradients.units.len() {
@@ -199,8 +199,8 @@ impl Conditions {
 
 /// Sums of a leg's demands in place of these: `a (b - q c) = 0` says nothing where `a` is zero, and there another one says it. Spheres
 /// say all that they can.
-fn in_general_position(demands: Vec<(usize, Condition)>, rng: &mut Rng) -> Vec<(usize, Condition)> {
-    let mut mixed = demands.clone();
+fn in_general_position(demands: &[(usize, Condition)], rng: &mut Rng) -> Vec<(usize, Condition)> {
+    let mut mixed = demands.to_vec();
     for (i, (degree, sum)) in mixed.iter_mut().enumerate().filter(|(_, (_, sum))| !sum.sphere) {
         for (j, (other, of)) in demands.iter().enumerate() {
             if i != j && other == degree && !of.sphere {

@@ -153,10 +153,7 @@ impl MechanismFile {
     }
 
     /// The same with other numbers than those of named parameters changed.
-    fn with_others<'n>(
-        &self,
-        changes: Vec<(&'n str, ParameterValue)>,
-    ) -> Result<Self, ParameterErrors> {
+    fn with_others(&self, changes: Vec<(&str, ParameterValue)>) -> Result<Self, ParameterErrors> {
         let mut file = self.clone();
         match &self.family {
             Some(family) => {

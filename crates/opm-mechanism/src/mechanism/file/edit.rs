@@ -248,7 +248,7 @@ fn task(root: &Place<'_>, [before, after]: [&TaskHints; 2], edits: &mut Edits<'_
     let word = coordinates.map(|coordinates| quoted(coordinates.name()));
     match (root.table("task"), word) {
         (Some(table), word) => edits.set(&table, "coordinates", word),
-        (None, Some(word)) => edits.append(format!("\n[task]\ncoordinates = {word}\n")),
+        (None, Some(word)) => edits.append(&format!("\n[task]\ncoordinates = {word}\n")),
         (None, None) => {}
     }
     Some(())
@@ -381,7 +381,7 @@ impl Edits<'_> {
         self.changes.push((place, by));
     }
 
-    fn append(&mut self, lines: String) {
+    fn append(&mut self, lines: &str) {
         let end = self.text.len();
         let stop = if self.text.ends_with('\n') { "" } else { "\n" };
         self.replace(end..end, format!("{stop}{lines}"));

@@ -160,7 +160,9 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         legs.push(Leg::new(leg.name, joints));
     }
     let at = root.location_of("leg");
-    if legs.len() < 2 && !root.reader.has_problem(at) {
+    // How many legs a wrong pattern would make is not known.
+    let told = tables.iter().filter(|leg| leg.get("pattern").is_some()).count() > patterns.len();
+    if legs.len() < 2 && !told && !root.reader.has_problem(at) {
         let (count, tables) = (legs.len(), if legs.len() == 1 { "table" } else { "tables" });
         let problem = format!("found {count} {tables} [[leg]], expected at least 2 legs");
         root.reader.report(at, problem);

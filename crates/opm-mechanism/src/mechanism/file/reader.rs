@@ -236,7 +236,7 @@ impl<'a> Value<'a> {
         match self.value {
             DeValue::String(_) => self.evaluated(name, evaluate),
             DeValue::Array(_) => {
-                let component = |item: &Value<'a>| match item.term(name, evaluate)? {
+                let component = |item: &Value<'a>| match item.component(name, evaluate)? {
                     Term::Number(number) => Some(number),
                     Term::Vector(_) => {
                         item.report_as(name, "has a point in a point, expected three numbers");
@@ -248,6 +248,19 @@ impl<'a> Value<'a> {
             }
             _ => self.number().map(Term::Number),
         }
+    }
+
+    /// A component of a point, which is no array.
+    fn component(
+        &self,
+        name: &str,
+        evaluate: &dyn Fn(&str) -> Result<Term, Fault>,
+    ) -> Option<Term> {
+        if self.is_array() {
+            self.report_as(name, "has an array in a point, expected three numbers");
+            return None;
+        }
+        self.term(name, evaluate)
     }
 
     /// Three numbers that an expression gives, if there is one: the outer `None` if it is none, the inner one if it gives
@@ -306,9 +319,21 @@ impl<'a> Value<'a> {
         self.quantity(Quantity::Length)
     }
 
+    /// A number as a length, metres.
+    fn as_length(&self, number: f64) -> Option<f64> {
+        let units = self.reader.units();
+        let value = units.si(number, Quantity::Length);
+        checks::size(value, Quantity::Length, units).map_err(|problem| self.report(problem)).ok()
+    }
+
     /// Reads a length above zero; returns it in metres.
     pub(crate) fn positive_length(&self) -> Option<f64> {
-        let length = self.length()?;
+        self.as_positive_length(self.number()?)
+    }
+
+    /// A number as a length above zero, metres.
+    fn as_positive_length(&self, number: f64) -> Option<f64> {
+        let length = self.as_length(number)?;
         if length > 0.0 {
             return Some(length);
         }
@@ -319,7 +344,13 @@ impl<'a> Value<'a> {
 
     /// Reads three lengths above zero; returns them in metres.
     pub(crate) fn positive_lengths(&self) -> Option<[f64; 3]> {
-        self.each("lengths [a, b, c]", Self::positive_length)
+        let expected = "lengths [a, b, c]";
+        match self.vector(expected) {
+            Some(given) => all(given?.into_iter().map(|number| self.as_positive_length(number)))?
+                .try_into()
+                .ok(),
+            None => self.each(expected, Self::positive_length),
+        }
     }
 
     /// The values of an array; `expected` describes the array.
@@ -357,14 +388,7 @@ impl<'a> Value<'a> {
         if N == 3
             && let Some(given) = self.vector(expected)
         {
-            let units = self.reader.units();
-            let length = |number: f64| {
-                let value = units.si(number, Quantity::Length);
-                checks::size(value, Quantity::Length, units)
-                    .map_err(|problem| self.report(problem))
-                    .ok()
-            };
-            return all(given?.into_iter().map(length))?.try_into().ok();
+            return all(given?.into_iter().map(|number| self.as_length(number)))?.try_into().ok();
         }
         self.each(expected, Self::length)
     }

@@ -11,7 +11,7 @@ mod named;
 mod surroundings;
 mod values;
 
-pub use values::{closed, number, text};
+pub use values::{closed, plain_number, text};
 
 use super::read::FORMAT;
 use super::units::{AngleUnit, LengthUnit};

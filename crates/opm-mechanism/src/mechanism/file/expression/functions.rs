@@ -89,7 +89,7 @@ pub(super) fn call(name: &str, given: &[Term], units: FileUnits) -> Result<Term,
             Number(sin / cos)
         }
         ("asin" | "acos", &[Number(value)]) => {
-            if !(value.abs() <= 1.0) {
+            if value.abs() > 1.0 {
                 return Err(format!("{name} of {value}, expected a number from -1 to 1"));
             }
             angle(if name == "asin" { value.asin() } else { value.acos() })

@@ -15,7 +15,12 @@ use serde_json::{Value, json};
 
 /// The keys of a file that lists joints.
 pub fn joint_list() -> Value {
-    let legs = json!({ "minItems": 2, "items": form(LEG_KEYS, &["joints"], &[]) });
+    // A pattern makes several legs of one.
+    let several = json!([
+        { "minItems": 2 },
+        { "contains": { "type": "object", "required": ["pattern"] } },
+    ]);
+    let legs = json!({ "anyOf": several, "items": form(LEG_KEYS, &["joints"], &[]) });
     form(KEYS, &["platform", "leg"], &[("leg", legs)])
 }
 

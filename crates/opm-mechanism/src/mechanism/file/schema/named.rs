@@ -46,7 +46,10 @@ pub fn pattern() -> Value {
         pattern::KEYS.iter().map(|&key| (key.to_owned(), pattern_key(key))).collect();
     let description = "Makes several legs of the description: turned about an axis, mirrored, or both. {i} in names is \
                        the number of the leg, and so is i in expressions.";
-    closed(description, keys, &[])
+    let mut pattern = closed(description, keys, &[]);
+    let given = ["count", "angles", "mirror"].map(|key| json!({ "required": [key] }));
+    pattern["anyOf"] = json!(given);
+    pattern
 }
 
 fn pattern_key(key: &str) -> Value {

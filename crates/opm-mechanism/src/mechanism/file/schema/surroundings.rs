@@ -9,11 +9,12 @@ use crate::numeric::Quantity;
 use serde_json::{Value, json};
 
 fn within(what: &str, [least, most]: [f64; 2]) -> Value {
-    json!({ "description": what, "type": "number", "minimum": least, "maximum": most })
+    json!({ "description": what, "type": ["number", "string"], "minimum": least, "maximum": most })
 }
 
 fn length(what: &str) -> Value {
-    json!({ "description": in_units(what, Quantity::Length), "type": "number", "exclusiveMinimum": 0 })
+    let description = in_units(what, Quantity::Length);
+    json!({ "description": description, "type": ["number", "string"], "exclusiveMinimum": 0 })
 }
 
 /// What the bodies weigh, and how thick they are.

@@ -28,6 +28,11 @@ pub fn number(description: &str, quantity: Quantity) -> Value {
     json!({ "description": in_units(description, quantity), "type": ["number", "string"] })
 }
 
+/// A number that is no expression, as in other files than those of mechanisms.
+pub fn plain_number(description: &str, quantity: Quantity) -> Value {
+    json!({ "description": in_units(description, quantity), "type": "number" })
+}
+
 /// The description of a length or an angle, with its unit.
 pub fn in_units(description: &str, quantity: Quantity) -> String {
     let unit = match quantity {
