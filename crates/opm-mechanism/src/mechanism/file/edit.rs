@@ -462,5 +462,7 @@ fn edited(
         result += &by;
         from = place.end;
     }
-    Some(result + &text[from..])
+    result += &text[from..];
+    // Two entries that make one table each give it twice.
+    DeTable::parse(&result).is_ok().then_some(result)
 }

@@ -6,6 +6,7 @@ use crate::mechanism::file::expression::{Found, Scope, Term, evaluate, is_functi
 use crate::mechanism::file::reader::{Table, Value};
 use crate::mechanism::file::units::FileUnits;
 use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 
 /// The keys of a parameter's table.
 pub(in crate::mechanism::file) const KEYS: &[&str] = &["value", "unit", "min", "max", "text"];
@@ -22,7 +23,7 @@ const LONGEST: usize = 200;
 /// The values of the parameters, in the units of the file, and the number of the leg that is read.
 #[derive(Default)]
 pub(in crate::mechanism::file) struct Names {
-    parameters: Vec<(String, Option<Term>)>,
+    parameters: HashMap<String, Option<Term>>,
     index: Option<f64>,
     units: FileUnits,
 }
@@ -39,15 +40,17 @@ impl Scope for Names {
         if let (INDEX, Some(index)) = (name, self.index) {
             return Found::Term(Term::Number(index));
         }
-        match self.parameters.iter().find(|(known, _)| known == name) {
-            Some((_, Some(term))) => Found::Term(*term),
-            Some((_, None)) => Found::Without(None),
+        match self.parameters.get(name) {
+            Some(Some(term)) => Found::Term(*term),
+            Some(None) => Found::Without(None),
             None => Found::Nothing,
         }
     }
 
     fn names(&self) -> Vec<String> {
-        self.parameters.iter().map(|(name, _)| name.clone()).collect()
+        let mut names: Vec<String> = self.parameters.keys().cloned().collect();
+        names.sort();
+        names
     }
 
     fn units(&self) -> FileUnits {
@@ -68,11 +71,12 @@ struct Entry<'a> {
 pub(in crate::mechanism::file) fn read(root: &Table<'_>) -> Vec<NamedParameter> {
     let units = root.reader.units();
     let known = |parameters| Names { parameters, index: None, units };
-    root.reader.set_names(known(Vec::new()));
+    root.reader.set_names(known(HashMap::new()));
     let table = root.get("parameters").and_then(|value| value.open_table());
     let entries: Vec<Entry<'_>> =
         table.iter().flat_map(Table::in_order).map(|value| entry(&value)).collect();
     let values = Values {
+        places: entries.iter().enumerate().map(|(index, entry)| (entry.name, index)).collect(),
         entries: &entries,
         states: RefCell::new(vec![State::Open; entries.len()]),
         chain: RefCell::default(),
@@ -169,6 +173,8 @@ struct Evaluated {
 /// The values of parameters, each evaluated once, when it is first needed.
 struct Values<'a> {
     entries: &'a [Entry<'a>],
+    /// The numbers of the entries by their names.
+    places: HashMap<&'a str, usize>,
     states: RefCell<Vec<State>>,
     /// Those that are being evaluated, each of which needs the next.
     chain: RefCell<Vec<usize>>,
@@ -216,9 +222,7 @@ impl Values<'_> {
 
 impl Scope for Values<'_> {
     fn value(&self, name: &str) -> Found {
-        let Some(index) = self.entries.iter().position(|entry| entry.name == name) else {
-            return Found::Nothing;
-        };
+        let Some(&index) = self.places.get(name) else { return Found::Nothing };
         self.follows.set(true);
         let state = self.states.borrow()[index];
         match state {

@@ -334,4 +334,8 @@ fn texts_keep_what_is_not_changed() {
     let changed = read(text).unwrap().with([("leg1.max_rate.S", number(0.2))]).unwrap();
     assert_eq!(read(&changed.text()).unwrap().family, changed.family);
     assert!(changed.text().starts_with(text.lines().next().unwrap()));
+    // Two entries of such a table are not said by two tables: then the parameters are written anew.
+    let both = [("leg1.max_rate.S", number(0.2)), ("leg1.max_rate.phi1", number(3.0))];
+    let changed = read(text).unwrap().with(both).unwrap();
+    assert_eq!(read(&changed.text()).unwrap().family, changed.family);
 }
