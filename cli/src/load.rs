@@ -112,7 +112,7 @@ pub fn read_as_it_is(given: &Path) -> Result<Loaded, Failure> {
     Ok(Loaded { label, file_name, path, text, file, snapped: None })
 }
 
-/// Reads a mechanism file that is attached to a recording. `label` is its name in the recorded command.
+/// Reads a mechanism file that is no file of the user's: attached to a recording, or shipped. `label` is its name in messages.
 pub fn attached(label: &str, file_name: &str, text: &str) -> Result<Loaded, Failure> {
     let file =
         file::read(text).map_err(|errors| Failure::because(errors.in_file(label), errors))?;

@@ -4,7 +4,7 @@ mod sketch;
 
 use crate::args::{Format, NewArgs, Output};
 use crate::failure::Failure;
-use crate::load::Loaded;
+use crate::load::{self, Loaded};
 use crate::output::{is_stdout, print_with};
 use crate::parameters;
 use crate::target::{Target, ends_in};
@@ -12,7 +12,6 @@ use crate::text::chain;
 use crate::unitless;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::examples::{EXAMPLES, Example, TEMPLATES};
-use opm_core::mechanism::file;
 use opm_core::mechanism::file::hint::expected_one_of;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -61,15 +60,7 @@ fn opened(name: &str) -> Result<Loaded, Failure> {
         let problem = format!("no architecture {name:?}; {}", expected_one_of(name, &names));
         return Err(Failure::Usage(problem.into()));
     };
-    let file = file::read(found.text).map_err(|errors| Failure::work(errors.in_file(name)))?;
-    Ok(Loaded {
-        label: name.to_owned(),
-        file_name: format!("{name}.toml"),
-        path: None,
-        text: found.text.to_owned(),
-        file,
-        snapped: None,
-    })
+    load::attached(name, &format!("{name}.toml"), found.text)
 }
 
 /// An architecture with its dimensions, for programs.

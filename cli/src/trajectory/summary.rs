@@ -4,6 +4,7 @@ use crate::interference::set_aside_json;
 use crate::text::{self, Table, count, length_text, short};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
+use opm_core::mechanism::joint::DriveLimit;
 use opm_core::trajectory::{Violation, ViolationReport};
 use opm_interference::Contact;
 use opm_study::recording::violation_fields;
@@ -184,7 +185,7 @@ impl Report<'_> {
         ]);
         for ((name, duty), &number) in self.motors().zip(manipulator.actuated()) {
             let quantity = manipulator.coordinates()[number].quantity;
-            let unit = if quantity == Quantity::Angle { "N m" } else { "N" };
+            let unit = DriveLimit::Effort.unit(quantity);
             let known = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), short);
             let rate = self.summary.joints[number][1].get();
             let rate = rate.map(|[low, high]| low.abs().max(high.abs()));

@@ -101,7 +101,7 @@ impl<'a> Loads<'a> {
     ) -> Option<Velocity> {
         let mut work = statics.work(&self.wrench(at));
         if let Some(weights) = &mut self.weights {
-            let own = weights.work_in(statics, at, motion)?;
+            let own = weights.work(statics, at, motion)?;
             work.iter_mut().zip(own).for_each(|(part, own)| *part += own);
         }
         Some(work)

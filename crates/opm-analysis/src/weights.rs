@@ -122,14 +122,10 @@ impl<'a> Weights<'a> {
         (self.gravity * self.platform.mass, displacement * self.platform.centre)
     }
 
-    /// The work of the weights for each independent velocity at a pose, of which `statics` has taken the solution. `None`
+    /// The work of the weights for each independent velocity at a pose, of which `statics` has taken the solution, and of what
+    /// resists the accelerations of a motion, if there is one. `None`
     /// where the velocity of a link is not known: behind a spherical joint after a full revolution.
-    pub fn work(&mut self, statics: &Statics<'_>, at: &Solution) -> Option<Velocity> {
-        self.work_in(statics, at, None)
-    }
-
-    /// The same with what resists the accelerations of a motion.
-    pub fn work_in(
+    pub fn work(
         &mut self,
         statics: &Statics<'_>,
         at: &Solution,

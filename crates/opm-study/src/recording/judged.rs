@@ -1,8 +1,8 @@
 //! The indices and the efforts of a sample of a motion, as columns.
 
 use opm_analysis::{Index, Indices, Setup};
-use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::mechanism::joint::DriveLimit;
 
 /// All indices that a mechanism has in a setup and, with a load, the efforts of its joints.
 pub struct Judged<'a> {
@@ -23,10 +23,7 @@ impl<'a> Judged<'a> {
             let all = manipulator.coordinates();
             let actuated = manipulator.actuated().iter().map(|&number| all[number].quantity);
             let imaginary = manipulator.imaginary().iter().map(|joint| joint.quantity);
-            let units = actuated.chain(imaginary).map(|quantity| match quantity {
-                Quantity::Angle => "N m",
-                Quantity::Length => "N",
-            });
+            let units = actuated.chain(imaginary).map(|quantity| DriveLimit::Effort.unit(quantity));
             columns.extend(crate::columns::efforts(manipulator).zip(units));
         }
         let values = vec![f64::NAN; columns.len()];

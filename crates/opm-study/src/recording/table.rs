@@ -2,10 +2,12 @@
 
 use super::judged::Judged;
 use super::{create, refuse_standard_output};
+use crate::columns;
 use crate::error::{RequestError, StudyError};
 use crate::motion::{Driven, MotionRequest, MotionSummary};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
+use opm_core::mechanism::joint::DriveLimit;
 use opm_core::trajectory::{Sample, Trajectory};
 use opm_mcap::csv::distinct;
 use opm_mcap::{RecordError, TableRecorder};
@@ -53,12 +55,10 @@ impl<'a> Columns<'a> {
         let coordinates =
             tasks.map(|c| (c.name.to_owned(), c.quantity)).chain(joints).chain(imaginary).collect();
         let efforts = request.efforts.map(|setup| Driven::new(manipulator, setup));
-        let motor = |&number: &usize| {
-            let c = &manipulator.coordinates()[number];
-            let unit = if c.quantity == Quantity::Angle { "N m" } else { "N" };
-            (format!("effort.{}", c.name), unit)
-        };
-        let motors = manipulator.actuated().iter().map(motor).collect();
+        let unit =
+            |&number: &usize| DriveLimit::Effort.unit(manipulator.coordinates()[number].quantity);
+        let motors = manipulator.actuated().iter().map(unit);
+        let motors = columns::efforts(manipulator).zip(motors).collect();
         Self { options, indices, efforts, motors, coordinates }
     }
 

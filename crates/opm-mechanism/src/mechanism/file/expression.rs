@@ -7,9 +7,10 @@ mod construct;
 mod functions;
 mod parse;
 
+pub(super) use construct::direction;
 #[doc(hidden)]
 pub use functions::FUNCTIONS;
-pub(super) use functions::{is_function, turned};
+pub(super) use functions::{is_function, reflected, turned};
 pub(super) use parse::{evaluate, is_name};
 
 use crate::mechanism::file::FileUnits;

@@ -1,6 +1,6 @@
 //! Patterns of legs: one description, and legs that are turned about an axis or mirrored.
 
-use super::expression::turned;
+use super::expression::{reflected, turned};
 use super::reader::Value;
 use crate::mechanism::file::FileUnits;
 use crate::mechanism::joint::{Joint, JointKind};
@@ -185,10 +185,6 @@ impl Placement {
         };
         Unit::new_normalize(turned(self.axis, self.angle, image))
     }
-}
-
-fn reflected(normal: Unit<Vector3<f64>>, vector: Vector3<f64>) -> Vector3<f64> {
-    vector - *normal * (2.0 * normal.dot(&vector))
 }
 
 /// A name of a pattern's leg or joint, with the leg's number; a problem is reported if it would be that of several legs.

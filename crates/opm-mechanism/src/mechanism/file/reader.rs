@@ -4,7 +4,7 @@
 //! the value.
 
 use super::checks;
-use super::expression::{Fault, Term, evaluate};
+use super::expression::{Fault, Term, direction, evaluate};
 use super::hint::expected_one_of;
 use super::named::Names;
 use super::problem::{FileErrors, Lines, Problem};
@@ -92,7 +92,7 @@ impl<'a> Value<'a> {
 
     /// Reports the problem `KEY PROBLEM` at the value.
     pub fn report(&self, problem: impl AsRef<str>) {
-        self.reader.report(self.at, format!("`{}` {}", self.key, problem.as_ref()));
+        self.report_as(self.key, problem.as_ref());
     }
 
     /// The same with another name than its key.
@@ -400,14 +400,11 @@ impl<'a> Value<'a> {
             Some(given) => given?,
             None => self.each(expected, Value::number)?,
         };
-        let vector = nalgebra::Vector3::new(x, y, z);
-        let largest = vector.amax();
-        if largest == 0.0 {
+        let direction = direction(&nalgebra::Vector3::new(x, y, z));
+        if direction.is_none() {
             self.report("is zero, expected a direction");
-            return None;
         }
-        // Scaled first: the squares of very large and very small doubles are out of range.
-        Some(nalgebra::Unit::new_normalize(vector / largest))
+        direction
     }
 
     /// Reads one value per coordinate, each with `read`. A single value has no brackets around it.

@@ -13,7 +13,8 @@ const ROUNDING: f64 = 1e-12;
 type Round = (Vector3<f64>, f64);
 
 /// The unit vector along a vector, if there is one.
-pub(super) fn direction(vector: &Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
+pub(in crate::mechanism::file) fn direction(vector: &Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
+    // Scaled first: the squares of very large and very small doubles are out of range.
     let largest = vector.amax();
     (largest > 0.0).then(|| Unit::new_normalize(vector / largest))
 }

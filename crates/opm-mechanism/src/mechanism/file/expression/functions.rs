@@ -7,66 +7,38 @@ use crate::mechanism::file::hint::nearest;
 use crate::numeric::Quantity;
 use nalgebra::{Matrix3, Unit, Vector3};
 
-/// Every function: its name, its values, and what it gives.
-pub const FUNCTIONS: [(&str, &str, &str); 25] = [
-    ("sin", "ANGLE", "sine"),
-    ("cos", "ANGLE", "cosine"),
-    ("tan", "ANGLE", "tangent"),
-    ("asin", "NUMBER", "the angle from -90 to 90 degrees with this sine"),
-    ("acos", "NUMBER", "the angle from 0 to 180 degrees with this cosine"),
-    ("atan", "NUMBER", "the angle from -90 to 90 degrees with this tangent"),
-    ("atan2", "Y, X", "the angle of the point (X, Y)"),
-    ("sqrt", "NUMBER", "square root"),
-    ("abs", "NUMBER", "the number without its sign"),
-    ("min", "NUMBER, ...", "the least"),
-    ("max", "NUMBER, ...", "the largest"),
-    ("hypot", "NUMBER, ...", "the root of the sum of the squares"),
-    ("norm", "VECTOR", "its length"),
-    ("unit", "VECTOR", "the direction, of length 1"),
-    ("distance", "POINT, POINT", "how far they are apart"),
-    ("dot", "VECTOR, VECTOR", "scalar product"),
-    ("cross", "VECTOR, VECTOR", "vector product"),
-    (
-        "polar",
-        "RADIUS, ANGLE[, Z]",
-        "the point at this angle from x about z, at the height Z (or 0)",
-    ),
-    (
-        "rotate",
-        "POINT, AXIS, ANGLE[, ABOUT]",
-        "the point rotated about an axis through ABOUT (or the origin)",
-    ),
-    (
-        "mirror",
-        "POINT, NORMAL[, THROUGH]",
-        "its mirror image in the plane through THROUGH (or the origin)",
-    ),
-    (
-        "meet",
-        "A, R, B, S, NORMAL, SIDE",
-        "the point R from A and S from B in the plane through A: for the side 1 to the left of the way from A to B, seen from where NORMAL points, for -1 to the right",
-    ),
-    (
-        "spheres",
-        "A, R, B, S, C, T, SIDE",
-        "the point R from A, S from B and T from C: for the side 1 where A, B, C are counter-clockwise seen from it",
-    ),
-    (
-        "along",
-        "P, DIRECTION, B, R, SIDE",
-        "the point R from B on the line through P: for the side 1 the one further in the direction",
-    ),
-    (
-        "arcs",
-        "A, ALPHA, B, BETA, SIDE",
-        "the direction at the angle ALPHA from the direction A and BETA from B: for the side 1 where cross(A, B) points",
-    ),
-    ("rad", "ANGLE", "the angle in radians, as a number"),
+/// Every function, and the values that it is called with. `cli/src/format.md` says what each gives.
+pub const FUNCTIONS: [(&str, &str); 25] = [
+    ("sin", "ANGLE"),
+    ("cos", "ANGLE"),
+    ("tan", "ANGLE"),
+    ("asin", "NUMBER"),
+    ("acos", "NUMBER"),
+    ("atan", "NUMBER"),
+    ("atan2", "Y, X"),
+    ("sqrt", "NUMBER"),
+    ("abs", "NUMBER"),
+    ("min", "NUMBER, ..."),
+    ("max", "NUMBER, ..."),
+    ("hypot", "NUMBER, ..."),
+    ("norm", "VECTOR"),
+    ("unit", "VECTOR"),
+    ("distance", "POINT, POINT"),
+    ("dot", "VECTOR, VECTOR"),
+    ("cross", "VECTOR, VECTOR"),
+    ("polar", "RADIUS, ANGLE[, Z]"),
+    ("rotate", "POINT, AXIS, ANGLE[, ABOUT]"),
+    ("mirror", "POINT, NORMAL[, THROUGH]"),
+    ("meet", "A, R, B, S, NORMAL, SIDE"),
+    ("spheres", "A, R, B, S, C, T, SIDE"),
+    ("along", "P, DIRECTION, B, R, SIDE"),
+    ("arcs", "A, ALPHA, B, BETA, SIDE"),
+    ("rad", "ANGLE"),
 ];
 
 /// Whether there is a function of this name.
 pub(in crate::mechanism::file) fn is_function(name: &str) -> bool {
-    FUNCTIONS.iter().any(|(known, ..)| *known == name)
+    FUNCTIONS.iter().any(|(known, _)| *known == name)
 }
 
 /// Calls a function, or says what is wrong.
@@ -138,7 +110,7 @@ pub(super) fn call(name: &str, given: &[Term], units: FileUnits) -> Result<Term,
         }
         ("mirror", [Vector(point), Vector(normal), rest @ ..]) if rest.len() < 2 => {
             let (through, normal) = (origin(name, rest)?, direction(name, normal)?);
-            Vector(point - *normal * (2.0 * normal.dot(&(point - through))))
+            Vector(through + reflected(normal, point - through))
         }
         ("meet", &[Vector(a), Number(r), Vector(b), Number(s), Vector(normal), Number(at)]) => {
             told(place.meet([(a, r), (b, s)], direction(name, &normal)?, side(at)?))?
@@ -191,6 +163,14 @@ pub(in crate::mechanism::file) fn turned(
     rotation.map(tidy) * vector
 }
 
+/// The mirror image of a vector in the plane with a normal.
+pub(in crate::mechanism::file) fn reflected(
+    normal: Unit<Vector3<f64>>,
+    vector: Vector3<f64>,
+) -> Vector3<f64> {
+    vector - *normal * (2.0 * normal.dot(&vector))
+}
+
 /// A number that is a multiple of a half but for rounding, without that.
 fn tidy(number: f64) -> f64 {
     let half = (2.0 * number).round() / 2.0;
@@ -211,10 +191,10 @@ fn direction(name: &str, vector: &Vector3<f64>) -> Result<Unit<Vector3<f64>>, St
 
 /// What a function is called with; or that there is none of this name.
 fn expected(name: &str) -> String {
-    match FUNCTIONS.iter().find(|(known, ..)| *known == name) {
-        Some((_, values, _)) => format!("expected {name}({values})"),
+    match FUNCTIONS.iter().find(|(known, _)| *known == name) {
+        Some((_, values)) => format!("expected {name}({values})"),
         None => {
-            let names = FUNCTIONS.map(|(known, ..)| known);
+            let names = FUNCTIONS.map(|(known, _)| known);
             let meant = nearest(name, &names)
                 .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
             format!("`{name}` is not a function; {meant}expected one of {}", names.join(", "))
