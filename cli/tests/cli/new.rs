@@ -111,7 +111,7 @@ fn every_architecture_is_listed_and_written() {
         assert_eq!(folder.read(&format!("{name}.toml")), one["text"].as_str().unwrap());
         opm(&["decompose", &file]).text();
     }
-    // Drawings are no wider than half a terminal, and are drawn.
+    // The drawings are of Braille.
     assert!(text.lines().any(|line| line.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c))));
 }
 

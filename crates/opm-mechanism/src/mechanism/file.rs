@@ -21,7 +21,8 @@
 //! | `spherical` | `point` | as revolute; coordinates x, y, z of the rotation vector |
 //!
 //! Every joint may have `max_rate` and `max_acceleration`, in the file's units per second and per second
-//! squared, and `max_effort`, in newtons or newton metres. `home` (default zero) and these three are numbers, and `limits` is a pair `[lowest, highest]`. A
+//! squared, and `max_effort`, in newtons or newton metres; an actuated joint also `rotor_inertia`, `gear`, `viscous_friction` and
+//! `coulomb_friction` of its drive. `home` (default zero) and these three are numbers, and `limits` is a pair `[lowest, highest]`. A
 //! joint with several coordinates has an array with one entry per coordinate.
 //!
 //! `[task]` says how the pose is measured, where the geometry (`opm_core::task`) leaves a choice:
@@ -49,6 +50,10 @@
 //! and `masses`, a table of kilograms by the names of bodies: `platform`, or the joint that carries a link; and how thick
 //! they are: `radius` of all, and `radii` by name. `[[obstacle]]` says what stands around the mechanism
 //! ([`Obstacle`](super::Obstacle)).
+//!
+//! `[parameters]`, in both forms, names numbers, points and directions, and a number anywhere else may be an expression of them
+//! (`"rod / 2"`, `"A + B"`). A `[[leg]]` with `pattern` stands for several legs that are turned or mirrored images. A file keeps these
+//! texts: [`Mechanism`] holds their values, and a change of a parameter reads the text again.
 //!
 //! Both forms need `format = 1`, `name`, and `units = { length = "m|cm|mm|in", angle = "rad|deg" }`.
 //! A leg's `name` is `leg1`, `leg2`, ... if it is not given. Some names are columns of tables and
@@ -112,7 +117,6 @@ pub(super) use {
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub use {
-    expression::FUNCTIONS,
     read::{document, head, optional_units},
     reader::{Table, Value, all},
 };

@@ -9,7 +9,6 @@ mod parse;
 
 pub(super) use construct::direction;
 #[doc(hidden)]
-pub use functions::FUNCTIONS;
 pub(super) use functions::{is_function, reflected, turned};
 pub(super) use parse::{evaluate, is_name};
 
