@@ -1015,6 +1015,17 @@ def test_dimensions_are_undone_from_every_field(explore):
     assert height() == "140" and explorer.value("pose-x") != "37"
 
 
+def test_an_emptied_coordinate_goes_to_the_home_of_the_changed_mechanism(explore):
+    explorer = explore("#example=delta")
+    explorer.enter("param-crank", 700)
+    # The cranks are level at home: the rods' 1244 mm span 164 + 700 - 44 mm outwards and the height.
+    height = -((1244**2 - (164 + 700 - 44) ** 2) ** 0.5)
+    assert abs(float(explorer.value("pose-z")) - height) < 1e-3
+    explorer.enter("pose-z", -1000)
+    explorer.enter("pose-z", "")
+    assert abs(float(explorer.value("pose-z")) - height) < 1e-3
+
+
 def test_a_saved_pose_of_dependent_coordinates_is_read_back(explore, opm, tmp_path):
     explorer = explore("#example=five-bar&pose.x=20&pose.y=300")
     saved = tmp_path / "pose.csv"

@@ -88,7 +88,7 @@ export class Panels {
   /** Shows the state. */
   update(state: State, description: Description, axes: Parameters<SlicePanel["update"]>[1], pose: Pose): void {
     const { changes, slice, body, kind, mode, motion, clearance } = state;
-    this.pose.update(pose);
+    this.pose.update(description, pose);
     this.dimensions.update(description, changes);
     this.slice.update(slice, axes, pose);
     this.body.update(body);

@@ -22,6 +22,7 @@ export class PosePanel {
       const slider = element("input", { type: "range", step: "any", "aria-label": `${name}, slider` });
       [slider.min, slider.max, slider.value] = [String(home - reach), String(home + reach), String(home)];
       const number = element("input", { type: "number", step: "any", id: `pose-${name}` });
+      const row = { coordinate, slider, number };
       slider.addEventListener("input", () => this.events.moved(name, rounded(slider), false));
       slider.addEventListener("change", () => this.events.moved(name, rounded(slider), true));
       number.addEventListener("input", () => {
@@ -30,10 +31,10 @@ export class PosePanel {
       });
       number.addEventListener("change", () => {
         const value = numberIn(number);
-        if (value === undefined) number.value = field(home);
-        this.events.moved(name, value ?? home, true);
+        if (value === undefined) number.value = field(row.coordinate.home);
+        this.events.moved(name, value ?? row.coordinate.home, true);
       });
-      this.rows.push({ coordinate, slider, number });
+      this.rows.push(row);
       const label = element("label", { for: `pose-${name}` }, name);
       return element("div", { className: "quantity" }, label, slider, number, element("span", { className: "unit" }, unit));
     });
@@ -51,12 +52,14 @@ export class PosePanel {
     }
   }
 
-  update(pose: Record<string, number>): void {
-    for (const { coordinate: { name, home }, slider, number } of this.rows) {
+  /** Shows a pose. The home that an emptied field goes to is that of the mechanism as it is changed now. */
+  update({ coordinates }: Description, pose: Record<string, number>): void {
+    this.rows.forEach((row, i) => {
+      const { name, home } = (row.coordinate = coordinates[i]!);
       const value = pose[name] ?? home;
-      show(number, value);
-      if (Number(slider.value) !== value) slider.value = String(value);
-    }
+      show(row.number, value);
+      if (Number(row.slider.value) !== value) row.slider.value = String(value);
+    });
   }
 }
 

@@ -1,11 +1,10 @@
 //! Rates of joints and of the pose with the dimensions that a file gives by name.
 
 use crate::chain::unit;
-use crate::source::{STEP, changed_file};
+use crate::source::{STEP, changed_file, parts, stepped};
 use nalgebra::DMatrix;
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Mode, Solution};
-use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::file::MechanismFile;
 use opm_core::velocity::VelocityError;
 use std::f64::consts::TAU;
@@ -49,24 +48,14 @@ impl<'a> Dimensions<'a> {
                 continue;
             };
             let step = STEP * unit(quantity, length);
-            let mut add = |part: &str, changed: &dyn Fn(f64) -> ParameterValue| {
+            for (part, suffix) in parts(value).iter().enumerate() {
                 let made = |step: f64| {
-                    let mechanism = changed_file(file, mechanism, (&name, changed(step)))?;
-                    Manipulator::new(mechanism).ok()
+                    let change = (&*name, stepped(value, part, step));
+                    Manipulator::new(changed_file(file, mechanism, change)?).ok()
                 };
-                let (Some(more), Some(less)) = (made(step), made(-step)) else { return };
-                let (name, ends) = (format!("{name}{part}"), [more, less]);
+                let (Some(more), Some(less)) = (made(step), made(-step)) else { continue };
+                let (name, ends) = (format!("{name}{suffix}"), [more, less]);
                 all.push(Dimension { name, ends, apart: 2.0 * step });
-            };
-            match value {
-                ParameterValue::Number(number) => {
-                    add("", &|step| ParameterValue::Number(number + step));
-                }
-                ParameterValue::Pair([x, y]) => {
-                    add(".x", &|step| ParameterValue::Pair([x + step, y]));
-                    add(".y", &|step| ParameterValue::Pair([x, y + step]));
-                }
-                ParameterValue::None => {}
             }
         }
         Self { manipulator, all }

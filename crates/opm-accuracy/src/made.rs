@@ -2,7 +2,7 @@
 
 use crate::chain::{Chain, displaced};
 use crate::response::Model;
-use crate::source::{ErrorModel, Origin};
+use crate::source::{ErrorModel, Origin, stepped};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use opm_core::mechanism::Mechanism;
 use opm_core::mechanism::family::ParameterValue;
@@ -83,11 +83,7 @@ fn dimensions(model: &Model<'_>, errors: &[f64]) -> Option<Mechanism> {
         let Origin::Parameter { key, part, .. } = &source.origin else { continue };
         let known = nominal.iter().find(|(name, _)| name == key).map(|(_, value)| *value);
         let value = changed.entry(key).or_insert(known?);
-        match value {
-            ParameterValue::Number(number) => *number += error,
-            ParameterValue::Pair(pair) => pair[*part] += error,
-            ParameterValue::None => {}
-        }
+        *value = stepped(*value, *part, error);
     }
     match model.file() {
         Some(file) if !changed.is_empty() => Some(file.with(changed).ok()?.mechanism),

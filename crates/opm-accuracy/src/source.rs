@@ -298,6 +298,26 @@ pub(crate) fn changed_file(
     (names(&changed) == names(mechanism)).then_some(changed)
 }
 
+/// The names of the numbers of a dimension, behind its own.
+pub(crate) fn parts(value: ParameterValue) -> &'static [&'static str] {
+    match value {
+        ParameterValue::Number(_) => &[""],
+        ParameterValue::Pair(_) => &[".x", ".y"],
+        ParameterValue::None => &[],
+    }
+}
+
+/// A dimension of which one of the [`parts`] is larger by a step.
+pub(crate) fn stepped(value: ParameterValue, part: usize, step: f64) -> ParameterValue {
+    let mut changed = value;
+    match &mut changed {
+        ParameterValue::Number(number) => *number += step,
+        ParameterValue::Pair(pair) => pair[part] += step,
+        ParameterValue::None => {}
+    }
+    changed
+}
+
 /// The step of a parameter in shares of the mechanism's size: the error of a central difference is its square.
 pub(crate) const STEP: f64 = 1e-5;
 
@@ -312,8 +332,9 @@ fn parameters(file: &MechanismFile, mechanism: &Mechanism, length: f64, all: &mu
         }
         let Some(quantity) = file.quantity_of(&name) else { continue };
         let step = STEP * unit(quantity, length);
-        let mut push = |(suffix, part): (&str, usize), changed: &dyn Fn(f64) -> ParameterValue| {
-            let assembled = |step: f64| changed_file(file, mechanism, (&name, changed(step)));
+        for (part, suffix) in parts(value).iter().enumerate() {
+            let assembled =
+                |step: f64| changed_file(file, mechanism, (&name, stepped(value, part, step)));
             let ends = match (assembled(step), assembled(-step)) {
                 (Some(more), Some(less)) => Some(([more, less], 2.0 * step)),
                 // At an end of its range the difference is to one side.
@@ -322,7 +343,7 @@ fn parameters(file: &MechanismFile, mechanism: &Mechanism, length: f64, all: &mu
                 // Other parameters decide it.
                 (None, None) => None,
             };
-            let Some((mechanisms, apart)) = ends else { return };
+            let Some((mechanisms, apart)) = ends else { continue };
             all.push(Source {
                 name: format!("{name}{suffix}"),
                 quantity,
@@ -335,16 +356,6 @@ fn parameters(file: &MechanismFile, mechanism: &Mechanism, length: f64, all: &mu
                     part,
                 },
             });
-        };
-        match value {
-            ParameterValue::Number(number) => {
-                push(("", 0), &|step| ParameterValue::Number(number + step));
-            }
-            ParameterValue::Pair([x, y]) => {
-                push((".x", 0), &|step| ParameterValue::Pair([x + step, y]));
-                push((".y", 1), &|step| ParameterValue::Pair([x, y + step]));
-            }
-            ParameterValue::None => {}
         }
     }
 }

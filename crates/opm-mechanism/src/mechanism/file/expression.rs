@@ -8,7 +8,6 @@ mod functions;
 mod parse;
 
 pub(super) use construct::direction;
-#[doc(hidden)]
 pub(super) use functions::{is_function, reflected, turned};
 pub(super) use parse::{evaluate, is_name};
 
