@@ -20,8 +20,8 @@ use nalgebra::{DMatrix, Vector6};
 use singular::Nearby;
 use thiserror::Error;
 
-/// Largest supported number of freedoms of all joints together. The time grows with the fourth
-/// power of this number; the largest takes about a second.
+/// Largest supported number of freedoms of all joints together. Each leg is looked at by itself: the time grows about as
+/// this number does.
 pub const MAX_FREEDOMS: usize = 96;
 
 /// Why the mobility of a mechanism cannot be computed: something is missing or is not a number.
@@ -118,12 +118,11 @@ pub fn mobility(mechanism: &Mechanism) -> Result<Mobility, MobilityError> {
     let linkage = Linkage::new(mechanism)?;
     let home = linkage.first_order(&linkage.home());
     let nearby = Nearby::new(&linkage, &home);
-    let ranks = nearby.ranks(&home);
-    let mobility = ranks.mobility;
+    let ranks = nearby.at_home(&home);
+    let (motions, mobility) = (&ranks.motions, ranks.mobility());
 
-    let motions = home.motions(mobility);
-    let at_home = nearby.controlled(&linkage.controls(&motions));
-    let loose = loose_twists(&linkage, &motions, at_home);
+    let at_home = nearby.controlled(&linkage.controls(motions));
+    let loose = loose_twists(&linkage, motions, at_home);
     let motion = |twist: &Vector6<f64>| Some(fit(&[*twist])?.class.restored(&linkage.frame));
     let mut loose: Vec<SubspaceClass> = loose.vectors().iter().filter_map(motion).collect();
 
@@ -144,13 +143,13 @@ pub fn mobility(mechanism: &Mechanism) -> Result<Mobility, MobilityError> {
     Ok(Mobility {
         lambda: ranks.lambda,
         mobility,
-        idle: nearby.generic.as_ref().map_or(mobility - platform(&motions), |generic| generic.idle),
+        idle: nearby.generic.as_ref().map_or(mobility - platform(motions), |generic| generic.idle),
         actuators: linkage.actuated_rows().count(),
         controlled,
         redundant: redundant(mechanism, &linkage, &nearby, controlled),
         loose,
         singular,
-        nearby: nearby.poses.into_iter().next().map(|(coordinates, _)| coordinates),
+        nearby: nearby.coordinates,
         units: mechanism.units,
     })
 }
@@ -186,6 +185,9 @@ fn absolute_values(rows: DMatrix<f64>) -> Vec<f64> {
 
 /// The twists of the platform among motions, given as orthonormal columns, of which the actuators control this many.
 fn loose_twists(linkage: &Linkage, motions: &DMatrix<f64>, controlled: usize) -> Basis {
+    if controlled == motions.ncols() {
+        return Basis::span(&[]);
+    }
     let rows: Vec<usize> = linkage.actuated_rows().collect();
     let right = match rows.is_empty() {
         true => DMatrix::identity(motions.ncols(), motions.ncols()),
@@ -195,9 +197,11 @@ fn loose_twists(linkage: &Linkage, motions: &DMatrix<f64>, controlled: usize) ->
     span(&free.rows(free.nrows() - 6, 6).into_owned())
 }
 
-/// How many independent twists of the platform motions have that are orthonormal columns.
+/// How many independent twists of the platform motions have that are orthonormal columns. Idle motions, whose twists are
+/// nearly zero, do not count.
 fn platform(motions: &DMatrix<f64>) -> usize {
-    span(&motions.rows(motions.nrows() - 6, 6).into_owned()).dimension()
+    let values = singular_values(motions.rows(motions.nrows() - 6, 6).into_owned());
+    values.iter().filter(|&&value| value > TOLERANCE).count()
 }
 
 /// The span of the columns of a 6 × n block of orthonormal columns. Columns that are nearly zero

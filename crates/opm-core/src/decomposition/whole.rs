@@ -365,15 +365,18 @@ impl Found {
                 return Err(WholeMiss::Inexact { leg: leg.name.clone(), deviation });
             }
         }
-        let legs: Result<Vec<LegSplit>, WholeMiss> = (mechanism.legs.iter())
-            .map(|leg| {
-                let whole = solved(leg, &motions, frame.length).map_err(|reason| {
-                    WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
-                })?;
-                let lower = Freedom::of_leg(leg);
-                Ok(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) })
-            })
-            .collect();
+        let mut legs: Vec<LegSplit> = Vec::new();
+        for leg in &mechanism.legs {
+            let alike = |other: &Leg| joints(other).map(|of| of.1).eq(joints(leg).map(|of| of.1));
+            let before = mechanism.legs.iter().zip(&legs).filter(|(other, _)| alike(other));
+            let before: Vec<&WholeLeg> =
+                before.filter_map(|(_, split)| split.whole.as_ref()).collect();
+            let whole = solved(leg, &motions, frame.length, &before).map_err(|reason| {
+                WholeMiss::Leg { leg: leg.name.clone(), chain: chain(leg), reason }
+            })?;
+            let lower = Freedom::of_leg(leg);
+            legs.push(LegSplit { lower, upper: vec![], imaginary: false, whole: Some(whole) });
+        }
         Ok(Decomposition {
             lambda: report.lambda,
             mobility: report.mobility,
@@ -381,7 +384,7 @@ impl Found {
             upper,
             intersection: SubspaceClass::Identity,
             constrained,
-            legs: legs?,
+            legs,
             imaginary_joints: 0,
             first_section_motions: report.mobility,
             upper_mobility: 0,
@@ -434,10 +437,15 @@ pub(crate) fn configurations(leg: &Leg, length: f64) -> impl Iterator<Item = Vec
     })
 }
 
-/// The closed form of a leg for the displacements that `motions` are samples of.
-fn solved(leg: &Leg, motions: &[Isometry3<f64>], length: f64) -> Result<WholeLeg, NoOrder> {
+/// The closed form of a leg for the displacements that `motions` are samples of, where those `before` have the same motors.
+fn solved(
+    leg: &Leg,
+    motions: &[Isometry3<f64>],
+    length: f64,
+    before: &[&WholeLeg],
+) -> Result<WholeLeg, NoOrder> {
     let (joints, actuated): (Vec<LegJoint>, Vec<bool>) = joints(leg).unzip();
-    WholeLeg::new(&joints, &actuated, motions, length)
+    WholeLeg::new(&joints, &actuated, motions, length, before)
 }
 
 impl Decomposition {
@@ -461,7 +469,7 @@ impl Decomposition {
             PlatformSet::Stem(stem) => Found::of_stem(mechanism, stem, length).motions,
             PlatformSet::Constrained | PlatformSet::Symmetric => assembled(mechanism),
         };
-        Some(solved(leg, &motions, length).map(Cow::Owned))
+        Some(solved(leg, &motions, length, &[]).map(Cow::Owned))
     }
 }
 

@@ -120,6 +120,16 @@ pub struct StepName {
     pub invariant: Option<&'static str>,
 }
 
+/// Which orders are wanted.
+#[derive(Clone, Copy)]
+struct Orders<'a> {
+    /// The joints that come first where that is possible.
+    actuated: &'a [bool],
+    most_choices: usize,
+    /// An order to try first; none if empty.
+    known: &'a [StepName],
+}
+
 /// Why a leg has no closed form here. Joints are named by their numbers from the base, from zero.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -196,7 +206,8 @@ pub struct WholeLeg {
 impl WholeLeg {
     /// The closed form of a leg. `actuated` says which joints have motors: these are found first where that is possible.
     /// `motions` are displacements of the platform from home, at random, from the set that it moves in: the closed form is
-    /// valid for targets of that set. `size` is a length of the leg, metres, with which others are compared.
+    /// valid for targets of that set. `size` is a length of the leg, metres, with which others are compared. Where the leg
+    /// is congruent to one of `solved`, which have the same motors, its order is taken.
     ///
     /// # Errors
     /// Where there is no order.
@@ -205,19 +216,21 @@ impl WholeLeg {
         actuated: &[bool],
         motions: &[Isometry3<f64>],
         size: f64,
+        solved: &[&Self],
     ) -> Result<Self, NoOrder> {
         let (elements, freedoms) = Element::of(joints, &[]);
-        let most = MOST_CHOICES;
-        let mut leg =
-            Self::ordered(&elements, freedoms, (actuated, most), size, |elements, centre| {
-                let reached =
-                    motions.iter().filter_map(|motion| Sample::at(elements, motion, centre, size));
-                let reached: Vec<Sample> = reached.take(MOST_SAMPLES).collect();
-                match reached.is_empty() && freedoms > 0 {
-                    true => Err(NoOrder::Unreached { given: motions.len() }),
-                    false => Ok(reached),
-                }
-            })?;
+        let congruent = |one: &&&Self| element::congruent(&one.elements, &elements, size);
+        let known = solved.iter().find(congruent).map_or(&[][..], |one| &one.names);
+        let orders = Orders { actuated, most_choices: MOST_CHOICES, known };
+        let mut leg = Self::ordered(&elements, freedoms, orders, size, |elements, centre| {
+            let reached =
+                motions.iter().filter_map(|motion| Sample::at(elements, motion, centre, size));
+            let reached: Vec<Sample> = reached.take(MOST_SAMPLES).collect();
+            match reached.is_empty() && freedoms > 0 {
+                true => Err(NoOrder::Unreached { given: motions.len() }),
+                false => Ok(reached),
+            }
+        })?;
         leg.real_closes = leg.closes_where_real(motions);
         Ok(leg)
     }
@@ -235,7 +248,8 @@ impl WholeLeg {
         size: f64,
     ) -> Result<Self, NoOrder> {
         let (elements, freedoms) = Element::of(joints, given);
-        Self::ordered(&elements, freedoms, (&[], MOST_GIVEN_CHOICES), size, |elements, _| {
+        let orders = Orders { actuated: &[], most_choices: MOST_GIVEN_CHOICES, known: &[] };
+        Self::ordered(&elements, freedoms, orders, size, |elements, _| {
             let of_values = |values: &Vec<f64>| {
                 let (mut all, mut next) = (vec![0.0; VALUES], values.iter());
                 for element in elements {
@@ -251,7 +265,7 @@ impl WholeLeg {
     fn ordered(
         elements: &[Element],
         freedoms: usize,
-        (actuated, most): (&[bool], usize),
+        orders: Orders<'_>,
         size: f64,
         sampled: impl FnOnce(&[Element], &Vector3<f64>) -> Result<Vec<Sample>, NoOrder>,
     ) -> Result<Self, NoOrder> {
@@ -269,13 +283,17 @@ impl WholeLeg {
         samples.extend(sampled(elements, &centre)?);
         let leg = Leg { elements, samples: &samples, centre, size };
         let mut nodes = Nodes::new(elements, &samples, size);
-        let mut search = Search::new(leg, &mut nodes, actuated, most);
+        let mut search = Search::new(leg, &mut nodes, orders.actuated, orders.most_choices);
         let mut test = |nodes: &mut Nodes<'_>, steps: &[Candidate]| {
             let program = write::write(leg, nodes, steps)?;
             let whole = Self::of(elements, freedoms, steps, program, centre, size);
             whole.finds(&samples).then_some(whole)
         };
-        if let Some(found) = search.run(&mut test) {
+        let known = match orders.known {
+            [] => None,
+            known => search.known(known, &mut test),
+        };
+        if let Some(found) = known.or_else(|| search.run(&mut test)) {
             return Ok(found);
         }
         if search.untrue() {
@@ -285,7 +303,7 @@ impl WholeLeg {
         let open = |&joint: &usize| stuck & (1 << joint) != 0 && !elements[joint].is_given();
         let left = (0..elements.len()).filter(open).collect();
         Err(if search.full {
-            NoOrder::Choices { most, joints: left }
+            NoOrder::Choices { most: orders.most_choices, joints: left }
         } else {
             NoOrder::Coupled { joints: left }
         })
@@ -299,11 +317,8 @@ impl WholeLeg {
         centre: Vector3<f64>,
         size: f64,
     ) -> Self {
-        let name = |step: &Candidate| {
-            let (root, invariant) = step.kernel.name();
-            StepName { joint: step.joint, root, invariant: Some(invariant) }
-        };
-        let mut names: Vec<StepName> = steps.iter().map(name).collect();
+        let mut names: Vec<StepName> =
+            steps.iter().map(|step| step.kernel.named(step.joint)).collect();
         let balls: Vec<usize> =
             (0..elements.len()).filter(|&i| elements[i].kind == Kind::Ball).collect();
         for (i, &joint) in balls.iter().enumerate() {

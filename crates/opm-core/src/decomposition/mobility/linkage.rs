@@ -6,10 +6,10 @@ use crate::group::screw::Screw;
 use crate::group::subspace::Frame;
 use crate::mechanism::Mechanism;
 use crate::numeric::svd::{self, Svd};
-use nalgebra::{DMatrix, Isometry3, Vector6};
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Vector6};
 
 /// A mechanism as screws in its normalised frame: freedom by freedom, leg by leg.
-pub(crate) struct Linkage {
+pub(super) struct Linkage {
     pub frame: Frame,
     /// For every freedom, leg by leg, whether it is actuated.
     pub actuated: Vec<bool>,
@@ -18,49 +18,106 @@ pub(crate) struct Linkage {
 }
 
 /// The screws of every leg in a pose, and the displacement of the platform that each leg gives.
-pub(crate) struct Pose {
+pub(super) struct Pose {
     screws: Vec<Vec<Screw>>,
     tips: Vec<Isometry3<f64>>,
 }
 
-/// The first-order kinematics in a pose, by singular values. A list of them is sorted, largest first, and divided by
-/// its largest.
-pub(crate) struct FirstOrder {
-    /// Of all screws together.
+/// The first-order kinematics in a pose, leg by leg.
+pub(super) struct FirstOrder {
+    /// The singular values of all screws together, largest first, divided by the largest.
     pub all: Vec<f64>,
-    /// Of each leg's screws.
-    pub legs: Vec<Vec<f64>>,
-    /// Of the loop closure.
-    pub closure: Vec<f64>,
-    /// The right singular vectors of the loop closure, in the order of its singular values: the last ones are the
-    /// motions.
-    vectors: DMatrix<f64>,
+    legs: Vec<LegOrder>,
+}
+
+/// The unit screws `J` of a leg as `Jᵀ U = V Σ`: the platform's twists `U`, and the rates `V` that give them.
+struct LegOrder {
+    svd: Svd,
+    /// The singular values, divided by the largest.
+    values: Vec<f64>,
+}
+
+/// The constraints of all legs on the platform's twist: orthonormal rows for each leg.
+pub(super) struct Ties {
+    svd: Svd,
 }
 
 impl FirstOrder {
-    /// The motions `(q̇, t)`, orthonormal columns, of a mechanism that has this many.
-    pub fn motions(&self, mobility: usize) -> DMatrix<f64> {
-        let columns = self.vectors.ncols();
-        self.vectors.columns(columns - mobility, mobility).into_owned()
+    /// The singular values of each leg's screws, largest first, divided by the largest.
+    pub fn legs(&self) -> impl Iterator<Item = &[f64]> {
+        self.legs.iter().map(|leg| &*leg.values)
+    }
+
+    /// The number of freedoms of all joints.
+    pub fn freedoms(&self) -> usize {
+        self.legs.iter().map(|leg| leg.svd.image.nrows()).sum()
+    }
+
+    /// The constraints of all legs, whose screws have these ranks.
+    pub fn ties(&self, ranks: &[usize]) -> Ties {
+        let constraints =
+            |(leg, &rank): (&LegOrder, &usize)| leg.svd.right.columns(rank, 6 - rank).transpose();
+        let all: Vec<DMatrix<f64>> = self.legs.iter().zip(ranks).map(constraints).collect();
+        let mut rows = DMatrix::zeros(all.iter().map(DMatrix::nrows).sum(), 6);
+        let mut row = 0;
+        for own in &all {
+            rows.rows_mut(row, own.nrows()).copy_from(own);
+            row += own.nrows();
+        }
+        Ties { svd: Svd::new(rows) }
+    }
+
+    /// The motions `(q̇, t)` with `J_k q̇_k = t` for every leg: orthonormal columns. The platform's twists are those that
+    /// all legs allow, whose screws have these ranks, and whose constraints have rank `tied`. Then come the motions
+    /// within each leg.
+    pub fn motions(&self, ranks: &[usize], ties: &Ties, tied: usize) -> DMatrix<f64> {
+        let freedoms = self.freedoms();
+        let twists = ties.svd.right.columns(tied, 6 - tied);
+        let mut moved = DMatrix::zeros(freedoms + 6, twists.ncols());
+        let mut within = vec![];
+        let mut row = 0;
+        for (LegOrder { svd, .. }, &rank) in self.legs.iter().zip(ranks) {
+            let own = svd.image.nrows();
+            let mut rates = moved.rows_mut(row, own);
+            for i in 0..rank {
+                // The column of the image is a unit vector times the singular value.
+                let shares = svd.right.column(i).tr_mul(&twists) / svd.values[i].powi(2);
+                rates.ger(1.0, &svd.image.column(i), &shares.transpose(), 1.0);
+            }
+            if own > rank {
+                within.push((row, complement(svd.image.columns(0, rank).into_owned())));
+            }
+            row += own;
+        }
+        moved.rows_mut(freedoms, 6).copy_from(&twists);
+        let mut all = match moved.ncols() {
+            0 => moved,
+            _ => moved.qr().q(),
+        };
+        for (row, own) in within {
+            let column = all.ncols();
+            all = all.resize_horizontally(column + own.ncols(), 0.0);
+            all.view_mut((row, column), own.shape()).copy_from(&own);
+        }
+        all
     }
 }
 
-/// The loop-closure matrix of unit screws: six rows per leg, one column per screw (leg by leg), and
-/// six columns for the platform's twist. Its kernel is the set of first-order motions `(q̇, t)`
-/// with `J_k q̇_k − t = 0`. No leg is singled out, so a permutation of the legs only permutes rows
-/// and columns.
-pub(crate) fn loop_closure(legs: &[Vec<Vector6<f64>>]) -> DMatrix<f64> {
-    let freedoms: usize = legs.iter().map(Vec::len).sum();
-    let mut closure = DMatrix::zeros(6 * legs.len(), freedoms + 6);
-    let mut column = 0;
-    for (k, leg) in legs.iter().enumerate() {
-        for screw in leg {
-            closure.fixed_view_mut::<6, 1>(6 * k, column).copy_from(screw);
-            column += 1;
-        }
-        closure.fixed_view_mut::<6, 6>(6 * k, freedoms).fill_diagonal(-1.0);
+impl Ties {
+    /// The singular values, largest first. Their natural size is one.
+    pub fn values(&self) -> &[f64] {
+        &self.svd.values
     }
-    closure
+}
+
+/// Orthonormal columns across independent columns.
+fn complement(columns: DMatrix<f64>) -> DMatrix<f64> {
+    let (n, rank) = columns.shape();
+    let mut all = DMatrix::identity(n, n);
+    if rank > 0 {
+        columns.qr().q_tr_mul(&mut all);
+    }
+    all.rows(rank, n - rank).transpose()
 }
 
 impl Linkage {
@@ -144,26 +201,30 @@ impl Linkage {
     /// The first-order kinematics in a pose.
     pub fn first_order(&self, pose: &Pose) -> FirstOrder {
         let units = self.units(pose);
-        let closure = Svd::new(loop_closure(&units));
-        let of = |vectors: &[Vector6<f64>]| {
-            let mut values =
-                svd::singular_values(DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j]));
-            values.sort_by(|a, b| b.total_cmp(a));
-            relative(values)
+        let rows =
+            |vectors: &[Vector6<f64>]| DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j]);
+        let mut all = svd::singular_values(rows(&units.concat()));
+        all.sort_by(|a, b| b.total_cmp(a));
+        let of_leg = |leg: &Vec<Vector6<f64>>| {
+            let svd = Svd::new(rows(leg));
+            LegOrder { values: relative(&svd.values[..leg.len().min(6)]), svd }
         };
-        FirstOrder {
-            all: of(&units.concat()),
-            legs: units.iter().map(|leg| of(leg)).collect(),
-            closure: relative(closure.values),
-            vectors: closure.right,
+        FirstOrder { all: relative(&all), legs: units.iter().map(of_leg).collect() }
+    }
+
+    /// Motions of unit screws in a pose, which are columns, as rates of the coordinates.
+    pub fn rates(&self, pose: &Pose, mut motions: DMatrix<f64>) -> DMatrix<f64> {
+        for (row, screw) in pose.screws.iter().flatten().enumerate() {
+            motions.row_mut(row).unscale_mut(screw.to_vector().norm());
         }
+        motions
     }
 }
 
 /// Singular values, largest first, divided by the largest.
-fn relative(values: Vec<f64>) -> Vec<f64> {
+fn relative(values: &[f64]) -> Vec<f64> {
     let largest = values.first().copied().filter(|&v| v > 0.0).unwrap_or(1.0);
-    values.into_iter().map(|value| value / largest).collect()
+    values.iter().map(|value| value / largest).collect()
 }
 
 impl Pose {
@@ -174,7 +235,7 @@ impl Pose {
 
     /// The difference between each leg's displacement and that of the platform: one twist (six
     /// rows) per leg, to first order.
-    pub fn gaps(&self, platform: &Isometry3<f64>) -> nalgebra::DVector<f64> {
+    pub fn gaps(&self, platform: &Isometry3<f64>) -> DVector<f64> {
         let gap = |tip: &Isometry3<f64>| {
             let error = tip * platform.inverse();
             Screw { angular: error.rotation.scaled_axis(), linear: error.translation.vector }
@@ -184,10 +245,33 @@ impl Pose {
         twists.into()
     }
 
-    /// The derivative of [`Pose::gaps`] by the coordinates and by a twist of the platform.
-    pub fn derivative(&self) -> DMatrix<f64> {
-        let vectors = |leg: &Vec<Screw>| leg.iter().map(|s| s.to_vector()).collect();
-        loop_closure(&self.screws.iter().map(vectors).collect::<Vec<_>>())
+    /// The rates `q̇` and the twist `t` of the platform that make `|J_k q̇_k - t + g_k|² + damping (|q̇|² + |t|²)` least, summed
+    /// over the legs, whose gaps are `g`: a Levenberg-Marquardt step. `None` if it is lost in rounding.
+    ///
+    /// With `M_k = (J_k J_kᵀ + damping)⁻¹`, each leg answers `q̇_k = J_kᵀ M_k (t - g_k)`, and the rest is six equations:
+    /// `(Σ M_k + 1) t = Σ M_k g_k`.
+    pub fn step(&self, gaps: &DVector<f64>, damping: f64) -> Option<(DVector<f64>, Vector6<f64>)> {
+        let columns = |leg: &Vec<Screw>| -> Vec<Vector6<f64>> {
+            leg.iter().map(|screw| screw.to_vector()).collect()
+        };
+        let factors = |leg: &Vec<Vector6<f64>>| {
+            let own = Matrix6::from_diagonal_element(damping);
+            leg.iter().fold(own, |sum, column| sum + column * column.transpose()).cholesky()
+        };
+        let legs: Vec<_> = self.screws.iter().map(columns).collect();
+        let factors: Vec<_> = legs.iter().map(factors).collect::<Option<_>>()?;
+        let gap = |leg: usize| Vector6::from(gaps.fixed_rows::<6>(6 * leg));
+        let (mut sum, mut right) = (Matrix6::identity(), Vector6::zeros());
+        for (leg, own) in factors.iter().enumerate() {
+            sum += own.inverse();
+            right += own.solve(&gap(leg));
+        }
+        let twist = sum.cholesky()?.solve(&right);
+        let rates = legs.iter().zip(&factors).enumerate().flat_map(|(leg, (columns, own))| {
+            let force = own.solve(&(twist - gap(leg)));
+            columns.iter().map(move |column| column.dot(&force))
+        });
+        Some((DVector::from_vec(rates.collect()), twist))
     }
 }
 
@@ -195,6 +279,21 @@ impl Pose {
 mod tests {
     use super::*;
     use crate::decomposition::samples;
+
+    /// The derivative of [`Pose::gaps`] by the coordinates and by a twist of the platform: six rows for each leg.
+    fn derivative(pose: &Pose) -> DMatrix<f64> {
+        let freedoms: usize = pose.screws.iter().map(Vec::len).sum();
+        let mut closure = DMatrix::zeros(6 * pose.screws.len(), freedoms + 6);
+        let mut column = 0;
+        for (k, leg) in pose.screws.iter().enumerate() {
+            for screw in leg {
+                closure.fixed_view_mut::<6, 1>(6 * k, column).copy_from(&screw.to_vector());
+                column += 1;
+            }
+            closure.fixed_view_mut::<6, 6>(6 * k, freedoms).fill_diagonal(-1.0);
+        }
+        closure
+    }
 
     /// The error of central differences with step 1e-6 is its square, plus rounding divided by it.
     const DIFFERENCE: f64 = 1e-8;
@@ -205,7 +304,7 @@ mod tests {
         let linkage = Linkage::new(&mechanism).unwrap();
         let n = linkage.actuated.len();
         // The formula holds where the legs meet: at home.
-        let derivative = linkage.home().derivative();
+        let derivative = derivative(&linkage.home());
         let step = 1e-6;
         for column in 0..n + 6 {
             let side = |sign: f64| {
@@ -220,6 +319,28 @@ mod tests {
             };
             let difference = (side(1.0) - side(-1.0)) / (2.0 * step);
             assert!((difference - derivative.column(column)).amax() < DIFFERENCE, "{column}");
+        }
+    }
+
+    /// Two solutions of equations whose condition is one over the damping.
+    const STEP: f64 = 1e-10;
+
+    #[test]
+    fn step_solves_the_damped_normal_equations() {
+        let mechanism = samples::PlanoSpherical::default().mechanism();
+        let linkage = Linkage::new(&mechanism).unwrap();
+        let n = linkage.actuated.len();
+        let coordinates: Vec<f64> = (0..n).map(|i| 0.3 * (i as f64).sin()).collect();
+        let pose = linkage.pose(&coordinates);
+        let gaps = pose.gaps(&Isometry3::translation(0.1, -0.2, 0.05));
+        for damping in [1e-3, 0.1, 2.0] {
+            let derivative = derivative(&pose);
+            let normal = derivative.tr_mul(&derivative)
+                + DMatrix::from_diagonal_element(n + 6, n + 6, damping);
+            let expected = normal.lu().solve(&-derivative.tr_mul(&gaps)).unwrap();
+            let (rates, twist) = pose.step(&gaps, damping).unwrap();
+            assert!((rates - expected.rows(0, n)).amax() < STEP);
+            assert!((twist - expected.rows(n, 6)).amax() < STEP);
         }
     }
 }

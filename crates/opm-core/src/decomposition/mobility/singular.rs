@@ -6,12 +6,11 @@
 //! Levenberg-Marquardt steps with the remaining gap as damping. They converge quadratically even if the closure's
 //! rank is deficient (Fan and Yuan, Computing 74, 2005), as it is in every overconstrained mechanism.
 
-use super::linkage::{FirstOrder, Linkage, Pose};
+use super::linkage::{FirstOrder, Linkage, Pose, Ties};
 use super::{absolute_values, loose_twists, platform};
 use crate::group::screw::Screw;
 use crate::group::subspace::{SubspaceClass, TOLERANCE};
 use crate::mechanism::Mechanism;
-use crate::numeric::svd::Svd;
 use nalgebra::{DMatrix, DVector, Isometry3, Translation3, Vector6};
 use std::fmt;
 
@@ -108,9 +107,10 @@ impl fmt::Display for HomeSingularity {
     }
 }
 
-/// Assembled poses near home, each with its coordinates; none if no pose nearby closes.
+/// Assembled poses near home; none if no pose nearby closes.
 pub(super) struct Nearby {
-    pub poses: Vec<(Vec<f64>, FirstOrder)>,
+    /// The coordinates of one of them.
+    pub coordinates: Option<Vec<f64>>,
     pub generic: Option<Generic>,
 }
 
@@ -118,7 +118,9 @@ pub(super) struct Nearby {
 pub(super) struct Generic {
     all: Vec<f64>,
     legs: Vec<Vec<f64>>,
-    closure: Vec<f64>,
+    ties: Vec<f64>,
+    /// The motions at each pose, orthonormal columns.
+    motions: Vec<DMatrix<f64>>,
     /// Mobility `N`.
     pub mobility: usize,
     controls: Vec<f64>,
@@ -130,66 +132,96 @@ pub(super) struct Generic {
     pub idle: usize,
 }
 
-/// Ranks at home.
-pub(super) struct HomeRanks {
+/// Ranks at home, and the motions that they leave.
+pub(super) struct AtHome {
     pub lambda: usize,
     pub legs: Vec<usize>,
-    pub mobility: usize,
+    /// Orthonormal columns.
+    pub motions: DMatrix<f64>,
+}
+
+impl AtHome {
+    fn new(home: &FirstOrder, generic: Option<&Generic>) -> Self {
+        let of = |of: fn(&Generic) -> &[f64]| generic.map_or(&[][..], of);
+        let nearby: &[Vec<f64>] = generic.map_or(&[], |generic| &generic.legs);
+        let own = |number: usize| nearby.get(number).map_or(&[][..], |values| &values[..]);
+        let legs: Vec<usize> = home.legs().enumerate().map(|(i, leg)| rank(leg, own(i))).collect();
+        let ties = home.ties(&legs);
+        let tied = rank(ties.values(), of(|generic| &generic.ties));
+        let motions = home.motions(&legs, &ties, tied);
+        Self { lambda: rank(&home.all, of(|generic| &generic.all)), legs, motions }
+    }
+
+    /// The mobility `N`.
+    pub fn mobility(&self) -> usize {
+        self.motions.ncols()
+    }
+}
+
+impl Generic {
+    /// What poses have in common; `None` if there are none.
+    fn new(linkage: &Linkage, poses: &[FirstOrder]) -> Option<Self> {
+        let leg = |number: usize| {
+            largest(poses.iter().map(move |pose| pose.legs().nth(number).unwrap_or_default()))
+        };
+        let legs: Vec<Vec<f64>> = (0..poses.first()?.legs().count()).map(leg).collect();
+        let ranks: Vec<usize> = legs.iter().map(|values| clear(values)).collect();
+        let all_ties: Vec<Ties> = poses.iter().map(|pose| pose.ties(&ranks)).collect();
+        let ties = largest(all_ties.iter().map(Ties::values));
+        let tied = clear(&ties);
+        let motions =
+            poses.iter().zip(&all_ties).map(|(pose, ties)| pose.motions(&ranks, ties, tied));
+        let motions: Vec<DMatrix<f64>> = motions.collect();
+        let mobility = motions[0].ncols();
+        let all_controls: Vec<Vec<f64>> =
+            motions.iter().map(|motions| linkage.controls(motions)).collect();
+        let controls = largest(all_controls.iter().map(|values| &**values));
+        let loose = motions
+            .iter()
+            .zip(&all_controls)
+            .map(|(motions, values)| loose_twists(linkage, motions, clear(values)).dimension());
+        let idle = motions.iter().map(|motions| mobility - platform(motions));
+        Some(Self {
+            all: largest(poses.iter().map(|pose| &*pose.all)),
+            mobility,
+            controlled: clear(&controls),
+            loose: loose.min().unwrap_or_default(),
+            idle: idle.min().unwrap_or_default(),
+            legs,
+            ties,
+            controls,
+            motions,
+        })
+    }
+}
+
+/// The largest of each singular value at some poses.
+fn largest<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+    let mut largest = vec![];
+    for values in poses {
+        largest.resize(values.len(), 0.0);
+        largest.iter_mut().zip(values).for_each(|(x, y)| *x = y.max(*x));
+    }
+    largest
 }
 
 impl Nearby {
     /// Poses near home, whose first-order kinematics are `home`.
     pub fn new(linkage: &Linkage, home: &FirstOrder) -> Self {
-        let columns = home.closure.len();
-        let first = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
+        let first = first_motions(linkage, home);
         let samples = if first.is_empty() { 0 } else { SAMPLES };
-        let found = (0..samples).filter_map(|sample| {
-            let (coordinates, pose) = nearby(linkage, &first, sample)?;
-            Some((coordinates, linkage.first_order(&pose)))
-        });
-        let poses: Vec<(Vec<f64>, FirstOrder)> = found.collect();
-        let largest = |of: &dyn Fn(&FirstOrder) -> Vec<f64>| {
-            poses.iter().map(|(_, pose)| of(pose)).reduce(|a, b| {
-                let larger = |(x, y): (&f64, &f64)| x.max(*y);
-                a.iter().zip(&b).map(larger).collect()
-            })
-        };
-        let generic = largest(&|pose| pose.closure.clone()).map(|closure| {
-            let mobility = columns - clear(&closure);
-            let controls = largest(&|pose| linkage.controls(&pose.motions(mobility)));
-            let controls = controls.unwrap_or_default();
-            let loose = poses.iter().map(|(_, pose)| {
-                let motions = pose.motions(mobility);
-                let rank = clear(&linkage.controls(&motions));
-                loose_twists(linkage, &motions, rank).dimension()
-            });
-            let idle = poses.iter().map(|(_, pose)| mobility - platform(&pose.motions(mobility)));
-            let of_leg = |leg: usize| largest(&|pose| pose.legs[leg].clone()).unwrap_or_default();
-            Generic {
-                all: largest(&|pose| pose.all.clone()).unwrap_or_default(),
-                legs: (0..home.legs.len()).map(of_leg).collect(),
-                mobility,
-                controlled: clear(&controls),
-                loose: loose.min().unwrap_or_default(),
-                idle: idle.min().unwrap_or_default(),
-                controls,
-                closure,
-            }
-        });
-        Self { poses, generic }
+        let found = (0..samples).filter_map(|sample| nearby(linkage, &first, sample));
+        let (mut coordinates, mut poses) = (None, vec![]);
+        for (own, pose) in found {
+            coordinates.get_or_insert(own);
+            poses.push(linkage.first_order(&pose));
+        }
+        Self { coordinates, generic: Generic::new(linkage, &poses) }
     }
 
-    /// The ranks at home, whose first-order kinematics are `home`.
-    pub fn ranks(&self, home: &FirstOrder) -> HomeRanks {
-        let generic = |of: fn(&Generic) -> &[f64]| self.generic.as_ref().map_or(&[][..], of);
-        let of_leg = |(number, own): (usize, &Vec<f64>)| {
-            rank(own, self.generic.as_ref().map_or(&[], |generic| &generic.legs[number]))
-        };
-        HomeRanks {
-            lambda: rank(&home.all, generic(|g| &g.all)),
-            legs: home.legs.iter().enumerate().map(of_leg).collect(),
-            mobility: home.closure.len() - rank(&home.closure, generic(|g| &g.closure)),
-        }
+    /// The ranks and motions at home, whose first-order kinematics are `home`.
+    pub fn at_home(&self, home: &FirstOrder) -> AtHome {
+        AtHome::new(home, self.generic.as_ref())
     }
 
     /// How many of the freedoms the actuators control at home, where these are the singular values of what they
@@ -203,11 +235,15 @@ impl Nearby {
         let Some(generic) = &self.generic else { return false };
         let rest: Vec<usize> =
             linkage.actuated_rows().filter(|row| !without.contains(row)).collect();
-        self.poses.iter().all(|(_, pose)| {
-            let motions = pose.motions(generic.mobility).select_rows(&rest);
-            clear(&absolute_values(motions)) == generic.controlled
+        generic.motions.iter().all(|motions| {
+            clear(&absolute_values(motions.select_rows(&rest))) == generic.controlled
         })
     }
+}
+
+/// The motions of first order at home, rates of the coordinates and a twist.
+fn first_motions(linkage: &Linkage, home: &FirstOrder) -> DMatrix<f64> {
+    linkage.rates(&linkage.home(), AtHome::new(home, None).motions)
 }
 
 /// The number of values that are clearly not zero.
@@ -228,14 +264,14 @@ fn rank(home: &[f64], nearby: &[f64]) -> usize {
 /// names.
 pub(super) fn singularities<'a>(
     nearby: &Nearby,
-    ranks: &HomeRanks,
+    ranks: &AtHome,
     legs: impl Iterator<Item = &'a str>,
 ) -> Vec<HomeSingularity> {
-    if ranks.mobility == 0 {
+    if ranks.mobility() == 0 {
         return vec![];
     }
     let Some(generic) = &nearby.generic else {
-        return vec![HomeSingularity::Isolated { mobility: ranks.mobility }];
+        return vec![HomeSingularity::Isolated { mobility: ranks.mobility() }];
     };
     let mut found = vec![];
     for (i, leg) in legs.enumerate() {
@@ -244,8 +280,8 @@ pub(super) fn singularities<'a>(
             found.push(HomeSingularity::Serial { leg: leg.to_owned(), home, nearby });
         }
     }
-    if ranks.mobility > generic.mobility {
-        let (home, nearby) = (ranks.mobility, generic.mobility);
+    if ranks.mobility() > generic.mobility {
+        let (home, nearby) = (ranks.mobility(), generic.mobility);
         found.push(HomeSingularity::Constraint { home, nearby });
     }
     let nearby = clear(&generic.all);
@@ -260,7 +296,7 @@ pub(crate) fn assembled(mechanism: &Mechanism) -> Vec<Isometry3<f64>> {
     /// How large the first-order motions are: radians, and shares of the size.
     const SIZES: [f64; 12] = [0.3, 0.3, 0.3, 0.3, 0.2, 0.2, 0.2, 0.2, 0.1, 0.1, 0.1, 0.1];
     let Ok(linkage) = Linkage::new(mechanism) else { return Vec::new() };
-    let kernel = Svd::new(linkage.home().derivative()).kernel(TOLERANCE);
+    let kernel = first_motions(&linkage, &linkage.first_order(&linkage.home()));
     let frame = linkage.frame;
     let found = SIZES.iter().enumerate().filter_map(|(sample, size)| {
         let motion = random(&kernel, sample);
@@ -298,7 +334,7 @@ fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<(Vec<f64>, Pose)> 
     let n = linkage.actuated.len();
     let mut q = start.rows(0, n).into_owned();
     let away = AWAY * q.amax();
-    let mut platform = displacement(&start.rows(n, 6).into_owned());
+    let mut platform = displacement(&start.fixed_rows::<6>(n).into_owned());
     let mut pose = linkage.pose(q.as_slice());
     let mut gaps = pose.gaps(&platform);
     for _ in 0..MAX_STEPS {
@@ -306,13 +342,9 @@ fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<(Vec<f64>, Pose)> 
         if gap <= CLOSED {
             break;
         }
-        let derivative = pose.derivative();
-        let mut normal = derivative.tr_mul(&derivative);
-        (0..n + 6).for_each(|i| normal[(i, i)] += gap);
-        let Some(factors) = normal.cholesky() else { break };
-        let step = -factors.solve(&derivative.tr_mul(&gaps));
-        q += step.rows(0, n);
-        platform = displacement(&step.rows(n, 6).into_owned()) * platform;
+        let Some((rates, twist)) = pose.step(&gaps, gap) else { break };
+        q += rates;
+        platform = displacement(&twist) * platform;
         pose = linkage.pose(q.as_slice());
         gaps = pose.gaps(&platform);
         if gaps.norm() > STALLED * gap {
@@ -322,6 +354,6 @@ fn project(linkage: &Linkage, start: &DVector<f64>) -> Option<(Vec<f64>, Pose)> 
     (gaps.norm() <= TOLERANCE && q.amax() >= away).then(|| (q.as_slice().to_vec(), pose))
 }
 
-fn displacement(twist: &DVector<f64>) -> Isometry3<f64> {
-    Screw::from_vector(&Vector6::from_column_slice(twist.as_slice())).exp(1.0)
+fn displacement(twist: &Vector6<f64>) -> Isometry3<f64> {
+    Screw::from_vector(twist).exp(1.0)
 }

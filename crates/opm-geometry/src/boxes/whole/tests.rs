@@ -46,7 +46,7 @@ fn bounds_over_a_box_hold_its_poses() {
     let mut held = 0;
     for joints in legs() {
         let motions: Vec<_> = (0..12).map(|_| target(&mut random, 0.6)).collect();
-        let leg = WholeLeg::new(&joints, &[true, false, false, false], &motions, 0.5).unwrap();
+        let leg = WholeLeg::new(&joints, &[true, false, false, false], &motions, 0.5, &[]).unwrap();
         // All freedoms but those of spherical joints.
         let turns = joints.iter().flat_map(|joint| vec![joint.freedoms() == 1; joint.freedoms()]);
         let turns: Vec<bool> = turns.collect();

@@ -62,6 +62,28 @@ pub(super) fn constant<T: Real>(v: &Vector3<f64>) -> T::Space {
     T::Space::new(T::constant(v.x), T::constant(v.y), T::constant(v.z))
 }
 
+/// Whether two legs have the same shape, but for a reflection, to within a millionth of `size`.
+pub(super) fn congruent(one: &[Element], other: &[Element], size: f64) -> bool {
+    const SAME: f64 = 1e-6;
+    let same_kind = |(a, b): (&Element, &Element)| match (a.kind, b.kind) {
+        (Kind::Helix(a), Kind::Helix(b)) => (a - b).abs() <= SAME * size,
+        (a, b) => a == b,
+    };
+    let shape = |a: &Element, b: &Element| {
+        let placed = a.kind != Kind::Slide && b.kind != Kind::Slide;
+        let between = if placed { (b.point - a.point) / size } else { Vector3::zeros() };
+        let along = [a.direction.dot(&between), b.direction.dot(&between)];
+        [a.direction.dot(&b.direction), between.norm(), along[0], along[1]]
+    };
+    let same_shape = |i: usize, j: usize| {
+        let [one, other] = [shape(&one[i], &one[j]), shape(&other[i], &other[j])];
+        one.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME)
+    };
+    one.len() == other.len()
+        && one.iter().zip(other).all(same_kind)
+        && (0..one.len()).all(|j| (0..j).all(|i| same_shape(i, j)))
+}
+
 impl Element {
     /// The elements of joints, and the number of their freedoms. The displacements of some, which are no balls, are given.
     pub fn of(joints: &[LegJoint], given: &[bool]) -> (Vec<Self>, usize) {

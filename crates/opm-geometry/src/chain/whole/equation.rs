@@ -1,5 +1,6 @@
 //! Equations in one joint alone, and what finds the joint by one or two of them.
 
+use super::StepName;
 use super::element::{Element, Kind, Moved, constant};
 use crate::chain::kernel::Row;
 use crate::numbers::{Joint, Plane, Real, Space};
@@ -236,9 +237,9 @@ impl<P: Copy> Kernel<P> {
         }
     }
 
-    /// The names of the root and of its invariant.
-    pub fn name(&self) -> (&'static str, &'static str) {
-        match self {
+    /// The name of the step that finds a joint so.
+    pub fn named(&self, joint: usize) -> StepName {
+        let (root, invariant) = match self {
             Self::Linear(one) => ("linear", one.name()),
             Self::Difference([one, _]) => ("linear", one.name()),
             Self::Quadratic(one) => ("quadratic", one.name()),
@@ -248,7 +249,8 @@ impl<P: Copy> Kernel<P> {
             Self::Pair([one, _]) => ("pair", one.name()),
             Self::Double(one) => ("double", one.name()),
             Self::Twofold(one) => ("twofold", one.name()),
-        }
+        };
+        StepName { joint, root, invariant: Some(invariant) }
     }
 
     /// The joint.

@@ -1,5 +1,6 @@
 //! The search for an order in which the joints can be found one after the other.
 
+use super::StepName;
 use super::element::Kind;
 use super::nodes::Nodes;
 use super::objects::{Leg, Loop};
@@ -49,10 +50,32 @@ impl<'l, 'n, 'a> Search<'l, 'n, 'a> {
         &mut self,
         test: &mut impl FnMut(&mut Nodes<'a>, &[Candidate]) -> Option<P>,
     ) -> Option<P> {
+        self.deeper(self.all(), &mut Vec::new(), test)
+    }
+
+    /// The order of a congruent leg, if it passes the test and no step of it is weak here.
+    pub fn known<P>(
+        &mut self,
+        order: &[StepName],
+        test: &mut impl FnMut(&mut Nodes<'a>, &[Candidate]) -> Option<P>,
+    ) -> Option<P> {
+        let joints = self.leg.elements.len();
+        let (mut unknown, mut steps) = (self.all(), Vec::new());
+        for name in order.iter().filter(|name| name.invariant.is_some()) {
+            unknown &= !(1 << name.joint);
+            let seen = Loop { joint: name.joint, joints, unknown };
+            let candidates = self.leg.candidates(self.nodes, &seen);
+            let same = |one: &Candidate| one.kernel.named(one.joint) == *name && !one.rank.0;
+            steps.push(candidates.into_iter().find(same)?);
+        }
+        test(self.nodes, &steps)
+    }
+
+    /// The joints that are to be found.
+    fn all(&self) -> u32 {
         let elements = self.leg.elements.iter().enumerate();
-        let all = (elements.filter(|(_, element)| !element.is_given()))
-            .fold(0, |all, (joint, _)| all | 1 << joint);
-        self.deeper(all, &mut Vec::new(), test)
+        let unknown = elements.filter(|(_, element)| !element.is_given());
+        unknown.fold(0, |all, (joint, _)| all | 1 << joint)
     }
 
     /// Whether an order was found that did not pass.

@@ -168,7 +168,7 @@ fn compiled(leg: &Type) -> WholeLeg {
         .collect();
     let mut actuated = vec![false; leg.joints.len()];
     actuated[leg.motor] = true;
-    let whole = WholeLeg::new(&leg.joints, &actuated, &motions, SIZE);
+    let whole = WholeLeg::new(&leg.joints, &actuated, &motions, SIZE, &[]);
     whole.unwrap_or_else(|error| panic!("{}: {error}", leg.name))
 }
 
@@ -257,10 +257,12 @@ fn congruent_legs_have_the_same_order() {
             .collect();
         let mut actuated = vec![false; joints.len()];
         actuated[leg.motor] = true;
-        let elsewhere = WholeLeg::new(&joints, &actuated, &motions, SIZE).unwrap();
+        let elsewhere = WholeLeg::new(&joints, &actuated, &motions, SIZE, &[]).unwrap();
         let whole = compiled(&leg);
         let steps = [&whole, &elsewhere].map(|leg| leg.steps().collect::<Vec<_>>());
         assert_eq!(steps[0], steps[1], "{}", leg.name);
+        let known = WholeLeg::new(&joints, &actuated, &motions, SIZE, &[&whole]).unwrap();
+        assert_eq!(known.program, elsewhere.program, "{}", leg.name);
         for shares in random(5).take(40) {
             let q = values(&leg, &shares, 1.0, 0.15);
             let g = forward(&leg.joints, &q);
@@ -466,7 +468,8 @@ fn a_leg_without_an_order_says_which_joints_are_coupled() {
         .take(6)
         .map(|shares| forward(&leg.joints, &values(&leg, &shares, 0.5, 0.0)))
         .collect();
-    let error = WholeLeg::new(&joints, &[true, false, false, false], &motions, SIZE).unwrap_err();
+    let error =
+        WholeLeg::new(&joints, &[true, false, false, false], &motions, SIZE, &[]).unwrap_err();
     assert_eq!(error, NoOrder::Coupled { joints: vec![0, 1, 2, 3] });
     assert!(error.to_string().starts_with("joints 0, 1, 2 and 3 "), "{error}");
 }
