@@ -15,12 +15,13 @@ use opm_core::numeric::number::readable;
 use opm_study::unit_product;
 use opm_workspace::measure::{
     CoordinateRange, Domain, DomainAxis, DomainError, Goal, Measured, SearchEnd, default_ranges,
-    measure,
+    measure, measure_told,
 };
 use opm_workspace::{Cancelled, Modes, Progress};
 use rayon::ThreadPool;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Measures of at least this size are shown with an exponent.
@@ -49,8 +50,17 @@ pub fn run(args: &MeasureArgs, output: &Output) -> Result<(), Failure> {
     let goal = Goal { tolerance: args.tolerance, budget: args.budget };
     let before = progress.done();
     let start = Instant::now();
-    let job = || pool.install(|| measure(&manipulator, &domain, modes, &goal, &progress));
-    let found = watch_boxes(output, "measuring", || progress.done() - before, job);
+    let bounds = Mutex::new(None);
+    let tell = |found: &Measured| {
+        *bounds.lock().unwrap_or_else(PoisonError::into_inner) = Some(*found);
+    };
+    let job =
+        || pool.install(|| measure_told(&manipulator, &domain, modes, &goal, &progress, tell));
+    let told = || match *bounds.lock().unwrap_or_else(PoisonError::into_inner) {
+        Some(found) => format!("measuring, {}", between(&found)),
+        None => "measuring".to_owned(),
+    };
+    let found = watch_boxes(output, args.budget, told, || progress.done() - before, job);
     let seconds = start.elapsed().as_secs_f64();
     let run = Run { loaded: &loaded, manipulator: &manipulator, domain: &domain, modes, args };
     output.print(&run.json(&found, seconds), run.text(&found, seconds))?;
@@ -251,6 +261,13 @@ impl Run<'_> {
             percent(self.args.tolerance),
         )
     }
+}
+
+/// The share of the whole that is certain so far, in percent.
+fn between(found: &Measured) -> String {
+    let ends = [found.value(), found.lower, found.upper].map(|end| 100.0 * end / found.whole);
+    let [_, lower, upper] = rounded(ends, resolving(ends[2] - ends[1], ends[2]));
+    format!("between {lower} and {upper} %")
 }
 
 /// A share, rounded up to two digits.

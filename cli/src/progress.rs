@@ -94,16 +94,23 @@ pub fn watch<T>(
     show(output, &bar, label, done, work)
 }
 
-/// As [`watch`], for boxes whose final number is unknown.
+/// As [`watch`], for at most `budget` boxes. `told` is what is known so far.
 pub fn watch_boxes<T>(
     output: &Output,
-    label: &'static str,
+    budget: u64,
+    told: impl Fn() -> String + Send,
     done: impl Fn() -> u64 + Send,
     work: impl FnOnce() -> T,
 ) -> T {
-    let bar = ProgressBar::no_length()
-        .with_style(style("{spinner} {msg}: {human_pos} boxes, {rate} boxes/s"));
-    show(output, &bar, label, done, work)
+    let bar = ProgressBar::new(budget).with_style(style(
+        "{msg} {wide_bar} {percent}% of the budget of {human_len} boxes, {rate} boxes/s",
+    ));
+    let line = bar.clone();
+    let done = move || {
+        line.set_message(told());
+        done()
+    };
+    show(output, &bar, "", done, work)
 }
 
 /// As [`watch`], for this number of steps, or for steps whose final number is unknown.

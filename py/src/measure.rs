@@ -91,7 +91,7 @@ pub fn ranges(over: &Bound<'_, PyMapping>) -> PyResult<Vec<CoordinateRange>> {
 /// tolerance : float, optional
 ///     How far the true measure may be from the value, as a share of it: 0.01 if not given.
 /// budget : int, optional
-///     Largest number of boxes to examine: 2**22 if not given.
+///     Largest number of boxes to examine: 500,000 if not given.
 /// threads : int, optional
 ///     1 to 1024, here or in each worker; the result does not depend on it. One for each processor if not given.
 /// executor : concurrent.futures.Executor or callable, optional

@@ -37,7 +37,7 @@ pub fn run(args: &AccuracyArgs, output: &Output, setting: &Setting<'_>) -> Resul
     };
     let (progress, pool) = (interruptible()?, threads(args.threads)?);
     let job = || pool.install(|| request.errors(&progress));
-    let found = watch_boxes(output, "bounding", || progress.done(), job);
+    let found = watch_boxes(output, args.budget, || "bounding".to_owned(), || progress.done(), job);
     let found = found.map_err(|error| match error {
         BoxError::Cancelled(_) => Failure::interrupted("interrupted"),
         error => Failure::flag("--over", error),

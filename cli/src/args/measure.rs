@@ -3,7 +3,7 @@
 use super::ChangeArgs;
 use crate::pose::{GridAxis, Number, OverAxis};
 use clap::{ValueEnum, ValueHint};
-use opm_workspace::measure::check_tolerance;
+use opm_workspace::measure::{DEFAULT_BUDGET, check_tolerance};
 use opm_workspace::{MOST_THREADS, Sections};
 use std::path::PathBuf;
 
@@ -74,7 +74,7 @@ pub struct MeasureArgs {
     #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = tolerance, allow_hyphen_values = true)]
     pub tolerance: f64,
     /// Largest number of boxes; each takes some 100 bytes of memory
-    #[arg(long, value_name = "BOXES", default_value = "4000000", value_parser = boxes, allow_hyphen_values = true)]
+    #[arg(long, value_name = "BOXES", default_value_t = DEFAULT_BUDGET, value_parser = boxes, allow_hyphen_values = true)]
     pub budget: u64,
     /// Number of threads, instead of one per processor
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]

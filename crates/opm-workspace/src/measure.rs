@@ -50,6 +50,9 @@ const SHARE: usize = 4;
 /// The rounding of a compensated sum of products of a few numbers, as a share of the whole measure.
 const ROUNDING: f64 = 1e-14;
 
+/// The budget of boxes where none is asked for. Two cores answer within some ten seconds.
+pub const DEFAULT_BUDGET: u64 = 500_000;
+
 /// When a measure is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
@@ -73,7 +76,7 @@ pub fn check_tolerance(tolerance: f64) -> Result<(), &'static str> {
 
 impl Default for Goal {
     fn default() -> Self {
-        Self { tolerance: 0.01, budget: 1 << 22 }
+        Self { tolerance: 0.01, budget: DEFAULT_BUDGET }
     }
 }
 
@@ -139,11 +142,24 @@ pub fn measure(
     goal: &Goal,
     progress: &Progress,
 ) -> Measured {
+    measure_told(manipulator, domain, modes, goal, progress, |_| ())
+}
+
+/// As [`measure`], telling what is known after each round.
+pub fn measure_told(
+    manipulator: &Manipulator,
+    domain: &Domain,
+    modes: Modes,
+    goal: &Goal,
+    progress: &Progress,
+    mut told: impl FnMut(&Measured),
+) -> Measured {
     let evaluator = Evaluator::new(manipulator, domain, modes);
     let mut search = Search::new(domain, *goal);
     while let Some(cells) = search.round() {
         let Ok(bounds) = evaluator.evaluate(cells, progress) else { break };
         search.settle_round(bounds);
+        told(&search.found());
     }
     search.found()
 }
