@@ -25,6 +25,7 @@ mod generate;
 mod given;
 mod html;
 mod interrupt;
+mod joint;
 mod joints;
 mod linkage;
 mod manipulator;
@@ -70,7 +71,7 @@ mod _native {
     #[pymodule_export]
     use crate::forward::{Assemblies, Assembly};
     #[pymodule_export]
-    use crate::joints::Joint;
+    use crate::joint::Joint;
     #[pymodule_export]
     use crate::linkage::Linkage;
     #[pymodule_export]

@@ -64,6 +64,12 @@ class OpmError(ValueError): ...
 
 _Parameter: TypeAlias = float | Sequence[float] | NDArray[np.float64] | None
 
+# Three numbers.
+_Vector: TypeAlias = Sequence[float] | NDArray[np.float64]
+
+# A value of a joint: for its only coordinate, or one for each.
+_PerCoordinate: TypeAlias = float | Sequence[float | None] | NDArray[np.float64]
+
 # Numbers, one row or many; or numbers or columns by name.
 _Rows: TypeAlias = ArrayLike | Mapping[str, ArrayLike] | Any
 
@@ -154,17 +160,21 @@ class Joint:
         name: str,
         kind: str,
         *,
-        axis: Sequence[float] | None = None,
-        point: Sequence[float] = ...,
-        axis2: Sequence[float] | None = None,
+        axis: _Vector | None = None,
+        point: _Vector | None = None,
+        axis2: _Vector | None = None,
         pitch: float | None = None,
         actuated: bool = False,
-        home: float | Sequence[float] | None = None,
+        home: _PerCoordinate | None = None,
         limits: tuple[float, float] | Sequence[tuple[float, float] | None] | None = None,
-        max_rate: float | Sequence[float | None] | None = None,
-        max_acceleration: float | Sequence[float | None] | None = None,
-        max_effort: float | Sequence[float | None] | None = None,
-        cone: float | tuple[float, Sequence[float] | None] | None = None,
+        max_rate: _PerCoordinate | None = None,
+        max_acceleration: _PerCoordinate | None = None,
+        max_effort: _PerCoordinate | None = None,
+        cone: float | tuple[float, _Vector | None] | None = None,
+        rotor_inertia: _PerCoordinate | None = None,
+        gear: _PerCoordinate | None = None,
+        viscous_friction: _PerCoordinate | None = None,
+        coulomb_friction: _PerCoordinate | None = None,
     ) -> Joint: ...
     @property
     def cone(self) -> tuple[float, tuple[float, float, float] | None] | None: ...
@@ -196,6 +206,14 @@ class Joint:
     def max_acceleration(self) -> list[float | None]: ...
     @property
     def max_effort(self) -> list[float | None]: ...
+    @property
+    def rotor_inertia(self) -> list[float]: ...
+    @property
+    def gear(self) -> list[float]: ...
+    @property
+    def viscous_friction(self) -> list[float]: ...
+    @property
+    def coulomb_friction(self) -> list[float]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
