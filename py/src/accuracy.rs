@@ -11,7 +11,7 @@ use crate::arguments;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArrayDyn, PyUntypedArrayMethods};
 use opm_accuracy::{Allocation, Budget};
 use pyo3::prelude::*;
 use sizes::{ErrorArguments, pair};
@@ -23,27 +23,27 @@ const BLOCK: usize = 16;
 /// Errors of the platform and of the joints at many poses; NaN where a pose is out of reach, and where a number is not known.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Accuracy {
-    /// (n, d), metres and radians: the worst case of every task coordinate.
-    pose_error: Py<PyArray2<f64>>,
-    /// (n,), metres: the longest displacement of the platform's reference point.
-    worst_length: Py<PyArray1<f64>>,
-    /// (n,), radians: the largest rotation of the platform.
-    worst_angle: Py<PyArray1<f64>>,
-    /// (n, p, d): the change of every task coordinate for a unit of every error, one metre or one radian, to first order.
-    sensitivity: Py<PyArray3<f64>>,
-    /// (n, j), metres: the largest play of each joint, as the displacement of its point.
-    misfit_length: Py<PyArray2<f64>>,
-    /// (n, j), radians: the largest play of each joint, as a rotation.
-    misfit_angle: Py<PyArray2<f64>>,
-    /// (n, p), metres and radians: the tolerance of each error with which no joint needs more than its clearance, if it is the
+    /// (..., d), metres and radians: the worst case of every task coordinate.
+    pose_error: Py<PyArrayDyn<f64>>,
+    /// (...), metres: the longest displacement of the platform's reference point.
+    worst_length: Py<PyArrayDyn<f64>>,
+    /// (...), radians: the largest rotation of the platform.
+    worst_angle: Py<PyArrayDyn<f64>>,
+    /// (..., p, d): the change of every task coordinate for a unit of every error, one metre or one radian, to first order.
+    sensitivity: Py<PyArrayDyn<f64>>,
+    /// (..., j), metres: the largest play of each joint, as the displacement of its point.
+    misfit_length: Py<PyArrayDyn<f64>>,
+    /// (..., j), radians: the largest play of each joint, as a rotation.
+    misfit_angle: Py<PyArrayDyn<f64>>,
+    /// (..., p), metres and radians: the tolerance of each error with which no joint needs more than its clearance, if it is the
     /// only error. Infinite where it needs no play; NaN for errors of actuators and parameters. None without `clearance`.
-    permitted_alone: Option<Py<PyArray2<f64>>>,
-    /// (n, p), metres and radians: the same if all errors come together, and each may use an equal part of the clearance of every
+    permitted_alone: Option<Py<PyArrayDyn<f64>>>,
+    /// (..., p), metres and radians: the same if all errors come together, and each may use an equal part of the clearance of every
     /// joint that it reaches. None without `clearance`.
-    permitted_share: Option<Py<PyArray2<f64>>>,
-    /// (n, 2), metres and radians: one tolerance for the places and one for the directions of all axes together. Infinite
+    permitted_share: Option<Py<PyArrayDyn<f64>>>,
+    /// (..., 2), metres and radians: one tolerance for the places and one for the directions of all axes together. Infinite
     /// where no error needs play. None without `clearance`.
-    permitted_uniform: Option<Py<PyArray2<f64>>>,
+    permitted_uniform: Option<Py<PyArrayDyn<f64>>>,
     /// Mechanisms with errors that are drawn at random. None without `samples`.
     samples: Option<Py<AccuracySamples>>,
     /// (p,), metres and radians: the size of each error.
@@ -52,10 +52,10 @@ pub struct Accuracy {
     parameters: Vec<String>,
     /// Names of the joints, leg by leg.
     joints: Vec<String>,
-    /// (n,): whether the pose is in reach, joint limits not considered.
-    reachable: Py<PyArray1<bool>>,
-    /// (n,): whether the actuators hold the platform, so that its error is known.
-    held: Py<PyArray1<bool>>,
+    /// (...): whether the pose is in reach, joint limits not considered.
+    reachable: Py<PyArrayDyn<bool>>,
+    /// (...): whether the actuators hold the platform, so that its error is known.
+    held: Py<PyArrayDyn<bool>>,
 }
 
 pickled!(Accuracy {
@@ -80,7 +80,7 @@ pickled!(Accuracy {
 impl Accuracy {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let reachable: usize = self.reachable.bind(py).call_method0("sum")?.extract()?;
-        let (poses, errors) = (self.reachable.bind(py).len()?, self.parameters.len());
+        let (poses, errors) = (self.reachable.bind(py).len(), self.parameters.len());
         Ok(format!("<Accuracy at {poses} poses, {reachable} reachable: {errors} errors>"))
     }
 }
@@ -91,7 +91,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
+    /// poses : (..., d) array_like
     ///     One row for each pose, one column for each task coordinate; metres and radians.
     /// actuators : (length, angle), optional
     ///     Errors of actuated joints: of sliders in metres, of others in radians. Either may be None.
@@ -172,9 +172,9 @@ impl Manipulator {
             threads,
             || inner.solution(),
             |solution, row, [error, long, wide, rates, lengths, angles, alone, share, uniform]| {
-                let found = inner.inverse(poses.row(row), mode, solution);
-                let found = found.map_err(|error| format!("pose {row}: {error}"))?;
-                let Some(solution) = found else { return Ok([false; 2]) };
+                if !self.solve(&poses, row, mode, solution)? {
+                    return Ok([false; 2]);
+                }
                 let response = model.at(solution).map_err(|e| format!("pose {row}: {e}"))?;
                 let budget = Budget::new(&response, &sizes);
                 for (out, spread) in error.iter_mut().zip(&budget.coordinates) {
@@ -201,9 +201,9 @@ impl Manipulator {
         )?;
         let [reachable, held] =
             std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
-        let flat = |number: usize| frozen(tables.table(number).reshape([poses.count])?);
-        let asked = |number: usize| -> PyResult<Option<Py<PyArray2<f64>>>> {
-            clearance.map(|_| frozen(tables.table(number))).transpose()
+        let take = |number: usize, row: &[usize]| poses.frozen(&tables.table(number), row);
+        let asked = |number: usize, width: usize| -> PyResult<Option<Py<PyArrayDyn<f64>>>> {
+            clearance.map(|_| take(number, &[width])).transpose()
         };
         let samples = samples.map(|count| {
             let drawn = samples::draw(py, &model, (&poses, mode), (count, seed), &sizes, threads)?;
@@ -212,20 +212,20 @@ impl Manipulator {
         let samples = samples.transpose()?;
         Ok(Accuracy {
             samples,
-            pose_error: frozen(tables.table(0))?,
-            worst_length: flat(1)?,
-            worst_angle: flat(2)?,
-            sensitivity: frozen(tables.table(3).reshape([poses.count, count, d])?)?,
-            misfit_length: frozen(tables.table(4))?,
-            misfit_angle: frozen(tables.table(5))?,
-            permitted_alone: asked(6)?,
-            permitted_share: asked(7)?,
-            permitted_uniform: asked(8)?,
+            pose_error: take(0, &[d])?,
+            worst_length: take(1, &[])?,
+            worst_angle: take(2, &[])?,
+            sensitivity: take(3, &[count, d])?,
+            misfit_length: take(4, &[j])?,
+            misfit_angle: take(5, &[j])?,
+            permitted_alone: asked(6, count)?,
+            permitted_share: asked(7, count)?,
+            permitted_uniform: asked(8, 2)?,
             parameters: sources.iter().map(|source| source.name.clone()).collect(),
             sizes: frozen(sizes.into_pyarray(py))?,
             joints,
-            reachable: frozen(reachable)?,
-            held: frozen(held)?,
+            reachable: poses.frozen(&reachable, &[])?,
+            held: poses.frozen(&held, &[])?,
         })
     }
 }

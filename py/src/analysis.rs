@@ -3,7 +3,7 @@
 use crate::arguments;
 use crate::error::request;
 use crate::error::wrong;
-use crate::given::Columns;
+use crate::given::{Columns, together};
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
@@ -17,53 +17,53 @@ use std::num::NonZeroUsize;
 /// Forces and transmission at many poses; NaN where a pose is out of reach, and where a number is not known.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Analysis {
-    /// (n, a), N and N m: the effort of every actuated joint that balances the load. NaN where the load does not determine it,
+    /// (..., a), N and N m: the effort of every actuated joint that balances the load. NaN where the load does not determine it,
     /// where it is not balanced, and at a serial singularity.
     efforts: Py<PyArrayDyn<f64>>,
-    /// (n, j), N and N m: the effort of every imaginary joint, which the lower section exerts on the upper one.
+    /// (..., j), N and N m: the effort of every imaginary joint, which the lower section exerts on the upper one.
     imaginary_efforts: Py<PyArrayDyn<f64>>,
-    /// (n, a, 6): the efforts for a unit force along x, y and z of the base, and a unit moment about these axes, at the
+    /// (..., a, 6): the efforts for a unit force along x, y and z of the base, and a unit moment about these axes, at the
     /// platform's reference point.
     effort_jacobian: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: input transmission index, the least of all inputs.
+    /// (...), no unit: input transmission index, the least of all inputs.
     iti: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: output transmission index, the least of all inputs.
+    /// (...), no unit: output transmission index, the least of all inputs.
     oti: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: local transmission index, the least of both.
+    /// (...), no unit: local transmission index, the least of both.
     lti: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: output constraint index, of legs that constrain the platform.
+    /// (...), no unit: output constraint index, of legs that constrain the platform.
     oci: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: largest effort of an actuator for a unit force in the worst direction, torques over the characteristic
+    /// (...), no unit: largest effort of an actuator for a unit force in the worst direction, torques over the characteristic
     /// length.
     effort_per_force: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: largest effort of an actuator for a unit moment in the worst direction, forces times the characteristic
+    /// (...), no unit: largest effort of an actuator for a unit moment in the worst direction, forces times the characteristic
     /// length.
     effort_per_moment: Py<PyArrayDyn<f64>>,
-    /// (n,), N: largest effort of an actuator under the load, torques over the characteristic length.
+    /// (...), N: largest effort of an actuator under the load, torques over the characteristic length.
     effort: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: largest share of its ``max_effort`` that an actuator needs under the load.
+    /// (...), no unit: largest share of its ``max_effort`` that an actuator needs under the load.
     effort_share: Py<PyArrayDyn<f64>>,
-    /// (n,), N: largest force that the actuators bear in every direction on top of the load, within their ``max_effort``.
+    /// (...), N: largest force that the actuators bear in every direction on top of the load, within their ``max_effort``.
     payload: Py<PyArrayDyn<f64>>,
-    /// (n,), N m: largest moment that they bear about every axis, likewise.
+    /// (...), N m: largest moment that they bear about every axis, likewise.
     payload_moment: Py<PyArrayDyn<f64>>,
-    /// (n,), N m: radius of the largest ball in the wrench polytope around the load, a force with the characteristic length as
+    /// (...), N m: radius of the largest ball in the wrench polytope around the load, a force with the characteristic length as
     /// its lever.
     payload_ball: Py<PyArrayDyn<f64>>,
-    /// (n,), N/m: least force that displaces the platform by a unit of length along it.
+    /// (...), N/m: least force that displaces the platform by a unit of length along it.
     stiffness: Py<PyArrayDyn<f64>>,
-    /// (n,), N m/rad: least moment that turns the platform by a unit of angle about its axis.
+    /// (...), N m/rad: least moment that turns the platform by a unit of angle about its axis.
     rotational_stiffness: Py<PyArrayDyn<f64>>,
-    /// (n,), m: distance of the nearest two bodies; negative where they overlap.
+    /// (...), m: distance of the nearest two bodies; negative where they overlap.
     clearance: Py<PyArrayDyn<f64>>,
-    /// (n, 6, 6): force and moment on the platform at its reference point, by its translations along x, y and z of the base and
+    /// (..., 6, 6): force and moment on the platform at its reference point, by its translations along x, y and z of the base and
     /// its rotations about them; None without stiffnesses.
     stiffness_matrix: Option<Py<PyArrayDyn<f64>>>,
-    /// (n, legs, 6, 6): the same for each leg, whose sum it is: what a leg carries is this times the platform's displacement.
+    /// (..., legs, 6, 6): the same for each leg, whose sum it is: what a leg carries is this times the platform's displacement.
     leg_stiffness: Option<Py<PyArrayDyn<f64>>>,
-    /// (n,): whether the pose is in reach, joint limits not considered.
+    /// (...): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
-    /// (n,): whether the actuators balance the load.
+    /// (...): whether the actuators balance the load.
     balanced: Py<PyArrayDyn<bool>>,
 }
 
@@ -121,9 +121,9 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
-    /// wrench : (6,) or (n, 6) array_like, or mapping, optional
+    /// wrench : (..., 6) array_like, or mapping, optional
     ///     The load on the platform, a force and a moment: FX, FY, FZ in N, MX, MY, MZ in N m. No load if not given.
     /// at : str or (3,) array_like
     ///     Where the force acts: ``"platform"``, its reference point; ``"base"``, the base's origin; or a point of the platform,
@@ -179,20 +179,16 @@ impl Manipulator {
         length: Option<f64>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Analysis> {
-        let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
-        let poses = Rows::new(&poses)?;
+        let (mut poses, mode) = (self.poses(poses)?, self.mode(mode)?);
         let columns = Columns { names: &WRENCH, otherwise: Some(&[0.0; 6]) };
-        let given = wrench.map(|given| columns.read(given, "wrench"));
-        let given = given.transpose()?;
+        let mut given = wrench.map(|given| columns.read(given, "wrench")).transpose()?;
+        together((&mut poses, "poses"), &mut [(given.as_mut(), "wrench")])?;
+        let poses = Rows::new(&poses)?;
         let given = given.as_ref().map(Rows::new).transpose()?;
-        if let Some(rows) = &given {
-            if rows.count != poses.count && rows.count != 1 {
-                let (count, expected) = (rows.count, poses.count);
-                return Err(wrong(format!("{count} rows of wrench, expected {expected}, or one")));
-            }
-            if let Some(odd) = rows.values().iter().find(|value| !value.is_finite()) {
-                return Err(wrong(format!("{odd} is among wrench, expected finite numbers")));
-            }
+        if let Some(rows) = &given
+            && let Some(odd) = rows.values().iter().find(|value| !value.is_finite())
+        {
+            return Err(wrong(format!("{odd} is among wrench, expected finite numbers")));
         }
         let inner = &self.inner;
         let springs = link_stiffness.is_some();

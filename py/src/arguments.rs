@@ -187,25 +187,10 @@ pub fn numbers<'py>(
     Ok(array.cast_into()?)
 }
 
-/// Matrices of SE(3), as rows of 16.
-pub fn matrices<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
-    let expected = || "(4, 4) or (n, 4, 4) homogeneous matrices".to_owned();
-    let array = numbers(given, what, &expected)?;
-    let (count, one) = match array.shape() {
-        [4, 4] => (1, true),
-        [count, 4, 4] => (*count, false),
-        _ => {
-            let shape = array.getattr("shape")?;
-            return Err(wrong(format!("{what} has shape {shape}, expected {}", expected())));
-        }
-    };
-    Ok(Given { array: array.call_method1("reshape", ((count, 16),))?.extract()?, one })
-}
-
 /// One value for each of `columns`.
 pub fn row(given: &Bound<'_, PyAny>, what: &str, columns: Columns<'_>) -> PyResult<Vec<f64>> {
-    let Given { array, one } = columns.read(given, what)?;
-    if !one {
+    let Given { array, lead } = columns.read(given, what)?;
+    if !lead.is_empty() {
         let names = columns.names;
         return Err(wrong(format!(
             "{what} has {} rows, expected ({},): {}",
@@ -217,20 +202,14 @@ pub fn row(given: &Bound<'_, PyAny>, what: &str, columns: Columns<'_>) -> PyResu
     array.as_any().call_method0("ravel")?.call_method0("tolist")?.extract()
 }
 
-/// One number, or numbers, as a column.
+/// One number, or an array of any shape, as a column.
 pub fn column<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
     let py = given.py();
     if let Ok(number) = given.extract::<f64>() {
         let array = PyArray2::from_vec2(py, &[vec![number]]).map_err(|error| failed(&error))?;
-        return Ok(Given { array: array.as_any().extract()?, one: true });
+        return Ok(Given { array: array.as_any().extract()?, lead: Vec::new() });
     }
-    let expected = || "a number or (n,) numbers".to_owned();
-    let array = numbers(given, what, &expected)?;
-    if array.ndim() != 1 {
-        let shape = array.getattr("shape")?;
-        return Err(wrong(format!("{what} has shape {shape}, expected {}", expected())));
-    }
-    Ok(Given { array: array.call_method1("reshape", ((-1, 1),))?.extract()?, one: false })
+    Given::new(&numbers(given, what, &|| "a number or an array of numbers".to_owned())?, 0)
 }
 
 /// All numbers of a one-dimensional array.

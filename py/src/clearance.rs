@@ -9,14 +9,14 @@ use opm_interference::{Distances, Interference};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
-/// The two bodies that are nearest to each other, at each of ``n`` poses.
+/// The two bodies that are nearest to each other, at each pose.
 ///
 /// Links and the platform are rods between their joints, with the radii of the mechanism file; obstacles are those of the file.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Clearance {
-    /// (n,): the distance of the nearest two, metres; negative where they overlap, NaN where the pose is out of reach.
+    /// (...): the distance of the nearest two, metres; negative where they overlap, NaN where the pose is out of reach.
     distance: Py<PyArrayDyn<f64>>,
-    /// (n,): which two these are, as an index of `pairs`; -1 where the pose is out of reach.
+    /// (...): which two these are, as an index of `pairs`; -1 where the pose is out of reach.
     pair: Py<PyArrayDyn<i64>>,
     /// The names of the pairs that are tested.
     pairs: Vec<(String, String)>,
@@ -48,7 +48,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.

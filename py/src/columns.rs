@@ -96,7 +96,7 @@ macro_rules! columns {
                 $crate::columns::table(slf.as_any(), "to_xarray")
             }
 
-            /// The values of one joint or imaginary joint, (n,): a view.
+            /// The values of one joint or imaginary joint, (...): a view.
             fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
                 let tables = [
                     (&self.joint_names[..], self.joints.bind(py).as_any()),

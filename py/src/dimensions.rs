@@ -3,9 +3,9 @@
 use crate::arguments;
 use crate::error::wrong;
 use crate::manipulator::Manipulator;
-use crate::pickle::{frozen, pickled};
+use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
-use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
+use numpy::{IntoPyArray, PyArrayDyn, PyUntypedArrayMethods};
 use opm_accuracy::Dimensions;
 use opm_core::mechanism::file::hint::expected_one_of;
 use pyo3::prelude::*;
@@ -17,14 +17,14 @@ const BLOCK: usize = 16;
 /// Rates with the dimensions of a mechanism at many poses; NaN where a pose is out of reach, and where they are not known.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct ParameterJacobian {
-    /// (n, j, p): the rate of each joint coordinate with each parameter, while the pose stays. Metres and radians.
-    joints: Py<PyArray3<f64>>,
-    /// (n, d, p): the rate of each task coordinate with each parameter, while the actuated joints keep their values.
-    pose: Py<PyArray3<f64>>,
+    /// (..., j, p): the rate of each joint coordinate with each parameter, while the pose stays. Metres and radians.
+    joints: Py<PyArrayDyn<f64>>,
+    /// (..., d, p): the rate of each task coordinate with each parameter, while the actuated joints keep their values.
+    pose: Py<PyArrayDyn<f64>>,
     /// Names of the parameters.
     parameters: Vec<String>,
-    /// (n,): whether the pose is in reach, joint limits not considered.
-    reachable: Py<PyArray1<bool>>,
+    /// (...): whether the pose is in reach, joint limits not considered.
+    reachable: Py<PyArrayDyn<bool>>,
 }
 
 pickled!(ParameterJacobian { joints, pose, parameters, reachable });
@@ -32,7 +32,7 @@ pickled!(ParameterJacobian { joints, pose, parameters, reachable });
 #[pymethods]
 impl ParameterJacobian {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let poses = self.reachable.bind(py).len()?;
+        let poses = self.reachable.bind(py).len();
         Ok(format!("<ParameterJacobian at {poses} poses: {}>", self.parameters.join(", ")))
     }
 }
@@ -46,7 +46,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (n, d) array_like
+    /// poses : (..., d) array_like
     ///     One row for each pose, one column for each task coordinate; metres and radians.
     /// parameters : sequence of str, optional
     ///     Lengths and angles of :attr:`parameters` that follow from no others; of a point in a family, ``leg4.base.x``. All of
@@ -107,9 +107,9 @@ impl Manipulator {
             threads,
             || inner.solution(),
             |solution, row, [joints, pose]| {
-                let found = inner.inverse(poses.row(row), mode, solution);
-                let found = found.map_err(|error| format!("pose {row}: {error}"))?;
-                let Some(solution) = found else { return Ok([false; 2]) };
+                if !self.solve(&poses, row, mode, solution)? {
+                    return Ok([false; 2]);
+                }
                 let rates =
                     dimensions.at(solution, mode).map_err(|e| format!("pose {row}: {e}"))?;
                 for (out, rates) in [(joints, &rates.joints), (pose, &rates.pose)] {
@@ -125,10 +125,10 @@ impl Manipulator {
         let [reachable, _] =
             std::mem::take(&mut tables.answers).map(|answers| answers.into_pyarray(py));
         Ok(ParameterJacobian {
-            joints: frozen(tables.table(0).reshape([poses.count, j, p])?)?,
-            pose: frozen(tables.table(1).reshape([poses.count, d, p])?)?,
+            joints: poses.frozen(&tables.table(0), &[j, p])?,
+            pose: poses.frozen(&tables.table(1), &[d, p])?,
             parameters: names,
-            reachable: frozen(reachable)?,
+            reachable: poses.frozen(&reachable, &[])?,
         })
     }
 }

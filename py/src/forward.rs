@@ -4,7 +4,7 @@ mod assemblies;
 
 use crate::arguments;
 use crate::error::{failed, wrong};
-use crate::given::Columns;
+use crate::given::{Columns, together};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
@@ -75,10 +75,10 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// joints : (a,) or (n, a) array_like, or mapping
+    /// joints : (..., a) array_like, or mapping
     ///     Values of the actuated joints, in the order of `actuated`, or by name; metres and radians. One row gives arrays
     ///     without the first axis. There is no assembly for a row with NaN.
-    /// near : (d,) or (n, d) array_like, or mapping, optional
+    /// near : (..., d) array_like, or mapping, optional
     ///     The pose from which assemblies are sorted, the nearest first, and from which Newton's method begins; metres and
     ///     radians; one pose is used for all rows. Home if not given.
     /// mode : str, optional
@@ -119,18 +119,12 @@ impl Manipulator {
         method: Option<&str>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Assemblies> {
-        let joints = self.inputs(joints)?;
-        let joints = Rows::new(&joints)?;
         let mode = mode.map(|mode| self.mode(mode)).transpose()?;
-        let starts = near.map(|near| self.poses_of(near, "near")).transpose()?;
+        let mut joints = self.inputs(joints)?;
+        let mut starts = near.map(|near| self.poses_of(near, "near")).transpose()?;
+        together((&mut joints, "joints"), &mut [(starts.as_mut(), "near")])?;
+        let joints = Rows::new(&joints)?;
         let starts = starts.as_ref().map(Rows::new).transpose()?;
-        if let Some(starts) = &starts
-            && starts.count != joints.count
-            && starts.count != 1
-        {
-            let (given, rows) = (starts.count, joints.count);
-            return Err(wrong(format!("{given} rows of near, expected {rows}, or one")));
-        }
         let newton = match method {
             Some("newton") => true,
             None if starts.is_some() && self.inner.forward_closed_form().is_err() => true,
@@ -206,10 +200,7 @@ impl Manipulator {
         py: Python<'py>,
         joints: &Bound<'py, PyAny>,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let coordinates = self.inner.coordinates();
-        let names: Vec<&str> =
-            self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
-        let joints = arguments::row(joints, "joints", Columns::all(&names))?;
+        let joints = arguments::row(joints, "joints", Columns::all(&self.input_names()))?;
         let found = py.detach(|| self.inner.least_change(&joints));
         let Some(LeastChange { together, alone }) = found.map_err(|error| failed(&error))? else {
             return Ok(None);
@@ -228,7 +219,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// joints : (n, a) array_like, or mapping
+    /// joints : (..., a) array_like, or mapping
     ///     Each row has the values of the actuated joints, in the order of `actuated`, or by name; metres and radians. A row
     ///     with NaN is passed over.
     /// near : (d,) array_like, or mapping, optional
@@ -238,7 +229,7 @@ impl Manipulator {
     ///
     /// Returns
     /// -------
-    /// (n, d) ndarray
+    /// (..., d) ndarray
     ///     Task coordinates, metres and radians; NaN in the rows for which no assembly was found.
     ///
     /// Raises
@@ -253,7 +244,7 @@ impl Manipulator {
         near: Option<&Bound<'py, PyAny>>,
         mode: &str,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let joints = self.inputs(joints)?;
+        let joints = self.inputs(joints)?.in_order("joints", &self.input_names())?;
         let joints = Rows::new(&joints)?;
         let mode = self.mode(mode)?;
         let start = match near {

@@ -18,8 +18,8 @@ pub struct Columns<'a> {
 /// Rows of numbers, as they were given.
 pub struct Given<'py> {
     pub array: Array<'py>,
-    /// Whether it was one row, without an axis of rows.
-    pub one: bool,
+    /// The axes before that of the columns; none of one row alone.
+    pub lead: Vec<usize>,
 }
 
 impl<'a> Columns<'a> {
@@ -27,17 +27,16 @@ impl<'a> Columns<'a> {
         Self { names, otherwise: None }
     }
 
-    /// Rows of these columns, or one row: an array, a table with names, or numbers by name.
+    /// Rows of these columns, along any axes: an array, a table with names, or numbers by name.
     pub fn read<'py>(self, given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
         if let Some(labels) = labels(given)? {
             return self.by_name(given, &labels, what);
         }
         let width = self.names.len();
-        let expected = || format!("({width},) or (n, {width}): {}", self.names.join(", "));
+        let expected = || format!("(..., {width}): {}", self.names.join(", "));
         let array = numbers(given, what, &expected)?;
         match array.shape() {
-            [one] if *one == width => Given::one(&array),
-            [_, one] if *one == width => Ok(Given { array: array.extract()?, one: false }),
+            [.., last] if *last == width => Given::new(&array, 1),
             _ => {
                 let shape = array.getattr("shape")?;
                 Err(wrong(format!("{what} has shape {shape}, expected {}", expected())))
@@ -63,9 +62,7 @@ impl<'a> Columns<'a> {
             if found[number].is_some() {
                 return Err(wrong(format!("{what} has two columns {name}")));
             }
-            let scalar_or_column = || "a number or (n,) numbers".to_owned();
-            let column = numbers_or_one(&given.get_item(label)?, what, &name, &scalar_or_column)?;
-            found[number] = Some(column);
+            found[number] = Some(numbers_or_one(&given.get_item(label)?, what, &name)?);
         }
         for (number, column) in found.iter_mut().enumerate() {
             if column.is_none() {
@@ -80,30 +77,105 @@ impl<'a> Columns<'a> {
         let together = numpy
             .call_method1("broadcast_arrays", pyo3::types::PyTuple::new(given.py(), &columns)?);
         let together = together.map_err(|_| {
-            let lengths = columns.iter().zip(self.names).filter_map(|(column, name)| {
-                let length = column.len().ok()?;
-                Some(format!("{name} {length}"))
+            let shapes = columns.iter().zip(self.names).filter_map(|(column, name)| {
+                let shape = column.getattr("shape").ok()?;
+                Some(format!("{name} {shape}"))
             });
-            let lengths: Vec<_> = lengths.collect();
-            wrong(format!("{what} has columns of different lengths: {}", lengths.join(", ")))
+            let shapes: Vec<_> = shapes.collect();
+            wrong(format!(
+                "{what} has columns of shapes that do not go together: {}",
+                shapes.join(", ")
+            ))
         })?;
         let options = PyDict::new(given.py());
         options.set_item("axis", -1)?;
         options.set_item("dtype", "float64")?;
         let array: Bound<'py, PyUntypedArray> =
             numpy.call_method("stack", (together,), Some(&options))?.cast_into()?;
-        match array.ndim() {
-            1 => Given::one(&array),
-            _ => Ok(Given { array: array.extract()?, one: false }),
-        }
+        Given::new(&array, 1)
     }
 }
 
 impl<'py> Given<'py> {
-    fn one(array: &Bound<'py, PyUntypedArray>) -> PyResult<Self> {
-        let width = array.shape()[0];
-        Ok(Self { array: array.call_method1("reshape", ((1, width),))?.extract()?, one: true })
+    /// An array whose last axes, so many of them, are one row.
+    pub fn new(array: &Bound<'py, PyUntypedArray>, of_row: usize) -> PyResult<Self> {
+        let (lead, row) = array.shape().split_at(array.ndim() - of_row);
+        let lead = lead.to_vec();
+        let shape = (lead.iter().product::<usize>(), row.iter().product::<usize>());
+        let array = match array.ndim() == 2 && of_row == 1 {
+            true => array.extract()?,
+            false => array.call_method1("reshape", (shape,))?.extract()?,
+        };
+        Ok(Self { array, lead })
     }
+
+    /// The same, if it is one row or one axis of rows: what is followed in time.
+    pub fn in_order(self, what: &str, names: &[&str]) -> PyResult<Self> {
+        match self.lead.len() {
+            0 | 1 => Ok(self),
+            _ => {
+                let width = names.len();
+                let (shape, names) =
+                    (shape(&[&self.lead[..], &[width]].concat()), names.join(", "));
+                Err(wrong(format!("{what} has shape {shape}, expected (n, {width}): {names}")))
+            }
+        }
+    }
+
+    /// Gives it these axes of rows, as NumPy broadcasts them.
+    fn stretch(&mut self, lead: &[usize]) -> PyResult<()> {
+        let array: &Bound<'py, _> = &self.array;
+        let width = array.shape()[1];
+        let with = |lead: &[usize]| [lead, &[width]].concat();
+        let numpy = array.py().import("numpy")?;
+        let full = array.call_method1("reshape", (with(&self.lead),))?;
+        let full = numpy.call_method1("broadcast_to", (full, with(lead)))?;
+        let rows = lead.iter().product::<usize>();
+        self.array = full.call_method1("reshape", ((rows, width),))?.extract()?;
+        self.lead = lead.to_vec();
+        Ok(())
+    }
+}
+
+/// Broadcasts the rows of arguments that go together, as NumPy does. One row of the others is for all, and stays one.
+pub fn together<'py>(
+    (first, what): (&mut Given<'py>, &str),
+    others: &mut [(Option<&mut Given<'py>>, &str)],
+) -> PyResult<()> {
+    let mut lead = first.lead.clone();
+    for (other, name) in others.iter().filter_map(|(o, name)| Some((o.as_ref()?, name))) {
+        lead = broadcast(&lead, &other.lead).ok_or_else(|| {
+            let [rows, expected] = [&other.lead, &lead].map(|lead| match &lead[..] {
+                [count] => count.to_string(),
+                axes => shape(axes),
+            });
+            wrong(format!("{rows} rows of {name}, expected {expected} as of {what}, or one"))
+        })?;
+    }
+    let others = others.iter_mut().filter_map(|(other, _)| other.as_deref_mut());
+    let other_than_one = others.filter(|other| other.array.shape()[0] != 1);
+    for given in other_than_one.chain([first]).filter(|given| given.lead != lead) {
+        given.stretch(&lead)?;
+    }
+    Ok(())
+}
+
+/// A shape, as NumPy writes it.
+fn shape(axes: &[usize]) -> String {
+    let axes = axes.iter().map(ToString::to_string).collect::<Vec<_>>();
+    format!("({})", axes.join(", "))
+}
+
+/// The axes that arrays of these axes have together.
+fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
+    let (long, short) = if a.len() < b.len() { (b, a) } else { (a, b) };
+    let (own, shared) = long.split_at(long.len() - short.len());
+    let shared = shared.iter().zip(short).map(|pair| match pair {
+        (&a, &b) if a == b || b == 1 => Some(a),
+        (1, &b) => Some(b),
+        _ => None,
+    });
+    own.iter().copied().map(Some).chain(shared).collect()
 }
 
 /// One column: numbers, or one number.
@@ -111,17 +183,12 @@ fn numbers_or_one<'py>(
     given: &Bound<'py, PyAny>,
     what: &str,
     name: &str,
-    expected: &dyn Fn() -> String,
 ) -> PyResult<Bound<'py, PyAny>> {
     if let Ok(number) = given.extract::<f64>() {
         return Ok(number.into_pyobject(given.py())?.into_any());
     }
-    let column = numbers(given, &format!("{name} of {what}"), expected)?;
-    if column.ndim() != 1 {
-        let shape = column.getattr("shape")?;
-        return Err(wrong(format!("{name} of {what} has shape {shape}, expected {}", expected())));
-    }
-    Ok(column.into_any())
+    let expected = || "a number or an array of numbers".to_owned();
+    Ok(numbers(given, &format!("{name} of {what}"), &expected)?.into_any())
 }
 
 /// The labels of columns: those of a mapping, a data frame, a series, or a structured array. `None` if nothing has a

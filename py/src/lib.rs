@@ -29,6 +29,7 @@ mod joint;
 mod joints;
 mod linkage;
 mod manipulator;
+mod matrices;
 mod measure;
 mod parts;
 mod pickle;

@@ -208,8 +208,8 @@ impl Linkage {
     ///
     /// Parameters
     /// ----------
-    /// values : float or (n,) array_like
-    ///     Values of the joint that moves the linkage, radians or metres. One value gives arrays without the first axis. Where
+    /// values : float or (...) array_like
+    ///     Values of the joint that moves the linkage, radians or metres. The arrays of the result begin with their axes. Where
     ///     a value is NaN, so is the position.
     /// input : str, optional
     ///     Name of that joint; the actuated one if not given.
@@ -219,7 +219,7 @@ impl Linkage {
     /// Returns
     /// -------
     /// Solutions
-    ///     The arrays have the shapes ``(n, b, k)``, ``(n, b, i)`` and ``(n, b)``, with the b branches as modes: four of a loop
+    ///     The arrays have the shapes ``(..., b, k)``, ``(..., b, i)`` and ``(..., b)``, with the b branches as modes: four of a loop
     ///     of two sections, which has i = 1 imaginary joint; a traced loop has none. NaN where the loop does not close. Angles are within π of their home values, unless the joint limits allow another revolution;
     ///     ``np.unwrap`` along the first axis makes angles over full revolutions continuous.
     ///

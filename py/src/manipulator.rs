@@ -6,6 +6,7 @@ use crate::error::{failed, wrong};
 use crate::explorer::{self, Explorer};
 use crate::given::{Columns, Given};
 use crate::html;
+use crate::matrices::matrices;
 use crate::pickle::pickled;
 use crate::place::placement;
 use crate::rows::{Rows, Tables, no_memory};
@@ -398,17 +399,18 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping, optional
-    ///     One row for each pose, one column for each task coordinate; metres and radians. One pose gives arrays without the
-    ///     first axis. A mapping or a data frame has numbers or columns by name, in any order; coordinates that are not among
-    ///     them are at home. A row with NaN or a masked entry is out of reach. A float64 array in C order is used without a
+    /// poses : (..., d) array_like, or mapping, optional
+    ///     Metres and radians, the last axis for the task coordinates; the arrays of the result have the axes before it, and
+    ///     none for one pose. A mapping or a data frame has numbers or columns by name, in any order; coordinates that are not
+    ///     among them are at home. A row with NaN or a masked entry is out of reach. A float64 array in C order is used without a
     ///     copy and must not be written to meanwhile; anything else is copied and converted first.
-    /// transforms : (4, 4) or (n, 4, 4) array_like, optional
-    ///     Homogeneous matrices, metres, in place of poses: where the platform is to be, as :meth:`transform` gives it. What is
-    ///     outside the manipulator's motion is out of reach; :meth:`nearest` says by how much.
+    /// transforms : (..., 4, 4) array_like, optional
+    ///     Homogeneous matrices, metres, in place of poses: where the platform is to be, as :meth:`transform` gives it; or a
+    ///     ``RigidTransform`` of SciPy, or a pair of ``(..., 3)`` positions and rotations, which are a ``Rotation`` or
+    ///     ``(..., 3, 3)`` matrices. What is outside the manipulator's motion is out of reach; :meth:`nearest` says by how much.
     /// mode : str
     ///     ``"home"``; or a sign for every two-valued choice, one group for each leg: ``"++ ++ ++ +"``; or ``"all"``, which
-    ///     gives the arrays of the result a second axis, ``(n, m, k)`` instead of ``(n, k)``, with an entry for each
+    ///     gives the arrays of the result one more axis, ``(..., m, k)`` instead of ``(..., k)``, with an entry for each
     ///     of the ``m = 2**choices`` modes of `modes`.
     /// joints : str
     ///     Which joints the ``k`` columns are: ``"all"`` for every joint coordinate, or ``"actuated"``, which takes less memory.
@@ -447,14 +449,13 @@ impl Manipulator {
     ) -> PyResult<Solutions> {
         let columns = self.columns(joints)?;
         let mode = if mode == "all" { None } else { Some(self.mode(mode)?) };
-        let places =
-            transforms.map(|given| arguments::matrices(given, "transforms")).transpose()?;
+        let places = transforms.map(|given| matrices(given, "transforms")).transpose()?;
         let places = places.as_ref().map(Rows::new).transpose()?;
         let given = match (poses, &places) {
             (Some(poses), None) => self.poses(poses)?,
             (None, Some(places)) => {
                 let poses = self.located_poses(py, places, mode, threads)?;
-                Given { array: poses.as_any().extract()?, one: places.one }
+                Given { array: poses.as_any().extract()?, lead: places.lead.to_vec() }
             }
             _ => return Err(wrong("expected poses or transforms, one of the two")),
         };
@@ -693,10 +694,13 @@ impl Manipulator {
 
     /// Rows of values of the actuated joints.
     pub fn inputs<'py>(&self, given: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        Columns::all(&self.input_names()).read(given, "joints")
+    }
+
+    /// The names of the actuated joints.
+    pub fn input_names(&self) -> Vec<&str> {
         let coordinates = self.inner.coordinates();
-        let names: Vec<_> =
-            self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect();
-        Columns::all(&names).read(given, "joints")
+        self.inner.actuated().iter().map(|&i| coordinates[i].name.as_str()).collect()
     }
 
     /// The names of the task coordinates.

@@ -2,6 +2,7 @@
 
 use crate::arguments;
 use crate::manipulator::Manipulator;
+use crate::matrices::matrices;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
@@ -15,12 +16,12 @@ use std::num::NonZeroUsize;
 /// The poses of a manipulator's motion that are nearest to given displacements, and the differences that remain.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Nearest {
-    /// (n, d): task coordinates, metres and radians.
+    /// (..., d): task coordinates, metres and radians.
     poses: Py<PyArrayDyn<f64>>,
-    /// (n, 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero
+    /// (..., 3): rotation vectors from the orientations at the poses to those given, base coordinates, radians; zero
     /// where the displacement is in the motion.
     rotation: Py<PyArrayDyn<f64>>,
-    /// (n, 3): from the platform's points at the poses to those given, base coordinates, metres; zero
+    /// (..., 3): from the platform's points at the poses to those given, base coordinates, metres; zero
     /// where the displacement is in the motion.
     translation: Py<PyArrayDyn<f64>>,
 }
@@ -47,7 +48,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
     /// mode : str
     ///     The working mode, or ``"home"``: dependent coordinates depend on it.
@@ -56,7 +57,7 @@ impl Manipulator {
     ///
     /// Returns
     /// -------
-    /// (n, 4, 4) ndarray
+    /// (..., 4, 4) ndarray
     ///     Homogeneous matrices: a rotation, which is the identity at home unless the coordinates measure it, and a
     ///     position, metres. NaN where dependent coordinates have no solution.
     #[pyo3(signature = (poses, *, mode = "home", threads = None))]
@@ -91,7 +92,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
     /// mode : str
     ///     The working mode, or ``"home"``.
@@ -100,7 +101,7 @@ impl Manipulator {
     ///
     /// Returns
     /// -------
-    /// (n, c) ndarray
+    /// (..., c) ndarray
     ///     One column for each of ``dependent_coordinates``; metres and radians. NaN where they have no solution.
     #[pyo3(signature = (poses, *, mode = "home", threads = None))]
     fn dependent<'py>(
@@ -131,14 +132,15 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// transforms : (4, 4) or (n, 4, 4) array_like
-    ///     Homogeneous matrices, metres.
+    /// transforms : (..., 4, 4) array_like
+    ///     Homogeneous matrices, metres; a ``RigidTransform`` of SciPy, or a pair of ``(..., 3)`` positions and rotations: a
+    ///     ``Rotation`` or ``(..., 3, 3)`` matrices.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
     /// Returns
     /// -------
-    /// (n, d) ndarray
+    /// (..., d) ndarray
     ///     Metres and radians, angles within π of their home values. NaN where the displacement is outside the manipulator's
     ///     motion; :meth:`nearest` gives the difference.
     ///
@@ -153,7 +155,7 @@ impl Manipulator {
         transforms: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let transforms = arguments::matrices(transforms, "transforms")?;
+        let transforms = matrices(transforms, "transforms")?;
         let transforms = Rows::new(&transforms)?;
         let width = self.pose_names().len();
         let poses = self.located_poses(py, &transforms, None, threads)?;
@@ -164,8 +166,9 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// transforms : (4, 4) or (n, 4, 4) array_like
-    ///     Homogeneous matrices, metres.
+    /// transforms : (..., 4, 4) array_like
+    ///     Homogeneous matrices, metres; a ``RigidTransform`` of SciPy, or a pair of ``(..., 3)`` positions and rotations: a
+    ///     ``Rotation`` or ``(..., 3, 3)`` matrices.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
@@ -185,7 +188,7 @@ impl Manipulator {
         transforms: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Nearest> {
-        let transforms = arguments::matrices(transforms, "transforms")?;
+        let transforms = matrices(transforms, "transforms")?;
         let transforms = Rows::new(&transforms)?;
         let widths = [self.pose_names().len(), 3, 3];
         let located = self.located(py, &transforms, threads, widths, |place, [pose, turn, way]| {

@@ -20,8 +20,8 @@ pub struct Rows<'a> {
     values: Cow<'a, [f64]>,
     pub count: usize,
     width: usize,
-    /// Whether it is one row that was given without an axis of rows: results have none, either.
-    pub one: bool,
+    /// The axes along which the rows were given; results have the same ones.
+    pub lead: &'a [usize],
 }
 
 impl<'a> Rows<'a> {
@@ -42,7 +42,7 @@ impl<'a> Rows<'a> {
                 Cow::Owned(values)
             }
         };
-        Ok(Self { values, count, width, one: given.one })
+        Ok(Self { values, count, width, lead: &given.lead })
     }
 
     /// The values of all rows, one row after the other.
@@ -59,16 +59,13 @@ impl<'a> Rows<'a> {
         self.row(number).iter().any(|value| value.is_nan())
     }
 
-    /// A table with a row for each of these rows, as an array of rows of this shape; without the axis of rows
-    /// if the row was given without it.
+    /// A table with a row for each of these rows, as an array of rows of this shape along the axes of these rows.
     pub fn shaped<'py, T: Element>(
         &self,
         table: &Bound<'py, PyAny>,
         row: &[usize],
     ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-        let count = [self.count];
-        let rows = if self.one { &[][..] } else { &count[..] };
-        Ok(table.call_method1("reshape", ([rows, row].concat(),))?.cast_into()?)
+        Ok(table.call_method1("reshape", ([self.lead, row].concat(),))?.cast_into()?)
     }
 
     /// The same, read-only.

@@ -19,19 +19,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Poses that a thread solves between two checks whether it should stop.
 const PART: usize = 4096;
 
-/// Joint values of ``n`` poses, NaN where a pose is out of reach.
+/// Joint values of poses, NaN where a pose is out of reach.
 ///
-/// For one working mode the arrays have the shapes below. For all modes they have one more axis after the first, with one
-/// entry for each mode: ``(n, m, k)``, ``(n, m, j)``, ``(n, m)``.
+/// The arrays begin with the axes of the poses: none for one pose, one for rows of poses. For one working mode they have the
+/// shapes below. For all modes they have one more axis after those, with one entry for each mode: ``(..., m, k)``,
+/// ``(..., m, j)``, ``(..., m)``.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Solutions {
-    /// (n, k): every joint coordinate, metres and radians.
+    /// (..., k): every joint coordinate, metres and radians.
     joints: Py<PyArrayDyn<f64>>,
-    /// (n, j): every imaginary joint, metres and radians.
+    /// (..., j): every imaginary joint, metres and radians.
     imaginary: Py<PyArrayDyn<f64>>,
-    /// (n,): whether the pose is in reach, joint limits not considered.
+    /// (...): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
-    /// (n,): whether the pose is in reach and all joints are within their limits.
+    /// (...): whether the pose is in reach and all joints are within their limits.
     within_limits: Py<PyArrayDyn<bool>>,
     /// Names along the last axis of `joints`.
     joint_names: Vec<String>,
@@ -43,7 +44,7 @@ pub struct Solutions {
     mode: String,
     /// The working modes, in the order of the mode axis if there is one.
     modes: Vec<String>,
-    /// Number of rows, n.
+    /// Number of poses.
     rows: usize,
 }
 

@@ -1,8 +1,8 @@
 //! Jacobians, rates and accelerations, and measures of singularity, for arrays of poses.
 
 use crate::arguments;
-use crate::error::{request, wrong};
-use crate::given::Columns;
+use crate::error::request;
+use crate::given::{Columns, together};
 use crate::html;
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
@@ -15,46 +15,46 @@ use std::num::NonZeroUsize;
 /// Rates and accelerations of every joint at many poses; NaN where a joint has none.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Motion {
-    /// (n, k), rad/s and m/s.
+    /// (..., k), rad/s and m/s.
     joint_rates: Py<PyArrayDyn<f64>>,
-    /// (n, k), rad/s² and m/s².
+    /// (..., k), rad/s² and m/s².
     joint_accelerations: Py<PyArrayDyn<f64>>,
-    /// (n, j), rad/s and m/s.
+    /// (..., j), rad/s and m/s.
     imaginary_rates: Py<PyArrayDyn<f64>>,
-    /// (n, j), rad/s² and m/s².
+    /// (..., j), rad/s² and m/s².
     imaginary_accelerations: Py<PyArrayDyn<f64>>,
-    /// (n,): whether the pose is in reach, joint limits not considered.
+    /// (...): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
-    /// (n,): whether the pose is in reach and every joint has a rate.
+    /// (...): whether the pose is in reach and every joint has a rate.
     regular: Py<PyArrayDyn<bool>>,
 }
 
-/// How near many poses are to a singularity: signed measures without unit, (n,) each, that vanish at a singularity.
+/// How near many poses are to a singularity: signed measures without unit, (...) each, that vanish at a singularity.
 ///
 /// They are NaN where a pose is out of reach. Parallel measures are NaN, too, where the inputs are too few to hold the section.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Singularity {
-    /// (n,), no unit: a measure of the upper section that is zero where the chain of a leg is singular.
+    /// (...), no unit: a measure of the upper section that is zero where the chain of a leg is singular.
     upper_serial: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: a measure of the upper section that is zero where its inputs do not hold it.
+    /// (...), no unit: a measure of the upper section that is zero where its inputs do not hold it.
     upper_parallel: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: a measure of the lower section that is zero where the chain of a leg is singular.
+    /// (...), no unit: a measure of the lower section that is zero where the chain of a leg is singular.
     lower_serial: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: a measure of the lower section that is zero where its inputs do not hold it.
+    /// (...), no unit: a measure of the lower section that is zero where its inputs do not hold it.
     lower_parallel: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: the measure of this kind for the whole mechanism.
+    /// (...), no unit: the measure of this kind for the whole mechanism.
     serial: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: the measure of this kind for the whole mechanism.
+    /// (...), no unit: the measure of this kind for the whole mechanism.
     parallel: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist;
+    /// (...), no unit: condition number of the actuated joints' Jacobian with respect to the platform's twist;
     /// infinite at a singularity.
     condition: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
+    /// (...), no unit: volume of the twists that unit rates of the actuated joints span, with lengths divided by the
     /// characteristic length.
     manipulability: Py<PyArrayDyn<f64>>,
-    /// (n,), no unit: zero where the coordinates of the pose are singular; this is not a singularity of the mechanism.
+    /// (...), no unit: zero where the coordinates of the pose are singular; this is not a singularity of the mechanism.
     coordinates: Py<PyArrayDyn<f64>>,
-    /// (n,): whether the pose is in reach, joint limits not considered.
+    /// (...): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
 }
 
@@ -117,7 +117,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
@@ -128,7 +128,7 @@ impl Manipulator {
     ///
     /// Returns
     /// -------
-    /// (n, a, d) ndarray
+    /// (..., a, d) ndarray
     ///     Ratios of metres and radians. NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
     #[pyo3(signature = (poses, *, mode = "home", joints = "actuated", threads = None))]
     fn jacobian<'py>(
@@ -176,7 +176,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
@@ -185,7 +185,7 @@ impl Manipulator {
     ///
     /// Returns
     /// -------
-    /// (n, 6, d) ndarray
+    /// (..., 6, d) ndarray
     ///     The rows are the angular velocity, then the velocity of the platform's reference point, both along the axes of the
     ///     base, rad/s and m/s. NaN where the pose is out of reach.
     #[pyo3(signature = (poses, *, mode = "home", threads = None))]
@@ -222,12 +222,12 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
-    /// rates : (d,) or (n, d) array_like, or mapping
+    /// rates : (..., d) array_like, or mapping
     ///     First derivatives of the task coordinates by time, m/s and rad/s; one row is for all poses. By name, those that are
     ///     not given are zero.
-    /// accelerations : (d,) or (n, d) array_like, or mapping, optional
+    /// accelerations : (..., d) array_like, or mapping, optional
     ///     Second derivatives, m/s² and rad/s²; zero if not given.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.
@@ -252,23 +252,15 @@ impl Manipulator {
         let names = self.pose_names();
         let none = vec![0.0; names.len()];
         let columns = Columns { names: &names, otherwise: Some(&none) };
-        let poses = self.poses(poses)?;
-        let poses = Rows::new(&poses)?;
-        let per_pose = |rows: &Rows<'_>, what: &str| {
-            // A single row is used for all poses.
-            if rows.count != poses.count && rows.count != 1 {
-                let (given, expected) = (rows.count, poses.count);
-                return Err(wrong(format!("{given} rows of {what}, expected {expected}, or one")));
-            }
-            Ok(())
-        };
-        let rates = columns.read(rates, "rates")?;
-        let rates = Rows::new(&rates)?;
-        per_pose(&rates, "rates")?;
-        let accelerations =
+        let (mut poses, mut rates) = (self.poses(poses)?, columns.read(rates, "rates")?);
+        let mut accelerations =
             accelerations.map(|given| columns.read(given, "accelerations")).transpose()?;
+        together(
+            (&mut poses, "poses"),
+            &mut [(Some(&mut rates), "rates"), (accelerations.as_mut(), "accelerations")],
+        )?;
+        let (poses, rates) = (Rows::new(&poses)?, Rows::new(&rates)?);
         let accelerations = accelerations.as_ref().map(Rows::new).transpose()?;
-        accelerations.iter().try_for_each(|rows| per_pose(rows, "accelerations"))?;
         let (joints, imaginary) = (self.inner.coordinates().len(), self.inner.imaginary().len());
         let mut tables = Tables::fill(
             py,
@@ -325,7 +317,7 @@ impl Manipulator {
     ///
     /// Parameters
     /// ----------
-    /// poses : (d,) or (n, d) array_like, or mapping
+    /// poses : (..., d) array_like, or mapping
     ///     As for :meth:`inverse`.
     /// mode : str
     ///     ``"home"``, or a sign for every two-valued choice.

@@ -9,7 +9,7 @@ import numpy as np
 import opm_kinematics as opm
 import pytest
 
-POSES = "expected (5,) or (n, 5): x, y, zeta, xi, psi"
+POSES = "expected (..., 5): x, y, zeta, xi, psi"
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def test_threads_are_as_many_as_the_program_allows(manipulator, threads):
         (np.zeros(4), "has shape (4,)"),
         ([], "has shape (0,)"),
         (np.zeros((2, 3)), "has shape (2, 3)"),
-        (np.zeros((1, 2, 5)), "has shape (1, 2, 5)"),
+        (np.zeros((1, 5, 2)), "has shape (1, 5, 2)"),
         ([[0, 0], [0]], "is [[0, 0], [0]]"),
         (np.zeros((1, 5), dtype=complex), "has entries of complex128"),
         ([["a"] * 5], "has entries of <U1"),
@@ -131,7 +131,7 @@ def test_ranges_are_those_of_the_program(manipulator):
     for write in (swept.write, swept.write_mcap):
         with pytest.raises(opm.OpmError, match="^axes is 5, expected three names or \"tip\""):
             write("a.mcap", axes=5)
-    with pytest.raises(opm.OpmError, match=re.escape("pose has shape (3,), expected (5,) or (n, 5): x, y, zeta, xi, psi")):
+    with pytest.raises(opm.OpmError, match=re.escape("pose has shape (3,), expected (..., 5): x, y, zeta, xi, psi")):
         manipulator.solids([0, 0, 0])
     with pytest.raises(opm.OpmError, match=re.escape("times has shape (1, 3), expected (n,) numbers")):
         opm.trajectory(manipulator, np.zeros((3, 5)), times=[[0, 1, 2]])

@@ -108,8 +108,8 @@ def test_what_is_wrong_is_told():
         LINKAGE.positions([0], input="q")
     with pytest.raises(opm.OpmError, match="value 1 is inf, expected a finite number"):
         LINKAGE.positions([0, np.inf])
-    with pytest.raises(opm.OpmError, match=r"values has shape \(1, 1\), expected"):
-        LINKAGE.positions([[0]])
+    with pytest.raises(opm.OpmError, match=r"values is 'far', expected a number or an array of numbers"):
+        LINKAGE.positions("far")
     with pytest.raises(opm.OpmError, match="expected two, which form one loop"):
         opm.Linkage.parse(opm.examples.text("plano-spherical-5dof"))
     with pytest.raises(FileNotFoundError, match="opm.examples.text"):

@@ -127,15 +127,14 @@ def test_names_that_do_not_fit_are_refused(m):
     for given, told in [
         ({"x": 0.0, "X": 0.0}, "poses has a column 'X', expected x, y, zeta, xi, psi"),
         (pd.DataFrame({"x": [0.0], "tilt": [0.0]}), "poses has a column 'tilt', expected x, y"),
-        ({"x": [0.0, 1.0], "y": [0.0] * 3}, "poses has columns of different lengths: x 2, y 3"),
-        ({"x": [[0.0]]}, r"x of poses has shape \(1, 1\), expected a number or \(n,\) numbers"),
+        ({"x": [0.0, 1.0], "y": [0.0] * 3}, "poses has columns of shapes that do not go together: x \\(2,\\), y \\(3,\\)"),
         ({"x": "a"}, "x of poses is 'a', expected a number"),
         ({3: 0.0}, "poses has a column 3, expected x"),
     ]:
         with pytest.raises(opm.OpmError, match=f"^{told}"):
             m.inverse(given)
     frame = pd.DataFrame(np.zeros((2, 2)), columns=["x", "x"])
-    with pytest.raises(opm.OpmError, match="x of poses has shape|two columns x"):
+    with pytest.raises(opm.OpmError, match="two columns x"):
         m.inverse(frame)
     with pytest.raises(opm.OpmError, match="^joints has no column S2, expected S1, S2, S3, phi14, phi24"):
         m.forward({"S1": 0.0})

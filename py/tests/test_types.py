@@ -108,7 +108,7 @@ def test_every_array_tells_its_shape_and_unit(of):
     arrays = [f for f in body if isinstance(f, ast.FunctionDef) and ast.unparse(f.returns or f).startswith("NDArray[np.float64]") and not f.args.args[1:]]
     for f in (f for f in arrays if not f.name.startswith("_")):
         doc = inspect.getdoc(getattr(getattr(_native, of), f.name))
-        assert re.match(r"\([\w, ]+\)", doc), f.name
+        assert re.match(r"\([\w, .]+\)", doc), f.name
         assert re.search(r"metres|radians|seconds|no unit|rad/s|m/s", doc), f.name
 
 

@@ -99,13 +99,13 @@ def test_wrong_input_is_told(manipulator):
     home = [manipulator.home]
     with pytest.raises(opm.OpmError, match="joints is 'none'|joints is \"none\""):
         manipulator.jacobian(home, joints="none")
-    with pytest.raises(opm.OpmError, match="2 rows of rates, expected 1"):
-        manipulator.velocity(home, np.zeros((2, 5)))
-    with pytest.raises(opm.OpmError, match=r"rates has shape \(\d+, 4\), expected \(5,\) or \(n, 5\)"):
+    with pytest.raises(opm.OpmError, match="3 rows of rates, expected 2 as of poses, or one"):
+        manipulator.velocity(home * 2, np.zeros((3, 5)))
+    with pytest.raises(opm.OpmError, match=r"rates has shape \(\d+, 4\), expected \(..., 5\)"):
         manipulator.velocity(home, np.zeros((1, 4)))
     with pytest.raises(opm.OpmError, match="length is -1"):
         manipulator.singularity(home, length=-1.0)
-    with pytest.raises(opm.OpmError, match=r"joints has shape \(\d+, 2\), expected \(5,\) or \(n, 5\): S1, S2, S3, phi14, phi24"):
+    with pytest.raises(opm.OpmError, match=r"joints has shape \(\d+, 2\), expected \(..., 5\): S1, S2, S3, phi14, phi24"):
         manipulator.forward(np.zeros((1, 2)))
     with pytest.raises(opm.OpmError):
         manipulator.forward([[np.inf] * 5])

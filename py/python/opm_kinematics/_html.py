@@ -57,11 +57,12 @@ def solutions(found: Solutions) -> str:
     head = ["pose", *(["mode"] if several else []), "within limits", *found.imaginary_names, *found.joint_names]
 
     def cells(row: int) -> list[str]:
-        at = np.unravel_index(row, shape)
+        at = tuple(map(int, np.unravel_index(row, shape)))
         inside = "yes" if found.within_limits[at] else "no" if found.reachable[at] else "out of reach"
-        mode = [found.modes[at[1]]] if several else []
+        mode = [found.modes[at[-1]]] if several else []
+        pose = at[:-1] if several else at
         values = [_number(value) for value in (*found.imaginary[at], *found.joints[at])]
-        return [str(at[0]), *mode, inside, *values]
+        return [", ".join(map(str, pose)) or "0", *mode, inside, *values]
 
     return _paragraph(_summary(found)) + _table(head, _some(found.reachable.size, cells, len(head)))
 

@@ -15,11 +15,14 @@ def to_pandas(found: Solutions | Trajectory) -> Any:
 
     dims, columns = _columns(found)
     index = None
-    if "mode" in dims:
-        rows = range(found.rows)
-        index = pd.MultiIndex.from_product([rows, found.modes], names=["pose", "mode"])  # type: ignore[union-attr]
-    elif "t" in dims:
+    if "t" in dims:
         index = pd.Index(found.times, name="t")  # type: ignore[union-attr]
+    elif dims not in ([], ["pose"]):
+        modes: list[str] = getattr(found, "modes", [])
+        entries = [modes if dim == "mode" else range(n) for dim, n in zip(dims, found.reachable.shape, strict=True)]
+        if dims == ["mode"]:  # One pose in all modes is a table of one pose.
+            dims, entries = ["pose", "mode"], [range(1), modes]
+        index = pd.MultiIndex.from_product(entries, names=dims)
     return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()}, index=index)
 
 
@@ -56,7 +59,9 @@ def _columns(found: Solutions | Trajectory) -> tuple[list[str], dict[str, Any]]:
         columns.update(zip(found.pose_names, found.poses.T, strict=True))  # type: ignore[union-attr]
     else:
         modes = ["mode"] if found.mode == "all" else []
-        dims = ["pose"] * (found.reachable.ndim - len(modes)) + modes
+        # Poses along several axes are counted along each: pose0, pose1, ...
+        axes = found.reachable.ndim - len(modes)
+        dims = (["pose"] if axes == 1 else [f"pose{axis}" for axis in range(axes)]) + modes
     columns.update(found.items())
     flags = ["condition", "reachable", "within_limits", "regular"]
     columns.update((name, getattr(found, name)) for name in flags if hasattr(found, name))

@@ -2,9 +2,9 @@
 
 use crate::error::wrong;
 use crate::interrupt;
-use crate::pickle::{frozen, pickled};
+use crate::pickle::pickled;
 use crate::rows::Rows;
-use numpy::{IntoPyArray, PyArray1, PyArray2};
+use numpy::{IntoPyArray, PyArrayDyn};
 use opm_accuracy::{Assembler, Model, Samples};
 use opm_core::manipulator::Mode;
 use opm_study::Drawing;
@@ -16,18 +16,18 @@ use std::num::{NonZeroU64, NonZeroUsize};
 /// NaN where a pose is out of reach, and where a number is not known.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct AccuracySamples {
-    /// (n, d), metres and radians: the standard deviation of every task coordinate from its nominal value.
-    deviations: Py<PyArray2<f64>>,
-    /// (n,), metres: what 95 % of the displacements of the platform's reference point do not exceed.
-    length: Py<PyArray1<f64>>,
-    /// (n,), radians: what 95 % of the platform's rotations do not exceed.
-    angle: Py<PyArray1<f64>>,
-    /// (n, j), metres: what 95 % of the plays of each joint do not exceed.
-    misfit_length: Py<PyArray2<f64>>,
-    /// (n, j), radians: what 95 % of the plays of each joint do not exceed.
-    misfit_angle: Py<PyArray2<f64>>,
-    /// (n,): how many mechanisms cannot be assembled near the pose.
-    failed: Py<PyArray1<u64>>,
+    /// (..., d), metres and radians: the standard deviation of every task coordinate from its nominal value.
+    deviations: Py<PyArrayDyn<f64>>,
+    /// (...), metres: what 95 % of the displacements of the platform's reference point do not exceed.
+    length: Py<PyArrayDyn<f64>>,
+    /// (...), radians: what 95 % of the platform's rotations do not exceed.
+    angle: Py<PyArrayDyn<f64>>,
+    /// (..., j), metres: what 95 % of the plays of each joint do not exceed.
+    misfit_length: Py<PyArrayDyn<f64>>,
+    /// (..., j), radians: what 95 % of the plays of each joint do not exceed.
+    misfit_angle: Py<PyArrayDyn<f64>>,
+    /// (...): how many mechanisms cannot be assembled near the pose.
+    failed: Py<PyArrayDyn<u64>>,
     /// How many mechanisms are drawn at each pose.
     count: u64,
     /// The seed of what is drawn.
@@ -65,6 +65,9 @@ pub fn draw(
     let progress = Progress::default();
     let at_pose = |row: usize| -> Result<Option<Samples>, String> {
         let mut solution = manipulator.solution();
+        if poses.missing(row) {
+            return Ok(None);
+        }
         let found = manipulator.inverse(poses.row(row), mode, &mut solution);
         let Some(at) = found.map_err(|error| format!("pose {row}: {error}"))? else {
             return Ok(None);
@@ -76,7 +79,7 @@ pub fn draw(
     };
     let all = || (0..poses.count).map(at_pose).collect::<Result<Vec<_>, String>>();
     let all = interrupt::run(py, threads, all, || progress.cancel())?.map_err(wrong)?;
-    let (n, d) = (poses.count, manipulator.task_coordinates().len());
+    let d = manipulator.task_coordinates().len();
     let j = manipulator.mechanism().joints().count();
     let table = |width: usize, values: &dyn Fn(&Samples) -> Vec<f64>| {
         let rows = all.iter().flat_map(|found| {
@@ -85,20 +88,20 @@ pub fn draw(
             if values.len() == width { values } else { vec![f64::NAN; width] }
         });
         let flat: Vec<f64> = rows.collect();
-        numpy::PyArrayMethods::reshape(&flat.into_pyarray(py), [n, width])
+        poses.frozen(&flat.into_pyarray(py), &[width])
     };
     let flat = |value: fn(&Samples) -> f64| {
         let values = all.iter().map(|found| found.as_ref().map_or(f64::NAN, value));
-        frozen(values.collect::<Vec<_>>().into_pyarray(py))
+        poses.frozen(&values.collect::<Vec<_>>().into_pyarray(py), &[])
     };
     let failed: Vec<u64> = all.iter().map(|found| found.as_ref().map_or(0, |s| s.failed)).collect();
     Ok(AccuracySamples {
-        deviations: frozen(table(d, &|samples| samples.deviations.clone())?)?,
+        deviations: table(d, &|samples| samples.deviations.clone())?,
         length: flat(|samples| samples.length)?,
         angle: flat(|samples| samples.angle)?,
-        misfit_length: frozen(table(j, &|s| s.misfit.iter().map(|play| play[0]).collect())?)?,
-        misfit_angle: frozen(table(j, &|s| s.misfit.iter().map(|play| play[1]).collect())?)?,
-        failed: frozen(failed.into_pyarray(py))?,
+        misfit_length: table(j, &|s| s.misfit.iter().map(|play| play[0]).collect())?,
+        misfit_angle: table(j, &|s| s.misfit.iter().map(|play| play[1]).collect())?,
+        failed: poses.frozen(&failed.into_pyarray(py), &[])?,
         count: count.get(),
         seed,
     })

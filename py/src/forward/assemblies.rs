@@ -4,33 +4,34 @@ use super::{Assembly, Found};
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::Rows;
-use numpy::{Element, IntoPyArray, PyArrayDyn};
+use numpy::{Element, IntoPyArray, PyArrayDyn, PyUntypedArrayMethods};
 use opm_core::forward as core;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyList};
 
-/// Every assembly for each of ``n`` rows of actuated joint values: arrays, and a sequence of lists of :class:`Assembly`.
+/// Every assembly for each row of actuated joint values: arrays, and a sequence of lists of :class:`Assembly`.
 ///
 /// The arrays have an axis for the assemblies of a row, sorted, with ``m`` places: as many as the row with the most. Places
-/// beyond a row's `counts` are NaN. For one row alone the arrays have no first axis, and it is a sequence of assemblies.
+/// beyond a row's `counts` are NaN. The arrays begin with the axes of
+/// the rows. For one row alone it is a sequence of assemblies; along several axes, one of such objects.
 #[pyclass(frozen, get_all, module = "opm_kinematics")]
 pub struct Assemblies {
-    /// (n,): number of assemblies of each row.
+    /// (...): number of assemblies of each row.
     counts: Py<PyArrayDyn<i64>>,
-    /// (n,): whether all assemblies of a row are known; see :meth:`Manipulator.forward`. Newton's method does not tell.
+    /// (...): whether all assemblies of a row are known; see :meth:`Manipulator.forward`. Newton's method does not tell.
     complete: Py<PyArrayDyn<bool>>,
-    /// (n, m, d): task coordinates, metres and radians.
+    /// (..., m, d): task coordinates, metres and radians.
     poses: Py<PyArrayDyn<f64>>,
-    /// (n, m, 4, 4): homogeneous matrices of the platform, as :meth:`Manipulator.transform` gives them, metres.
+    /// (..., m, 4, 4): homogeneous matrices of the platform, as :meth:`Manipulator.transform` gives them, metres.
     transforms: Py<PyArrayDyn<f64>>,
-    /// (n, m, k): every joint coordinate, metres and radians.
+    /// (..., m, k): every joint coordinate, metres and radians.
     joints: Py<PyArrayDyn<f64>>,
-    /// (n, m, j): every imaginary joint, metres and radians.
+    /// (..., m, j): every imaginary joint, metres and radians.
     imaginary: Py<PyArrayDyn<f64>>,
-    /// (n, m): whether all joints are within their limits.
+    /// (..., m): whether all joints are within their limits.
     within_limits: Py<PyArrayDyn<bool>>,
-    /// (n, m), no unit: closure error of the legs: radians, and lengths divided by the mechanism's size.
+    /// (..., m), no unit: closure error of the legs: radians, and lengths divided by the mechanism's size.
     residuals: Py<PyArrayDyn<f64>>,
     /// The working modes of the assemblies: a list for each row; a list of modes for one row alone.
     modes: Py<PyList>,
@@ -53,6 +54,21 @@ pickled!(Assemblies {
     joint_names,
     imaginary_names,
 });
+
+/// The lists of all rows, as lists of lists along these axes.
+fn nested<'py>(
+    py: Python<'py>,
+    lead: &[usize],
+    mut lists: Vec<Bound<'py, PyList>>,
+) -> PyResult<Bound<'py, PyList>> {
+    for (axis, &length) in lead.iter().enumerate().rev() {
+        // Without entries there are no lists to be put together.
+        let count: usize = lead[..axis].iter().product();
+        let lists_of = |part: usize| PyList::new(py, &lists[part * length..][..length]);
+        lists = (0..count).map(lists_of).collect::<PyResult<_>>()?;
+    }
+    Ok(lists.pop().unwrap_or_else(|| PyList::empty(py)))
+}
 
 impl Assemblies {
     /// The assemblies of every row.
@@ -92,10 +108,7 @@ impl Assemblies {
         }
         let counts: Vec<i64> = found.iter().map(|row| row.list.len() as i64).collect();
         let complete: Vec<bool> = found.iter().map(|row| row.complete).collect();
-        let modes = match modes.pop() {
-            Some(only) if rows.one => only,
-            last => PyList::new(py, modes.into_iter().chain(last))?,
-        };
+        let modes = nested(py, rows.lead, modes)?;
         Ok(Self {
             counts: rows.frozen(&counts.into_pyarray(py), &[])?,
             complete: rows.frozen(&complete.into_pyarray(py), &[])?,
@@ -135,8 +148,28 @@ impl Assemblies {
     }
 
     /// Whether it is of one row alone.
-    fn one(&self, py: Python<'_>) -> PyResult<bool> {
-        Ok(self.counts.bind(py).getattr("ndim")?.extract::<usize>()? == 0)
+    /// The assemblies for one entry of the first axis of several.
+    fn part(&self, py: Python<'_>, at: usize) -> PyResult<Self> {
+        fn of<T: Element>(
+            py: Python<'_>,
+            array: &Py<PyArrayDyn<T>>,
+            at: usize,
+        ) -> PyResult<Py<PyArrayDyn<T>>> {
+            Ok(array.bind(py).get_item(at)?.cast_into()?.unbind())
+        }
+        Ok(Self {
+            counts: of(py, &self.counts, at)?,
+            complete: of(py, &self.complete, at)?,
+            poses: of(py, &self.poses, at)?,
+            transforms: of(py, &self.transforms, at)?,
+            joints: of(py, &self.joints, at)?,
+            imaginary: of(py, &self.imaginary, at)?,
+            within_limits: of(py, &self.within_limits, at)?,
+            residuals: of(py, &self.residuals, at)?,
+            modes: self.modes.bind(py).get_item(at)?.cast_into()?.unbind(),
+            joint_names: self.joint_names.clone(),
+            imaginary_names: self.imaginary_names.clone(),
+        })
     }
 }
 
@@ -160,8 +193,10 @@ impl Assemblies {
         let place = place.ok_or_else(|| {
             PyIndexError::new_err(format!("{number} is not an index of {length} entries"))
         })?;
-        if self.one(py)? {
-            return Ok(Bound::new(py, self.assembly(py, &[place])?)?.into_any());
+        match self.counts.bind(py).ndim() {
+            0 => return Ok(Bound::new(py, self.assembly(py, &[place])?)?.into_any()),
+            1 => {}
+            _ => return Ok(Bound::new(py, self.part(py, place)?)?.into_any()),
         }
         let count = modes.get_item(place)?.len()?;
         let list = (0..count).map(|at| self.assembly(py, &[place, at]));

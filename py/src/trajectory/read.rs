@@ -41,7 +41,8 @@ pub(super) fn through(
     times: Option<&[f64]>,
     ends: Ends,
 ) -> PyResult<Read> {
-    let poses = manipulator.poses_of(poses, "motion")?;
+    let names = manipulator.pose_names();
+    let poses = manipulator.poses_of(poses, "motion")?.in_order("motion", &names)?;
     let poses = Rows::new(&poses)?;
     let seconds: Vec<f64> = (0..poses.count).map(|row| row as f64).collect();
     let times = times.unwrap_or(&seconds);
@@ -49,7 +50,6 @@ pub(super) fn through(
         let (poses, times) = (poses.count, times.len());
         return Err(wrong(format!("{times} times for {poses} poses, expected one for each pose")));
     }
-    let names = manipulator.pose_names();
     for row in 0..poses.count {
         if let Some(number) = poses.row(row).iter().position(|value| !value.is_finite()) {
             let (name, value) = (names[number], poses.row(row)[number]);
