@@ -139,6 +139,7 @@ fn column(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
 /// Returns
 /// -------
 /// Calibration
+///     The corrected mechanism, its parameters with their standard errors, and what the measurements leave.
 ///
 /// Raises
 /// ------
@@ -168,7 +169,11 @@ pub fn calibrate(
     let mut columns = Vec::new();
     let mut values: Vec<Vec<Option<f64>>> = Vec::new();
     // A dictionary, or a table of pandas or polars.
-    for item in measurements.call_method0("items")?.try_iter()? {
+    let items = measurements.getattr_opt("items")?.ok_or_else(|| {
+        let expected = "a mapping or a table of columns by name";
+        wrong(format!("measurements is {}, expected {expected}", arguments::shown(measurements)))
+    })?;
+    for item in items.call0()?.try_iter()? {
         let (name, given): (String, Bound<'_, PyAny>) = item?.extract()?;
         columns.push(Column::named(&name, core, &points).map_err(wrong)?);
         let own = column(&name, &given)?;

@@ -172,7 +172,9 @@ pub fn recover(
     output: Option<Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     let target = match &output {
-        Some(output) => arguments::path(output)?,
+        Some(output) => arguments::path(output).map_err(|_| {
+            wrong(format!("output is {}, expected a path", arguments::shown(output)))
+        })?,
         None => recovered_name(&path),
     };
     if !target.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {

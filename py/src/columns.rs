@@ -54,16 +54,31 @@ macro_rules! columns {
             }
 
             /// The names of the joints, then of the imaginary joints.
+            ///
+            /// Returns
+            /// -------
+            /// KeysView
+            ///     The names, in order.
             fn keys<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
                 $crate::columns::view(slf.as_any(), "KeysView")
             }
 
             /// The values of each joint and imaginary joint: views.
+            ///
+            /// Returns
+            /// -------
+            /// ValuesView
+            ///     The values of each, as ``self[name]``.
             fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
                 $crate::columns::view(slf.as_any(), "ValuesView")
             }
 
             /// Names and values.
+            ///
+            /// Returns
+            /// -------
+            /// ItemsView
+            ///     Names with values.
             fn items<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
                 $crate::columns::view(slf.as_any(), "ItemsView")
             }
@@ -76,6 +91,11 @@ macro_rules! columns {
             ///     Name of the joint.
             /// default : object, optional
             ///     What is returned if there is none.
+            ///
+            /// Returns
+            /// -------
+            /// ndarray or object
+            ///     ``self[name]``, or `default`.
             #[pyo3(signature = (name, default = None, /))]
             fn get<'py>(
                 &self,
@@ -87,11 +107,21 @@ macro_rules! columns {
             }
 
             /// A table of pandas, with a row for each row of the arrays and each mode, and a column for each joint.
+            ///
+            /// Returns
+            /// -------
+            /// pandas.DataFrame
+            ///     SI units and radians.
             fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
                 $crate::columns::table(slf.as_any(), "to_pandas")
             }
 
             /// A dataset of xarray, with a variable for each joint, which has its unit.
+            ///
+            /// Returns
+            /// -------
+            /// xarray.Dataset
+            ///     SI units and radians.
             fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
                 $crate::columns::table(slf.as_any(), "to_xarray")
             }

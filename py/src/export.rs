@@ -97,6 +97,11 @@ impl Manipulator {
     ///
     /// It is what the loader of Gepetto's example-parallel-robots for Pinocchio reads: ``closed_loop`` has pairs of links
     /// that coincide, ``type`` their type, and ``name_mot`` the actuated joints.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text of a YAML file.
     fn to_closures(&self, py: Python<'_>) -> PyResult<String> {
         Ok(model(py, self.inner.mechanism(), None)?.closures)
     }
@@ -135,6 +140,11 @@ impl Linkage {
     ///
     /// It is what the loader of Gepetto's example-parallel-robots for Pinocchio reads: ``closed_loop`` has pairs of links
     /// that coincide, ``type`` their type, and ``name_mot`` the actuated joints.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text of a YAML file.
     fn to_closures(&self, py: Python<'_>) -> PyResult<String> {
         Ok(model(py, self.mechanism(), None)?.closures)
     }

@@ -1,5 +1,6 @@
 //! Mechanisms from joints as data, and their joints.
 
+use crate::arguments::shown;
 use crate::error::wrong;
 use crate::joint::{Joint, place};
 use crate::manipulator::Manipulator;
@@ -50,18 +51,24 @@ impl Manipulator {
     /// >>> [c.name for c in m.task_coordinates]
     /// ['x', 'y', 'theta']
     #[staticmethod]
-    #[pyo3(signature = (legs, *, platform = (0.0, 0.0, 0.0), name = "mechanism", tolerance = None))]
+    #[pyo3(signature = (legs, *, platform = [0.0; 3], name = "mechanism", tolerance = None))]
     fn from_joints(
         py: Python<'_>,
         legs: &Bound<'_, PyAny>,
-        platform: (f64, f64, f64),
+        platform: [f64; 3],
         name: &str,
         tolerance: Option<f64>,
     ) -> PyResult<Self> {
         let named: Vec<(String, Vec<Joint>)> = match legs.cast::<PyMapping>() {
-            Ok(mapping) => mapping.items()?.extract()?,
+            Ok(mapping) => mapping.items()?.extract().map_err(|_| {
+                let expected = "a sequence of joints for the name of each leg";
+                wrong(format!("legs is {}, expected {expected}", shown(legs)))
+            })?,
             Err(_) => {
-                let legs: Vec<Vec<Joint>> = legs.extract()?;
+                let legs: Vec<Vec<Joint>> = legs.extract().map_err(|_| {
+                    let expected = "a sequence of joints for each leg";
+                    wrong(format!("legs is {}, expected {expected}", shown(legs)))
+                })?;
                 let number = |(i, leg)| (format!("leg{}", i + 1), leg);
                 legs.into_iter().enumerate().map(number).collect()
             }
@@ -73,7 +80,7 @@ impl Manipulator {
         let mechanism = Mechanism {
             name: name.to_owned(),
             legs: legs.collect::<PyResult<_>>()?,
-            platform: Point3::new(platform.0, platform.1, platform.2),
+            platform: Point3::from(platform),
             task: TaskHints::default(),
             bodies: BodyMasses::default(),
             shapes: Shapes::default(),

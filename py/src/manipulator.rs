@@ -79,6 +79,11 @@ impl TaskCoordinate {
 pickled!(TaskCoordinate { name, home, unit });
 
 /// Names of the mechanisms that come with the package.
+///
+/// Returns
+/// -------
+/// list of str
+///     For :func:`example`.
 #[pyfunction]
 pub fn examples() -> Vec<&'static str> {
     shipped::EXAMPLES.iter().map(|example| example.name).collect()

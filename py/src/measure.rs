@@ -101,6 +101,11 @@ pub fn ranges(over: &Bound<'_, PyMapping>) -> PyResult<Vec<CoordinateRange>> {
 /// shards : int, optional
 ///     How many parts of a round the executor gets: as for :func:`sweep`, but each except the last has at least 4096 boxes.
 ///
+/// Returns
+/// -------
+/// Measure
+///     The value with its guaranteed bounds.
+///
 /// Raises
 /// ------
 /// OpmError

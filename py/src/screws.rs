@@ -1,15 +1,18 @@
 //! Manipulators from arrays of joint screws, and the screws of any manipulator.
 
+use crate::arguments::shown;
 use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::snap;
-use nalgebra::{Point3, Vector6};
+use nalgebra::{Point3, Vector3, Vector6};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods};
 use opm_core::group::screw::Screw;
 use opm_core::mechanism::file::{self, Digits, FileErrors, FileUnits};
 use opm_core::mechanism::{Mechanism, ScrewJoint};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
+use std::ffi::CString;
 
 /// A leg's name and the screws of its joints.
 type Leg = (String, Vec<Screw>);
@@ -45,6 +48,11 @@ impl Manipulator {
     ///     count as lengths at the mechanism's size. Each joint that is moved gives a UserWarning with its name and by how
     ///     much it was off; `text` is then the corrected mechanism.
     ///
+    /// Returns
+    /// -------
+    /// Manipulator
+    ///     Decomposed and compiled.
+    ///
     /// Raises
     /// ------
     /// OpmError
@@ -68,54 +76,69 @@ impl Manipulator {
         tolerance: Option<f64>,
     ) -> PyResult<Self> {
         let legs = read_legs(legs)?;
-        let actuated: Vec<Vec<bool>> = per_joint(actuated, "actuated", "bools", &legs)?;
-        let home = home.map(|given| per_joint::<f64>(given, "home", "numbers", &legs));
-        let home = home.transpose()?;
-        let limits = limits.map(|given| per_joint(given, "limits", "pairs or None", &legs));
-        let limits: Option<Vec<Vec<Option<[f64; 2]>>>> = limits.transpose()?;
-        let names = joints.map(|given| per_joint::<String>(given, "joints", "names", &legs));
-        let names = names.transpose()?;
-        let joint = |leg: usize, joint: usize, screw: Screw| {
-            let place = || place(&legs[leg].0, joint);
-            let home = home.as_ref().map_or(0.0, |home| home[leg][joint]);
-            if !home.is_finite() {
-                return Err(wrong(format!("{}: home is {home}, expected a number", place())));
-            }
-            let limits = match limits.as_ref().and_then(|limits| limits[leg][joint]) {
-                Some([f64::NEG_INFINITY, f64::INFINITY]) | None => None,
-                Some(pair) if pair.iter().all(|limit| limit.is_finite()) => Some(pair),
-                Some([low, high]) => {
-                    return Err(wrong(format!(
-                        "{}: limits are {low} and {high}, expected two numbers, or both infinite \
-                         for none",
-                        place()
-                    )));
+        let turned = halves_look_exchanged(&legs);
+        let made = || {
+            let actuated: Vec<Vec<bool>> = per_joint(actuated, "actuated", "bools", &legs)?;
+            let home = home.map(|given| per_joint::<f64>(given, "home", "numbers", &legs));
+            let home = home.transpose()?;
+            let limits = limits.map(|given| per_joint(given, "limits", "pairs or None", &legs));
+            let limits: Option<Vec<Vec<Option<[f64; 2]>>>> = limits.transpose()?;
+            let names = joints.map(|given| per_joint::<String>(given, "joints", "names", &legs));
+            let names = names.transpose()?;
+            let joint = |leg: usize, joint: usize, screw: Screw| {
+                let place = || place(&legs[leg].0, joint);
+                let home = home.as_ref().map_or(0.0, |home| home[leg][joint]);
+                if !home.is_finite() {
+                    return Err(wrong(format!("{}: home is {home}, expected a number", place())));
                 }
+                let limits = match limits.as_ref().and_then(|limits| limits[leg][joint]) {
+                    Some([f64::NEG_INFINITY, f64::INFINITY]) | None => None,
+                    Some(pair) if pair.iter().all(|limit| limit.is_finite()) => Some(pair),
+                    Some([low, high]) => {
+                        return Err(wrong(format!(
+                            "{}: limits are {low} and {high}, expected two numbers, or both infinite \
+                         for none",
+                            place()
+                        )));
+                    }
+                };
+                let name = match &names {
+                    Some(names) => names[leg][joint].clone(),
+                    None => format!("q{}_{}", leg + 1, joint + 1),
+                };
+                Ok(ScrewJoint { name, screw, actuated: actuated[leg][joint], home, limits })
             };
-            let name = match &names {
-                Some(names) => names[leg][joint].clone(),
-                None => format!("q{}_{}", leg + 1, joint + 1),
-            };
-            Ok(ScrewJoint { name, screw, actuated: actuated[leg][joint], home, limits })
+            let legs_of_joints = legs.iter().enumerate().map(|(number, (name, screws))| {
+                let joints = screws.iter().enumerate();
+                let joints = joints.map(|(i, &screw)| joint(number, i, screw));
+                Ok((name.clone(), joints.collect::<PyResult<_>>()?))
+            });
+            let legs_of_joints = legs_of_joints.collect::<PyResult<Vec<_>>>()?;
+            if let Some(odd) = platform.iter().find(|c| !c.is_finite()) {
+                return Err(wrong(format!("platform has {odd} in it, expected a point [x, y, z]")));
+            }
+            let mechanism = Mechanism::from_screws(name, legs_of_joints, Point3::from(platform))
+                .map_err(|(leg, joint, error)| {
+                    wrong(format!("{}: {error}", place(&legs[leg].0, joint)))
+                })?;
+            // The mechanism goes through a file, so that it is checked like any other, can be saved, and can be pickled.
+            let text = file::write(&mechanism, FileUnits::SI, Digits::All);
+            let file = file::read(&text).map_err(|e| wrong(message(&e, &text, &legs)))?;
+            let (file, text) = snap::within(py, (file, text), name, tolerance)?;
+            Self::compile(file, text, name.to_owned())
         };
-        let legs_of_joints = legs.iter().enumerate().map(|(number, (name, screws))| {
-            let joints = screws.iter().enumerate();
-            let joints = joints.map(|(i, &screw)| joint(number, i, screw));
-            Ok((name.clone(), joints.collect::<PyResult<_>>()?))
-        });
-        let legs_of_joints = legs_of_joints.collect::<PyResult<Vec<_>>>()?;
-        if let Some(odd) = platform.iter().find(|c| !c.is_finite()) {
-            return Err(wrong(format!("platform has {odd} in it, expected a point [x, y, z]")));
+        let hint = "the rows of legs look like (v; omega), expected (omega; v)";
+        match made() {
+            Err(error) if turned => Err(wrong(format!("{}; {hint}", error.value(py)))),
+            Err(error) => Err(error),
+            Ok(made) => {
+                if turned {
+                    let text = CString::new(format!("{name}: {hint}"))?;
+                    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+                }
+                made.warned(py)
+            }
         }
-        let mechanism = Mechanism::from_screws(name, legs_of_joints, Point3::from(platform))
-            .map_err(|(leg, joint, error)| {
-                wrong(format!("{}: {error}", place(&legs[leg].0, joint)))
-            })?;
-        // The mechanism goes through a file, so that it is checked like any other, can be saved, and can be pickled.
-        let text = file::write(&mechanism, FileUnits::SI, Digits::All);
-        let file = file::read(&text).map_err(|e| wrong(message(&e, &text, &legs)))?;
-        let (file, text) = snap::within(py, (file, text), name, tolerance)?;
-        Self::compile(file, text, name.to_owned())?.warned(py)
     }
 
     /// The joints' unit screws by leg, (f, 6) each: (omega; v) in base coordinates, as they are at home, one row for each degree of freedom.
@@ -132,6 +155,21 @@ impl Manipulator {
     }
 }
 
+/// Whether the rows are twists with unit directions if their halves are exchanged, and are not as they are given.
+fn halves_look_exchanged(legs: &[Leg]) -> bool {
+    let unit = |vector: &Vector3<f64>| (vector.norm() - 1.0).abs() < 1e-6;
+    let tells = |first: &Vector3<f64>, second: &Vector3<f64>| {
+        unit(first) || (first.norm() == 0.0 && unit(second))
+    };
+    let all = |exchanged: bool| {
+        legs.iter().flat_map(|(_, screws)| screws).all(|screw| match exchanged {
+            true => tells(&screw.linear, &screw.angular),
+            false => tells(&screw.angular, &screw.linear),
+        })
+    };
+    all(true) && !all(false)
+}
+
 fn place(leg: &str, joint: usize) -> String {
     format!("{leg}, joint {}", joint + 1)
 }
@@ -141,14 +179,18 @@ fn read_legs(given: &Bound<'_, PyAny>) -> PyResult<Vec<Leg>> {
     let named: Vec<(String, Bound<'_, PyAny>)> = match given.cast::<PyMapping>() {
         Ok(mapping) => mapping.items()?.extract()?,
         Err(_) => {
-            let arrays: Vec<_> = given.try_iter()?.collect::<PyResult<_>>()?;
+            let none = |_| {
+                let expected = "an (n, 6) array of screws for each leg";
+                wrong(format!("legs is {}, expected {expected}", shown(given)))
+            };
+            let arrays: Vec<_> = given.try_iter().map_err(none)?.collect::<PyResult<_>>()?;
             arrays.into_iter().enumerate().map(|(i, leg)| (format!("leg{}", i + 1), leg)).collect()
         }
     };
     let read = |(name, rows): (String, Bound<'_, PyAny>)| {
         let expected = "expected an (n, 6) array of screws (omega; v), a row a joint";
         let array = rows.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>();
-        let array = array.map_err(|_| wrong(format!("{name}: {expected}")))?;
+        let array = array.map_err(|_| wrong(format!("{name} is {}, {expected}", shown(&rows))))?;
         let [joints, width] = [array.shape()[0], array.shape()[1]];
         if width != 6 || joints == 0 {
             return Err(wrong(format!("{name} has shape ({joints}, {width}), {expected}")));
@@ -169,7 +211,8 @@ fn per_joint<'py, T: FromPyObjectOwned<'py>>(
 ) -> PyResult<Vec<Vec<T>>> {
     let expected = |found: String| wrong(format!("{what}: {found}"));
     let of_legs: Vec<Bound<'py, PyAny>> = given.extract().map_err(|_| {
-        expected("expected a sequence for each leg, with an entry for each joint".to_owned())
+        let sequences = "expected a sequence for each leg, with an entry for each joint";
+        expected(format!("{}, {sequences}", shown(given)))
     })?;
     if of_legs.len() != legs.len() {
         let (found, legs) = (of_legs.len(), legs.len());

@@ -97,6 +97,11 @@ pub struct Sweep {
 ///     spaced values, such as ``numpy.linspace`` gives; metres and radians. A coordinate that is not given stays at home. If
 ///     none is given, the grid is fitted to the workspace, with a warning if the workspace continues beyond it.
 ///
+/// Returns
+/// -------
+/// Sweep
+///     The points as they are asked for: :meth:`Sweep.mask`, :meth:`Sweep.points` and others.
+///
 /// Raises
 /// ------
 /// OpmError
@@ -261,11 +266,21 @@ impl Sweep {
     }
 
     /// The points as a table of pandas, with a column for each coordinate.
+    ///
+    /// Returns
+    /// -------
+    /// pandas.DataFrame
+    ///     SI units and radians.
     fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         table(slf.as_any(), "sweep_to_pandas")
     }
 
     /// The mask as an array of xarray, with the values of each coordinate along its axes.
+    ///
+    /// Returns
+    /// -------
+    /// xarray.DataArray
+    ///     SI units and radians along the axes.
     fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         table(slf.as_any(), "sweep_to_xarray")
     }

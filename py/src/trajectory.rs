@@ -165,6 +165,11 @@ struct Source {
 ///     Least distance of two bodies, metres: where it is less, they are in contact (:attr:`Trajectory.contacts`); 0 for
 ///     overlaps.
 ///
+/// Returns
+/// -------
+/// Trajectory
+///     Joint values and rates at each sample, and what cannot be followed.
+///
 /// Raises
 /// ------
 /// OSError

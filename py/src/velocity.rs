@@ -113,7 +113,10 @@ fn counted<const N: usize>(
 
 #[pymethods]
 impl Manipulator {
-    /// Rates of joints for unit rates of the task coordinates.
+    /// The matrix J that maps rates of the task coordinates to rates of joints: joint rates = J · pose rates.
+    ///
+    /// It is the inverse of the Jacobian of serial robots, which maps joint rates to those of the tool. :meth:`twist_jacobian` maps
+    /// rates of the task coordinates to the platform's twist.
     ///
     /// Parameters
     /// ----------

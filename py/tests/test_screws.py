@@ -1,6 +1,8 @@
 """Manipulators from arrays of screws, held against the mechanism files that say the same."""
 
+import contextlib
 import pickle
+import re
 import warnings
 
 import numpy as np
@@ -200,7 +202,7 @@ def test_the_least_change_of_joints_that_do_not_close():
     ("change", "message"),
     [
         ({"legs": np.zeros((3, 3, 5))}, r"leg1 has shape \(3, 5\), expected an \(n, 6\) array of screws"),
-        ({"legs": [ROWS[0], "no", ROWS[2]]}, r"leg2: expected an \(n, 6\) array"),
+        ({"legs": [ROWS[0], "no", ROWS[2]]}, r"leg2 is 'no', expected an \(n, 6\) array"),
         ({"legs": {"a": ROWS[0], "b": [ROWS[1][0], [0] * 6, ROWS[1][2]], "c": ROWS[2]}}, "b, joint 2: all six components are zero"),
         ({"legs": [ROWS[0], ROWS[1], [*ROWS[2][:2], [0, 0, np.nan, 0, 0, 1]]]}, "leg3, joint 3: NaN is among its components"),
         ({"legs": ROWS[:1], "actuated": FLAGS[:1]}, "found 1 .*leg.*, expected at least 2 legs"),
@@ -232,3 +234,37 @@ def test_limits_and_home_are_kept():
     inside = m.inverse(np.stack([np.linspace(-0.5, 0.5, 101), np.zeros(101), np.zeros(101)], axis=1)).joints[:, m.actuated]
     np.testing.assert_array_equal(swept.mask().ravel(), ((inside >= -0.1003) & (inside <= 0.3007)).all(axis=1))
     assert 0 < swept.count < 101
+
+
+def exchanged(screws):
+    return {name: np.roll(rows, 3, axis=1) for name, rows in screws.items()}
+
+
+@pytest.mark.parametrize("name", ["plano-spherical-5dof", "planar-3rpr", "delta"])
+def test_halves_that_look_exchanged_are_told(name):
+    m = opm.examples.load(name)
+    flags = [[True] * len(rows) for rows in m.screws.values()]
+    hint = re.escape("the rows of legs look like (v; omega), expected (omega; v)")
+    with warnings.catch_warnings(record=True) as told, contextlib.suppress(opm.OpmError):
+        warnings.simplefilter("always")
+        opm.Manipulator.from_screws(m.screws, flags)
+    assert not any(re.search(hint, str(one.message)) for one in told)
+    found = []
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        try:
+            opm.Manipulator.from_screws(exchanged(m.screws), flags)
+        except opm.OpmError as error:
+            found.append(str(error))
+    assert any(re.search(hint, text) for text in [*found, *(str(one.message) for one in told)])
+    # Of any length, nothing can be told.
+    with pytest.raises(opm.OpmError) as error:
+        opm.Manipulator.from_screws({leg: 2 * rows for leg, rows in exchanged(m.screws).items()}, [])
+    assert "omega" not in str(error.value)
+
+
+def test_legs_are_one_array():
+    m = opm.examples.load("planar-3rpr")
+    legs = np.array(list(m.screws.values()))
+    again = opm.Manipulator.from_screws(legs, np.array([[j.actuated for j in leg] for leg in m.legs.values()]))
+    assert legs.shape == (3, 3, 6) and list(again.screws) == ["leg1", "leg2", "leg3"]

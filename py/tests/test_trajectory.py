@@ -213,7 +213,7 @@ def test_the_fastest_timing_keeps_the_limits_and_the_poses(tmp_path):
     # The trapezoid does not depend on the times, which may be left out.
     untimed = opm.trajectory(fast, poses, rate=1000, time_optimal=True)
     assert untimed.times[-1] == pytest.approx(found.times[-1], rel=5e-4)
-    with pytest.raises(opm.OpmError, match="motion: expected a path, the name of a shipped motion, or poses with times"):
+    with pytest.raises(opm.OpmError, match="motion is .*, expected a path, the name of a shipped motion, or poses with times"):
         opm.trajectory(fast, poses)
     again = pickle.loads(pickle.dumps(found))
     assert again == found

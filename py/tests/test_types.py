@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import opm_kinematics
 import pytest
 from opm_kinematics import _native
@@ -116,3 +117,109 @@ def test_the_stub_leaves_docstrings_to_the_module():
     described = [node for node in ast.walk(ast.parse(STUB.read_text())) if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
     assert len(described) > 400
     assert [node.name for node in described if ast.get_docstring(node)] == []
+
+
+def returned():
+    """The annotation of what each function of the stub returns, by its name."""
+    for node in ast.parse(STUB.read_text()).body:
+        for function in [node] if isinstance(node, ast.FunctionDef) else getattr(node, "body", []):
+            if isinstance(function, ast.FunctionDef):
+                owner = "" if function is node else f"{node.name}."
+                yield f"opm_kinematics._native.{owner}{function.name}", ast.unparse(function.returns)
+
+
+def test_what_is_returned_is_under_returns():
+    of_stub, checked = dict(returned()), 0
+    for name, thing in members():
+        if isinstance(thing, type) or not callable(thing):
+            continue
+        of_module = name.replace("opm_kinematics.", "opm_kinematics._native.", 1) if "_native" not in name else name
+        answer = of_stub.get(of_module, getattr(thing, "__annotations__", {}).get("return", "something"))
+        has = re.search(r"^Returns\n-+\n\S.*\n {4}\S", inspect.getdoc(thing), re.MULTILINE)
+        assert bool(has) == (answer not in ("None", None)), name
+        checked += 1
+    assert checked > 100
+
+
+#: What is called with a wrong word, by the alias that the stub has for the right ones.
+WORDS = {
+    "_Joints": lambda m, word: m.inverse(m.home, joints=word),
+    "_Frame": lambda m, word: m.analyze(m.home, wrench=[0.0] * 6, frame=word),
+    "_Errors": lambda m, word: m.accuracy(m.home, errors=word),
+    "_Method": lambda m, word: m.forward(np.zeros(3), method=word),
+    "_Coordinates": lambda m, word: m.with_coordinates(word),
+    "_Section": lambda m, word: opm_kinematics.measure(m, section=word),
+    "_Shape": lambda m, word: opm_kinematics.sweep(m, x=(-0.01, 0.01, 3)).inscribed(word),
+    "_Ends": lambda m, word: opm_kinematics.trajectory(m, np.tile(m.home, (3, 1)), times=[0, 1, 2], ends=word),
+    "_Units": lambda m, word: opm_kinematics.trajectory(m, np.tile(m.home, (3, 1)), times=[0, 1, 2]).write_table("a.csv", units=word),
+    "_JointKind": lambda m, word: opm_kinematics.Joint("a", word, axis=(0, 0, 1)),
+    "_Kind": lambda m, word: opm_kinematics.sweep(m, kind=word),
+}
+
+
+def test_the_words_of_arguments_are_those_of_the_module():
+    aliases = {
+        node.target.id: set(re.findall(r"'([a-z-]+)'", ast.unparse(node.value)))
+        for node in ast.parse(STUB.read_text()).body
+        if isinstance(node, ast.AnnAssign) and node.value and ast.unparse(node.value).startswith("Literal[")
+    }
+    assert set(aliases) == set(WORDS)
+    m = opm_kinematics.examples.load("delta")
+    for alias, call in WORDS.items():
+        with pytest.raises(opm_kinematics.OpmError) as told:
+            call(m, "nonsense")
+        message = str(told.value)
+        assert re.match(r"(?:joint a: )?\w+(?: is|:) \"nonsense\", expected", message), message
+        assert set(re.findall(r"[a-z-]+", message.split("expected")[1])) - {"one", "of", "or"} == aliases[alias]
+
+
+class Odd:
+    """What no argument can be."""
+
+    def __repr__(self):
+        return "<odd>"
+
+
+def odd_calls():
+    """Every argument of everything that can be called, given as something odd: its name, and the call."""
+    m, linkage = opm_kinematics.examples.load("plano-spherical-5dof"), opm_kinematics.examples.bennett()
+    followed = opm_kinematics.trajectory(m, "plano-spherical-sinusoids", rate=5)
+    swept = opm_kinematics.sweep(m, x=(-0.1, 0.1, 5), xi=(-0.1, 0.1, 3))
+    whole = {
+        "poses": m.home, "rates": m.home, "joints": np.zeros(5), "transforms": np.eye(4), "values": [0.1], "legs": m.screws,
+        "path": "none.mcap", "text": m.text, "motion": "plano-spherical-sinusoids", "manipulator": m, "coordinates": "tilt-torsion",
+        "measurements": {}, "over": {"x": (-0.1, 0.1)}, "shape": "disc", "start": m.home, "goal": m.home, "changes": {},
+        "name": "a", "kind": "revolute", "actuated": [[True] * len(rows) for rows in m.screws.values()],
+    }  # fmt: skip
+    owners = [(thing, [n for n in vars(type(thing)) if not n.startswith("_")]) for thing in (m, linkage, swept, followed)]
+    owners.append((opm_kinematics, ["Joint", "calibrate", "measure", "recover", "sweep", "trajectory"]))
+    for owner, names in owners:
+        for name in names:
+            function = getattr(owner, name)
+            parameters = inspect.signature(function).parameters.values() if callable(function) else ()
+            for odd in parameters:
+                # An executor is asked for only where it has work, and panels are matplotlib's.
+                if odd.kind is odd.VAR_KEYWORD or odd.name in ("default", "executor", "ax"):
+                    continue
+                given = {p.name: whole[p.name] for p in parameters if p.default is p.empty and p.kind is not p.VAR_KEYWORD and p.name in whole}
+                if name == "inverse" and odd.name not in ("poses", "transforms"):
+                    given["poses"] = m.home
+                if name == "from_joints":
+                    given["legs"] = m.legs
+                given[odd.name] = Odd()
+                first = [given.pop(p.name) for p in parameters if p.kind is p.POSITIONAL_ONLY and p.name in given]
+                yield f"{name}({odd.name}=)", odd.name, lambda f=function, a=first, g=given: f(*a, **g)
+
+
+def test_a_wrong_argument_is_named():
+    checked = 0
+    for call, name, make in odd_calls():
+        with pytest.raises((opm_kinematics.OpmError, TypeError)) as told:
+            make()
+        # From Python 3.11 on, the name is in a note that the traceback shows.
+        message = " ".join([str(told.value), *getattr(told.value, "__notes__", [])])
+        # Waypoints are poses.
+        known = name in message or (name == "motion" and message.startswith("poses")) or "os.PathLike" in message
+        assert known and re.search(r"odd|Odd| needs? ", message), f"{call}: {message}"
+        checked += 1
+    assert checked > 150

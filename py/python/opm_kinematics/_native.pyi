@@ -70,6 +70,29 @@ _Vector: TypeAlias = Sequence[float] | NDArray[np.float64]
 # A value of a joint: for its only coordinate, or one for each.
 _PerCoordinate: TypeAlias = float | Sequence[float | None] | NDArray[np.float64]
 
+# Words that arguments take.
+_Joints: TypeAlias = Literal["all", "actuated"]
+_Frame: TypeAlias = Literal["base", "platform"]
+_Errors: TypeAlias = Literal["axes", "links"]
+_Method: TypeAlias = Literal["every", "newton"]
+_Coordinates: TypeAlias = Literal["euler-angles", "tilt-torsion", "roll-pitch-yaw"]
+_Section: TypeAlias = Literal["whole", "upper", "lower"]
+_Shape: TypeAlias = Literal["disc", "ball", "box"]
+_Ends: TypeAlias = Literal["rest", "natural", "periodic"]
+_Units: TypeAlias = Literal["si", "file"]
+_JointKind: TypeAlias = Literal["revolute", "prismatic", "helical", "cylindrical", "universal", "spherical"]
+_Kind: TypeAlias = Literal[
+    "grid",
+    "constant-orientation",
+    "orientation",
+    "aspects",
+    "reachable",
+    "dexterous",
+    "imaginary",
+    "upper",
+    "lower",
+]
+
 # Numbers, one row or many; or numbers or columns by name.
 _Rows: TypeAlias = ArrayLike | Mapping[str, ArrayLike] | Any
 
@@ -158,7 +181,7 @@ class Joint:
     def __new__(
         cls,
         name: str,
-        kind: str,
+        kind: _JointKind,
         *,
         axis: _Vector | None = None,
         point: _Vector | None = None,
@@ -248,13 +271,13 @@ class Manipulator:
     def load(path: str | PathLike[str], *, tolerance: float | None = None) -> Manipulator: ...
     @staticmethod
     def from_screws(
-        legs: Mapping[str, ArrayLike] | Sequence[ArrayLike],
+        legs: Mapping[str, ArrayLike] | Sequence[ArrayLike] | NDArray[np.float64],
         actuated: Sequence[Sequence[bool]] | Sequence[NDArray[np.bool_]] | NDArray[np.bool_],
         *,
         home: Sequence[Sequence[float]] | Sequence[NDArray[np.float64]] | NDArray[np.float64] | None = None,
         limits: Sequence[Sequence[tuple[float, float] | None]] | NDArray[np.float64] | None = None,
         joints: Sequence[Sequence[str]] | None = None,
-        platform: Sequence[float] | NDArray[np.float64] = ...,
+        platform: _Vector = ...,
         name: str = "mechanism",
         tolerance: float | None = None,
     ) -> Manipulator: ...
@@ -273,7 +296,7 @@ class Manipulator:
     def from_joints(
         legs: Mapping[str, Sequence[Joint]] | Sequence[Sequence[Joint]],
         *,
-        platform: Sequence[float] = ...,
+        platform: _Vector = ...,
         name: str = "mechanism",
         tolerance: float | None = None,
     ) -> Manipulator: ...
@@ -286,7 +309,7 @@ class Manipulator:
         mode: str = "home",
         threads: int | None = None,
     ) -> ParameterJacobian: ...
-    def with_coordinates(self, coordinates: str) -> Manipulator: ...
+    def with_coordinates(self, coordinates: _Coordinates) -> Manipulator: ...
     @property
     def task_coordinates(self) -> list[TaskCoordinate]: ...
     @property
@@ -353,12 +376,12 @@ class Manipulator:
         *,
         transforms: ArrayLike | None = None,
         mode: str = "home",
-        joints: str = "all",
+        joints: _Joints = "all",
         threads: int | None = None,
     ) -> Solutions: ...
 
     def jacobian(
-        self, poses: _Rows, *, mode: str = "home", joints: str = "actuated", threads: int | None = None
+        self, poses: _Rows, *, mode: str = "home", joints: _Joints = "actuated", threads: int | None = None
     ) -> NDArray[np.float64]: ...
     def velocity(
         self,
@@ -378,7 +401,7 @@ class Manipulator:
         *,
         actuators: tuple[float | None, float | None] | None = None,
         tolerances: Mapping[str, Any] | str | PathLike[str] | None = None,
-        errors: str = "axes",
+        errors: _Errors = "axes",
         clearance: tuple[float | None, float | None] | None = None,
         samples: int | None = None,
         seed: int = 1,
@@ -392,7 +415,7 @@ class Manipulator:
         *,
         actuators: tuple[float | None, float | None] | None = None,
         tolerances: Mapping[str, Any] | str | PathLike[str] | None = None,
-        errors: str = "axes",
+        errors: _Errors = "axes",
         gap: float = 0.05,
         budget: int | None = None,
         mode: str = "home",
@@ -405,7 +428,7 @@ class Manipulator:
         *,
         wrench: _Rows | None = None,
         at: str | ArrayLike | None = None,
-        frame: str = "base",
+        frame: _Frame = "base",
         gravity: ArrayLike | None = None,
         density: float | None = None,
         link_stiffness: Sequence[float] | None = None,
@@ -421,7 +444,7 @@ class Manipulator:
         *,
         near: _Rows | None = None,
         mode: str | None = None,
-        method: str | None = None,
+        method: _Method | None = None,
         threads: int | None = None,
     ) -> Assemblies: ...
     def least_change(self, joints: _Rows) -> dict[str, NDArray[np.float64]] | None: ...
@@ -901,7 +924,7 @@ class Sweep:
     def rejections(self) -> list[Rejection]: ...
     def inscribed(
         self,
-        shape: str,
+        shape: _Shape,
         *,
         centre: Mapping[str, float] | None = None,
         executor: _Executor | None = None,
@@ -1004,14 +1027,14 @@ def sweep(
     manipulator: Manipulator,
     /,
     *,
-    kind: str = "grid",
+    kind: _Kind = "grid",
     mode: str = "home",
     max_condition: float | None = None,
     limits: Mapping[str, float] | None = None,
     clearance: float | None = None,
     wrench: ArrayLike | None = None,
     at: str | ArrayLike | None = None,
-    frame: str = "base",
+    frame: _Frame = "base",
     gravity: ArrayLike | None = None,
     density: float | None = None,
     link_stiffness: Sequence[float] | None = None,
@@ -1028,7 +1051,7 @@ def measure(
     /,
     *,
     over: Mapping[str, float | tuple[float, float]] | None = None,
-    section: str = "whole",
+    section: _Section = "whole",
     mode: str = "home",
     tolerance: float | None = None,
     budget: int | None = None,
@@ -1112,7 +1135,7 @@ class Trajectory:
         rates: bool = False,
         accelerations: bool = False,
         indices: bool = False,
-        units: str = "si",
+        units: _Units = "si",
     ) -> None: ...
 
 @final
@@ -1169,7 +1192,7 @@ def trajectory(
     times: Sequence[float] | NDArray[np.float64] | None = None,
     rate: float | None = None,
     mode: str | None = None,
-    ends: str | None = None,
+    ends: _Ends | None = None,
     columns: Mapping[str, str] | None = None,
     relative_time: bool = False,
     time_optimal: bool = False,

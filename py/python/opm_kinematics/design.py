@@ -14,12 +14,15 @@ The optimiser is CMA-ES from the package ``cma``: ``pip install 'opm-kinematics[
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from operator import index
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._native import Manipulator, OpmError, Sweep, sweep
+
+if TYPE_CHECKING:
+    from ._native import _Kind
 
 __all__ = ["LOWER", "UPPER", "Design", "Found", "Variables", "dexterous", "minimise", "sections", "undivided"]
 
@@ -140,6 +143,11 @@ def minimise(cost: Callable[[Vector], float], dimension: int, *, budget: int, se
         Seed of all random numbers: equal seeds give equal results.
     step : float
         Standard deviation of the first generation.
+
+    Returns
+    -------
+    Found
+        The least cost, where it is, and the evaluations.
     """
     try:
         import cma  # type: ignore[import-untyped, import-not-found, unused-ignore]
@@ -182,6 +190,11 @@ def dexterous(manipulator: Manipulator, *, places: Axes, orientations: Axes, mod
     places, orientations : mapping
         Axes of a grid as for :func:`~opm_kinematics.sweep`: of the lower section's task coordinates, and of the upper one's.
     mode : str
+
+    Returns
+    -------
+    float
+        From 0 to 1.
     """
     _disjoint(places, orientations)
     return _everywhere(_swept(manipulator, mode, places, orientations), places)[0]
@@ -215,6 +228,11 @@ def sections(
     values : int
         Number of values of each imaginary joint over its range, both ends included, with which the lower section is evaluated.
     mode : str
+
+    Returns
+    -------
+    Design
+        The mechanism that was found, and its parameters.
     """
     _disjoint(places, orientations)
     budget, values = _whole("budget", budget, 2), _whole("values", values, 1)
@@ -258,6 +276,11 @@ def undivided(
         Number of designs to evaluate, at least 1.
     seed : int
     mode : str
+
+    Returns
+    -------
+    Design
+        The mechanism that was found, and its parameters.
     """
     _disjoint(places, orientations)
 
@@ -293,7 +316,7 @@ def _disjoint(places: Axes, orientations: Axes) -> None:
         raise OpmError(f"places and orientations both give {', '.join(both)}, expected each coordinate once")
 
 
-def _swept(manipulator: Manipulator, mode: str, *grids: Axes, kind: str = "grid") -> Sweep:
+def _swept(manipulator: Manipulator, mode: str, *grids: Axes, kind: "_Kind" = "grid") -> Sweep:
     axes: dict[str, Any] = {name: axis for grid in grids for name, axis in grid.items()}
     return sweep(manipulator, mode=mode, kind=kind, **axes)
 

@@ -22,6 +22,11 @@ def text(name: str) -> str:
     name : str
         One of :func:`names`.
 
+    Returns
+    -------
+    str
+        TOML.
+
     Raises
     ------
     OpmError
@@ -38,6 +43,11 @@ def load(name: str) -> Manipulator:
     name : str
         One of :func:`names`.
 
+    Returns
+    -------
+    Manipulator
+        Decomposed and compiled.
+
     Raises
     ------
     OpmError
@@ -47,12 +57,24 @@ def load(name: str) -> Manipulator:
 
 
 def plano_spherical() -> Manipulator:
-    """The paper's plano-spherical manipulator, of five degrees of freedom: x, y, zeta, xi, psi."""
+    """The paper's plano-spherical manipulator, of five degrees of freedom: x, y, zeta, xi, psi.
+
+    Returns
+    -------
+    Manipulator
+        Decomposed and compiled.
+    """
     return load("plano-spherical-5dof")
 
 
 def translational_helical() -> Manipulator:
-    """The paper's translational-helical manipulator, of three degrees of freedom: x, y, phi."""
+    """The paper's translational-helical manipulator, of three degrees of freedom: x, y, phi.
+
+    Returns
+    -------
+    Manipulator
+        Decomposed and compiled.
+    """
     return load("translational-helical-3dof")
 
 
@@ -64,6 +86,11 @@ def linkage(name: str) -> Linkage:
     name : str
         One of :func:`names`, such as "sarrus".
 
+    Returns
+    -------
+    Linkage
+        Decomposed and compiled.
+
     Raises
     ------
     OpmError
@@ -73,5 +100,11 @@ def linkage(name: str) -> Linkage:
 
 
 def bennett() -> Linkage:
-    """Bennett's double spherical 6R (the paper's Fig. 1), which is moved by its joint a1."""
+    """Bennett's double spherical 6R (the paper's Fig. 1), which is moved by its joint a1.
+
+    Returns
+    -------
+    Linkage
+        Decomposed and compiled.
+    """
     return linkage("bennett-double-spherical-6r")

@@ -128,7 +128,13 @@ class Animation:
         return FuncAnimation(self._panel.figure, self._show, frames=len(self._times), interval=interval)
 
     def html(self) -> str:
-        """The player, as HTML that needs no other file."""
+        """The player, as HTML that needs no other file.
+
+        Returns
+        -------
+        str
+            A part of a page.
+        """
         from matplotlib import pyplot
 
         page: str = self.animation.to_jshtml()
@@ -423,6 +429,11 @@ def imaginary(
         One number for each pose, for its colour.
     ax : Axes, optional
         The panel to draw on, with three dimensions for three joints; a new one if not given.
+
+    Returns
+    -------
+    Axes
+        The panel.
     """
     pyplot = _pyplot()
     _expect("solutions", solutions, Solutions)

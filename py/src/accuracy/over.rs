@@ -82,6 +82,7 @@ impl Manipulator {
     /// Returns
     /// -------
     /// AccuracyBounds
+    ///     What is guaranteed of every pose of the box.
     ///
     /// Raises
     /// ------

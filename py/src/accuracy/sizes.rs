@@ -101,7 +101,10 @@ fn tolerances(given: &Bound<'_, PyAny>, sources: &[Source]) -> PyResult<Toleranc
     let py = given.py();
     let mut found = Tolerances::default();
     if given.cast::<PyMapping>().is_err() {
-        let path = arguments::path(given)?;
+        let path = arguments::path(given).map_err(|_| {
+            let expected = "a path, or a mapping";
+            wrong(format!("tolerances is {}, expected {expected}", arguments::shown(given)))
+        })?;
         let text = arguments::text(py, &path, Expected::TOLERANCES, "")?;
         let read = Tolerances::read(&text, sources);
         return read.map_err(|errors| wrong(errors.in_file(path.display())));

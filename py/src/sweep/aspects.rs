@@ -50,6 +50,11 @@ impl Sweep {
     /// shards : int, optional
     ///     As for :func:`sweep`.
     ///
+    /// Returns
+    /// -------
+    /// list of Aspect
+    ///     Number 1 first.
+    ///
     /// Raises
     /// ------
     /// OpmError

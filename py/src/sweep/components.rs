@@ -25,6 +25,11 @@ impl Sweep {
     ///     As for :func:`sweep`.
     /// shards : int, optional
     ///     As for :func:`sweep`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of uint64
+    ///     Numbers of points.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn components<'py>(
         slf: &Bound<'py, Self>,
@@ -54,6 +59,11 @@ impl Sweep {
     ///     As for :func:`sweep`.
     /// shards : int, optional
     ///     As for :func:`sweep`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of int32
+    ///     One axis for each coordinate of the mask.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn labels<'py>(
         slf: &Bound<'py, Self>,

@@ -57,6 +57,11 @@ impl Sweep {
     ///
     /// Each pose is taken in the first working mode that counts; every pose has the same weight.
     ///
+    /// Returns
+    /// -------
+    /// Conditioning
+    ///     Without unit.
+    ///
     /// Raises
     /// ------
     /// OpmError
@@ -98,6 +103,11 @@ impl Sweep {
     /// The local conditioning index of every pose, in the shape of the mask: NaN where the mask is False.
     ///
     /// The index is the inverse of the condition number: one at best, zero at a singularity.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray
+    ///     Without unit.
     ///
     /// Raises
     /// ------

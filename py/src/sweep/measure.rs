@@ -13,6 +13,11 @@ use std::num::NonZeroU64;
 impl Sweep {
     /// How much of the box that the grid covers is in reach: :func:`measure` over it.
     ///
+    /// Returns
+    /// -------
+    /// Measure
+    ///     With guaranteed bounds.
+    ///
     /// Raises
     /// ------
     /// OpmError

@@ -16,6 +16,11 @@ use std::sync::Arc;
 impl Sweep {
     /// In how many :attr:`orientations` each place is reached, in the shape of the mask.
     ///
+    /// Returns
+    /// -------
+    /// ndarray of uint64
+    ///     One axis for each coordinate of a place.
+    ///
     /// Raises
     /// ------
     /// OpmError

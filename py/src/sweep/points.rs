@@ -26,6 +26,11 @@ impl Sweep {
     ///     As for :func:`sweep`.
     /// shards : int, optional
     ///     As for :func:`sweep`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of bool
+    ///     The first axis is that of the first coordinate.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn mask<'py>(
         slf: &Bound<'py, Self>,
@@ -44,6 +49,11 @@ impl Sweep {
     ///     As for :func:`sweep`.
     /// shards : int, optional
     ///     As for :func:`sweep`.
+    ///
+    /// Returns
+    /// -------
+    /// (count, d) ndarray
+    ///     Metres and radians.
     #[pyo3(signature = (*, executor = None, shards = None))]
     fn points<'py>(
         slf: &Bound<'py, Self>,

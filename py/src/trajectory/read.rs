@@ -85,8 +85,10 @@ pub(super) fn read(
     motion: &Bound<'_, PyAny>,
     reading: Reading<'_>,
 ) -> PyResult<Read> {
-    let expected = "motion: expected a path, the name of a shipped motion, or poses with times";
-    let path = arguments::path(motion).map_err(|_| wrong(expected))?;
+    let path = arguments::path(motion).map_err(|_| {
+        let expected = "a path, the name of a shipped motion, or poses with times";
+        wrong(format!("motion is {}, expected {expected}", arguments::shown(motion)))
+    })?;
     let label = path.display().to_string();
     let (text, name) = match examples::find(&label).filter(|_| !path.exists()) {
         Some(example) => (example.text.to_owned(), format!("{}.toml", example.name)),
