@@ -42,7 +42,7 @@ macro_rules! columns {
                 &self,
                 py: Python<'py>,
             ) -> PyResult<Bound<'py, pyo3::types::PyIterator>> {
-                let names = self.joint_names.iter().chain(&self.imaginary_names);
+                let names = self.joint_names.iter().chain(self.imaginary_names.iter());
                 pyo3::types::PyList::new(py, names)?.try_iter()
             }
 

@@ -7,11 +7,13 @@ use crate::explorer::{self, Explorer};
 use crate::given::{Columns, Given};
 use crate::html;
 use crate::matrices::matrices;
+use crate::one::{Memories, plain};
 use crate::pickle::pickled;
 use crate::place::placement;
+use crate::restored;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::snap;
-use crate::solutions::{Names, Solutions};
+use crate::solutions::{CommonNames, Names, Solutions};
 use opm_core::decomposition::mobility::mobility;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{self as core, Mode};
@@ -43,6 +45,8 @@ pub struct Manipulator {
     pub family: Option<Family>,
     /// The file, if it has named parameters.
     named: Option<Arc<MechanismFile>>,
+    names: OnceLock<CommonNames>,
+    pub memories: Memories,
 }
 
 impl PartialEq for Manipulator {
@@ -317,7 +321,31 @@ impl Manipulator {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
         let this = slf.get();
-        Ok((slf.get_type().getattr("parse")?, (this.text().to_owned(), this.label.clone())))
+        Ok((slf.get_type().getattr("_restored")?, (this.text().to_owned(), this.label.clone())))
+    }
+
+    /// What a pickle holds is its file. A process decomposes each file once, also for thousands of pickles.
+    #[staticmethod]
+    fn _restored(py: Python<'_>, text: String, label: String) -> PyResult<Self> {
+        if let Some(known) = restored::find(&text) {
+            return Ok(known.labelled(label));
+        }
+        // Whoever read the file was warned.
+        let (file, text) = snap::unwarned(text, &label)?;
+        let made = py.detach(|| Self::compile(file, text, label))?;
+        restored::keep(&made);
+        Ok(made)
+    }
+
+    /// Itself: it is immutable.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    /// Itself: it is immutable.
+    fn __deepcopy__(slf: Py<Self>, memo: &Bound<'_, PyAny>) -> Py<Self> {
+        let _ = memo;
+        slf
     }
 
     /// The mechanism's name.
@@ -454,6 +482,13 @@ impl Manipulator {
     ) -> PyResult<Solutions> {
         let columns = self.columns(joints)?;
         let mode = if mode == "all" { None } else { Some(self.mode(mode)?) };
+        let names = self.names.get_or_init(|| CommonNames::of(&self.inner));
+        let names = names.names(&self.inner, mode, joints == "actuated");
+        if let (Some(given), None, Some(mode)) = (poses, transforms, mode)
+            && let Some(pose) = plain(given, self.inner.task_coordinates().len())
+        {
+            return self.inverse_one(py, &pose, (mode, &columns), names);
+        }
         let places = transforms.map(|given| matrices(given, "transforms")).transpose()?;
         let places = places.as_ref().map(Rows::new).transpose()?;
         let given = match (poses, &places) {
@@ -466,8 +501,10 @@ impl Manipulator {
         };
         let poses = Rows::new(&given)?;
         match mode {
-            Some(mode) => Solutions::find(py, &self.inner, &poses, (mode, &columns), threads),
-            None => self.inverse_all(py, &poses, places.as_ref(), &columns, threads),
+            Some(mode) => {
+                Solutions::find(py, &self.inner, &poses, (mode, &columns), names, threads)
+            }
+            None => self.inverse_all(py, &poses, places.as_ref(), (&columns, names), threads),
         }
     }
 
@@ -582,7 +619,22 @@ impl Manipulator {
         let mechanism = file.mechanism.clone();
         let inner = core::Manipulator::new(mechanism).map_err(|error| failed(&error))?;
         let (inner, text, label) = (Arc::new(inner), OnceLock::new(), self.label.clone());
-        Ok(Self { inner, text, label, family: file.family.clone(), named: named(file) })
+        let (names, memories) = (OnceLock::new(), Memories::default());
+        let family = file.family.clone();
+        Ok(Self { inner, text, label, family, named: named(file), names, memories })
+    }
+
+    /// The same with another name in messages.
+    pub fn labelled(&self, label: String) -> Self {
+        Self {
+            inner: self.inner.clone(),
+            text: self.text.clone(),
+            label,
+            family: self.family.clone(),
+            named: self.named.clone(),
+            names: OnceLock::new(),
+            memories: Memories::default(),
+        }
     }
 
     /// What it is called in messages.
@@ -602,7 +654,8 @@ impl Manipulator {
         let mechanism = file.mechanism.clone();
         let inner = core::Manipulator::new(mechanism).map_err(|error| failed(&error))?;
         let (inner, family) = (Arc::new(inner), file.family.clone());
-        Ok(Self { inner, text: text.into(), label, family, named: named(file) })
+        let (names, memories) = (OnceLock::new(), Memories::default());
+        Ok(Self { inner, text: text.into(), label, family, named: named(file), names, memories })
     }
 
     /// The same, after a warning where home is a parallel singularity.
@@ -630,7 +683,7 @@ impl Manipulator {
         py: Python<'_>,
         poses: &Rows<'_>,
         places: Option<&Rows<'_>>,
-        columns: &[usize],
+        (columns, names): (&[usize], Names),
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Solutions> {
         let many = || {
@@ -677,7 +730,7 @@ impl Manipulator {
                 Ok([true, solution.within_limits()])
             },
         )?;
-        Solutions::of_all_modes(Names::of(&self.inner, None, columns), poses, tables)
+        Solutions::of_all_modes(names, poses, tables)
     }
 
     /// Rows of poses; coordinates that are not among those given by name are at home.

@@ -15,8 +15,7 @@ pub fn read(
     label: &str,
     tolerance: Option<f64>,
 ) -> PyResult<(MechanismFile, String)> {
-    let read = file::read(&text).map_err(|errors| wrong(errors.in_file(label)))?;
-    within(py, (read, text), label, tolerance)
+    within(py, unwarned(text, label)?, label, tolerance)
 }
 
 /// Snaps a mechanism that was read, with its text, within a tolerance (metres) if one is given; else warns of joints that are
@@ -60,5 +59,11 @@ pub fn within(
     }
     read.mechanism = mechanism;
     let text = read.text();
+    Ok((read, text))
+}
+
+/// Reads the text of a mechanism file as it is.
+pub fn unwarned(text: String, label: &str) -> PyResult<(MechanismFile, String)> {
+    let read = file::read(&text).map_err(|errors| wrong(errors.in_file(label)))?;
     Ok((read, text))
 }

@@ -4,6 +4,7 @@ use crate::columns::columns;
 use crate::error::failed;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
+use crate::shared::Shared;
 use crate::{html, interrupt};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use opm_core::Quantity;
@@ -35,11 +36,11 @@ pub struct Solutions {
     /// (...): whether the pose is in reach and all joints are within their limits.
     within_limits: Py<PyArrayDyn<bool>>,
     /// Names along the last axis of `joints`.
-    joint_names: Vec<String>,
+    joint_names: Shared<Vec<String>>,
     /// Names along the last axis of `imaginary`.
-    imaginary_names: Vec<String>,
+    imaginary_names: Shared<Vec<String>>,
     /// ``"m"`` or ``"rad"`` of every joint and imaginary joint, by name.
-    units: BTreeMap<String, String>,
+    units: Shared<BTreeMap<String, String>>,
     /// The working mode, or ``"all"``.
     mode: String,
     /// The working modes, in the order of the mode axis if there is one.
@@ -56,6 +57,7 @@ impl Solutions {
         manipulator: &Manipulator,
         poses: &Rows<'_>,
         (mode, columns): (Mode, &[usize]),
+        names: Names,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
@@ -83,7 +85,7 @@ impl Solutions {
         let tables =
             [poses.shaped(&joints, &widths[..1])?, poses.shaped(&imaginary, &widths[1..])?];
         let answers = [poses.shaped(&reachable, &[])?, poses.shaped(&within_limits, &[])?];
-        Self::new(Names::of(manipulator, Some(mode), columns), poses.count, tables, answers)
+        Self::new(names, poses.count, tables, answers)
     }
 
     /// Makes solutions from tables with one row for each mode of each of these rows, the modes of a row together.
@@ -111,12 +113,23 @@ impl Solutions {
         [joints, imaginary]: [Bound<'_, PyArrayDyn<f64>>; 2],
         [reachable, within_limits]: [Bound<'_, PyArrayDyn<bool>>; 2],
     ) -> PyResult<Self> {
+        let numbers = [frozen(joints)?, frozen(imaginary)?];
+        Self::of_arrays(names, rows, numbers, [frozen(reachable)?, frozen(within_limits)?])
+    }
+
+    /// The same from read-only arrays.
+    pub fn of_arrays(
+        names: Names,
+        rows: usize,
+        [joints, imaginary]: [Py<PyArrayDyn<f64>>; 2],
+        [reachable, within_limits]: [Py<PyArrayDyn<bool>>; 2],
+    ) -> PyResult<Self> {
         let Names { joints: joint_names, imaginary: imaginary_names, units, mode, modes } = names;
         Ok(Self {
-            joints: frozen(joints)?,
-            imaginary: frozen(imaginary)?,
-            reachable: frozen(reachable)?,
-            within_limits: frozen(within_limits)?,
+            joints,
+            imaginary,
+            reachable,
+            within_limits,
             joint_names,
             imaginary_names,
             units,
@@ -129,30 +142,58 @@ impl Solutions {
 
 /// The names along the axes of solutions, and the units of their numbers.
 pub struct Names {
-    joints: Vec<String>,
-    imaginary: Vec<String>,
-    units: BTreeMap<String, String>,
+    joints: Shared<Vec<String>>,
+    imaginary: Shared<Vec<String>>,
+    units: Shared<BTreeMap<String, String>>,
     mode: String,
     modes: Vec<String>,
 }
 
-impl Names {
-    /// The names and units of these columns of a manipulator's joints in one mode, or in all.
-    pub fn of(manipulator: &Manipulator, mode: Option<Mode>, columns: &[usize]) -> Self {
-        let format = |mode| manipulator.format_mode(mode);
+/// The names and units of a manipulator, which all of its results have in common.
+pub struct CommonNames {
+    all: Shared<Vec<String>>,
+    actuated: Shared<Vec<String>>,
+    imaginary: Shared<Vec<String>>,
+    units: Shared<BTreeMap<String, String>>,
+    home_mode: String,
+}
+
+impl CommonNames {
+    pub fn of(manipulator: &Manipulator) -> Self {
         let coordinates = manipulator.coordinates();
+        let actuated = manipulator.actuated().iter().map(|&i| coordinates[i].name.clone());
+        let imaginary = manipulator.imaginary().iter().map(|j| j.name.clone());
         Self {
-            joints: columns.iter().map(|&column| coordinates[column].name.clone()).collect(),
-            imaginary: manipulator.imaginary().iter().map(|j| j.name.clone()).collect(),
-            units: units(manipulator),
-            mode: mode.map_or_else(|| "all".to_owned(), format),
-            modes: match mode {
-                Some(mode) => vec![format(mode)],
-                None => manipulator.modes().map(format).collect(),
-            },
+            all: Shared::new(coordinates.iter().map(|c| c.name.clone()).collect()),
+            actuated: Shared::new(actuated.collect()),
+            imaginary: Shared::new(imaginary.collect()),
+            units: Shared::new(units(manipulator)),
+            home_mode: manipulator.format_mode(manipulator.home_mode()),
         }
     }
 
+    /// Those of all joints, or of the actuated ones, in one mode or in all.
+    pub fn names(&self, manipulator: &Manipulator, mode: Option<Mode>, actuated: bool) -> Names {
+        let format = |mode| manipulator.format_mode(mode);
+        let (mode, modes) = match mode {
+            Some(mode) => {
+                let home = mode == manipulator.home_mode();
+                let signs = if home { self.home_mode.clone() } else { format(mode) };
+                (signs.clone(), vec![signs])
+            }
+            None => ("all".to_owned(), manipulator.modes().map(format).collect()),
+        };
+        Names {
+            joints: if actuated { self.actuated.clone() } else { self.all.clone() },
+            imaginary: self.imaginary.clone(),
+            units: self.units.clone(),
+            mode,
+            modes,
+        }
+    }
+}
+
+impl Names {
     /// The names and units of a linkage's joints in all branches of its input.
     pub fn of_branches(linkage: &Linkage, branches: &[LinkageBranch]) -> Self {
         let joints: Vec<_> = linkage.coordinates().iter().map(|c| c.name.clone()).collect();
@@ -162,9 +203,9 @@ impl Names {
         let names = joints.iter().chain(&imaginary).cloned();
         let unit = |(name, quantity): (String, Quantity)| (name, quantity.unit().to_owned());
         Self {
-            units: names.zip(quantities).map(unit).collect(),
-            joints,
-            imaginary,
+            units: Shared::new(names.zip(quantities).map(unit).collect()),
+            joints: Shared::new(joints),
+            imaginary: Shared::new(imaginary),
             mode: "all".to_owned(),
             modes: branches.iter().map(ToString::to_string).collect(),
         }

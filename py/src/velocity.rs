@@ -5,10 +5,12 @@ use crate::error::request;
 use crate::given::{Columns, together};
 use crate::html;
 use crate::manipulator::Manipulator;
+use crate::one::{lend, plain};
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
-use numpy::{IntoPyArray, PyArrayDyn};
+use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods};
 use opm_core::manipulator::{self as core, Mode, Solution};
+use opm_core::velocity::Jacobians;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
 
@@ -128,12 +130,22 @@ impl Manipulator {
     ///     Which joints the ``a`` rows are: ``"actuated"``, or ``"all"`` for every joint coordinate.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
+    /// out : (..., a, d) ndarray, optional
+    ///     Where to write the result, which is returned: float64 in C order. A loop over single poses is faster with it.
     ///
     /// Returns
     /// -------
     /// (..., a, d) ndarray
     ///     Ratios of metres and radians. NaN where the pose is out of reach, or the joint has no rate at a serial singularity.
-    #[pyo3(signature = (poses, *, mode = "home", joints = "actuated", threads = None))]
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np, opm_kinematics as opm
+    /// >>> m = opm.examples.load("delta")
+    /// >>> out = np.empty((3, 3))
+    /// >>> m.jacobian(np.array(m.home), out=out) is out
+    /// True
+    #[pyo3(signature = (poses, *, mode = "home", joints = "actuated", threads = None, out = None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -141,11 +153,22 @@ impl Manipulator {
         mode: &str,
         joints: &str,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (poses, mode) = (self.poses(poses)?, self.mode(mode)?);
-        let poses = Rows::new(&poses)?;
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mode = self.mode(mode)?;
         let rows = self.columns(joints)?;
         let columns = self.inner.task_coordinates().len();
+        if let Some(pose) = plain(poses, columns) {
+            let shape = [rows.len(), columns];
+            let made = match out {
+                Some(out) => out.clone(),
+                None => PyArray2::<f64>::zeros(py, shape, false).into_any(),
+            };
+            lend(&made, &shape, |out| self.jacobian_one(&pose, (mode, &rows), out))?;
+            return Ok(made);
+        }
+        let poses = self.poses(poses)?;
+        let poses = Rows::new(&poses)?;
         let tables = Tables::fill(
             py,
             poses.count,
@@ -156,23 +179,18 @@ impl Manipulator {
                 if !self.solve(&poses, row, mode, at)? {
                     return Ok([false; 2]);
                 }
-                let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
-                let whole = jacobians.joints_by_pose();
-                for (out, &joint) in out.chunks_exact_mut(columns).zip(&rows) {
-                    out.copy_from_slice(whole.row(joint).transpose().as_slice());
-                }
-                for singular in &jacobians.singular {
-                    for rateless in self.inner.rateless(singular) {
-                        let Some(row) = rows.iter().position(|&joint| joint == rateless) else {
-                            continue;
-                        };
-                        out[row * columns..][..columns].fill(f64::NAN);
-                    }
-                }
-                Ok([true, regular])
+                Ok([true, self.joint_rows(at, jacobians, &rows, out)?])
             },
         )?;
-        poses.shaped(&tables.table(0), &[rows.len(), columns])
+        let found = poses.shaped::<f64>(&tables.table(0), &[rows.len(), columns])?.into_any();
+        let Some(out) = out else { return Ok(found) };
+        let shape = [poses.lead, &[rows.len(), columns]].concat();
+        lend(out, &shape, |out| {
+            let found = found.cast::<PyArrayDyn<f64>>()?.readonly();
+            out.copy_from_slice(found.as_slice()?);
+            Ok(())
+        })?;
+        Ok(out.clone())
     }
 
     /// The platform's twist for unit rates of the task coordinates.
@@ -400,6 +418,31 @@ pub fn characteristic_length(inner: &core::Manipulator, given: Option<f64>) -> P
 }
 
 impl Manipulator {
+    /// The rows of these joints of the Jacobian of a solved pose, NaN where a joint has no rate; whether all have one.
+    pub fn joint_rows(
+        &self,
+        at: &Solution,
+        jacobians: &mut Jacobians,
+        rows: &[usize],
+        out: &mut [f64],
+    ) -> Result<bool, String> {
+        let columns = self.inner.task_coordinates().len();
+        let regular = self.inner.differentiate(at, jacobians).map_err(|e| e.to_string())?;
+        let whole = jacobians.joints_by_pose();
+        for (out, &joint) in out.chunks_exact_mut(columns).zip(rows) {
+            out.iter_mut().zip(whole.row(joint).iter()).for_each(|(out, &rate)| *out = rate);
+        }
+        for singular in &jacobians.singular {
+            for rateless in self.inner.rateless(singular) {
+                let Some(row) = rows.iter().position(|&joint| joint == rateless) else {
+                    continue;
+                };
+                out[row * columns..][..columns].fill(f64::NAN);
+            }
+        }
+        Ok(regular)
+    }
+
     /// Solves the pose of one row; `false` where it is out of reach.
     pub fn solve(
         &self,
