@@ -9,6 +9,7 @@ mod design;
 mod explore;
 mod export;
 mod generate;
+mod heading;
 mod measure;
 mod motion;
 mod new;
@@ -28,6 +29,7 @@ pub use design::DesignArgs;
 pub use explore::ExploreArgs;
 pub use export::{ExportArgs, ExportFormat, MjcfArgs, UrdfArgs};
 pub use generate::{CodeArgs, GenerateArgs, Language};
+pub use heading::FEW;
 pub use measure::{MeasureArgs, SectionName};
 pub use motion::{LinkageArgs, TableUnits, TrajectoryArgs};
 pub use new::NewArgs;
@@ -164,7 +166,7 @@ pub struct MechanismArgs {
     pub file: PathBuf,
     /// Accept joints that miss their subspaces by at most this length, for example 0.5mm, and move them
     /// exactly into these; angles count as lengths at the mechanism's size
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::MECHANISM, long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<Number>,
     /// What is changed of the file.
     #[command(flatten)]
@@ -177,11 +179,11 @@ pub struct ChangeArgs {
     /// Change numbers of the file: a parameter that it names (rb=120mm,rod=350mm), one of a family's leg (leg1.h=140mm) or
     /// of all its legs (h=140mm), or limits (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=...,
     /// S1.max_rate=... and S1.home=...
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true, value_delimiter = ',')]
+    #[arg(help_heading = heading::MECHANISM, long, value_name = "NAME=VALUE", allow_hyphen_values = true, value_delimiter = ',')]
     pub set: Vec<Change>,
     /// Angles of orientations: `euler-angles` (zeta xi psi), `tilt-torsion` (azimuth tilt torsion) or `roll-pitch-yaw` (roll
     /// pitch yaw)
-    #[arg(long, value_name = "ANGLES", value_parser = coordinates())]
+    #[arg(help_heading = heading::MECHANISM, long, value_name = "ANGLES", value_parser = coordinates())]
     pub coordinates: Option<OrientationCoordinates>,
 }
 
@@ -314,6 +316,26 @@ mod tests {
     #[test]
     fn arguments_do_not_contradict_each_other() {
         Args::command().debug_assert();
+    }
+
+    /// A command with many options has them under headings, and few that matter first.
+    #[test]
+    fn no_list_of_options_is_long() {
+        const MOST: usize = 9;
+        fn look(command: &clap::Command, lists: &mut usize) {
+            let mut counts = std::collections::BTreeMap::new();
+            for option in command.get_opts() {
+                *counts.entry(option.get_help_heading()).or_insert(0) += 1;
+            }
+            for (heading, count) in counts {
+                assert!(count <= MOST, "{} {heading:?}: {count} options", command.get_name());
+                *lists += 1;
+            }
+            command.get_subcommands().for_each(|command| look(command, lists));
+        }
+        let mut lists = 0;
+        look(&Args::command(), &mut lists);
+        assert!(lists > 40, "{lists}");
     }
 
     /// Examples are copied line by line, so no line may be wider than the help on a terminal.

@@ -8,6 +8,7 @@ use opm_core::Quantity;
 use opm_core::mechanism::OrientationCoordinates;
 use opm_core::mechanism::family::ParameterValue;
 use opm_core::mechanism::file;
+use std::fmt;
 use std::str::FromStr;
 
 /// A number of a mechanism file by name, and its new value.
@@ -15,6 +16,14 @@ use std::str::FromStr;
 pub struct Change {
     name: String,
     value: ChangedTo,
+    /// As it was given.
+    text: String,
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
 }
 
 /// A new value.
@@ -37,7 +46,7 @@ impl FromStr for Change {
             [low, high] => ChangedTo::Pair(ends(low, high)?),
             _ => return Err(Misread::new(format!("{text:?}, expected {FORM}"))),
         };
-        Ok(Self { name: name.to_owned(), value })
+        Ok(Self { name: name.to_owned(), value, text: text.to_owned() })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod answer;
 mod joints;
+mod next;
 mod report;
 mod whole;
 
@@ -47,8 +48,15 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
             Applies::Nearly => Vec::new(),
             Applies::Decomposed(_) | Applies::Outside(_) => actuator_warnings(&found.mobility),
         };
-        output
-            .print(&answer.json(&warnings), answer.text() + &parameters::section(&loaded.file))?;
+        let next = match found.applies {
+            // The answer offers a tolerance.
+            Applies::Nearly => None,
+            Applies::Decomposed(_) | Applies::Outside(_) => {
+                next::steps(&args.mechanism, &loaded, None)
+            }
+        };
+        let text = answer.text() + &parameters::section(&loaded.file) + &next.unwrap_or_default();
+        output.print(&answer.json(&warnings), text)?;
         warn(output, &loaded, &warnings);
         return Ok(());
     };
@@ -89,7 +97,9 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         ways: &ways,
         manipulator,
     };
-    output.print(&report.json(&warnings), report.text() + &parameters::section(&loaded.file))?;
+    let next = next::steps(&args.mechanism, &loaded, manipulator).unwrap_or_default();
+    let text = report.text() + &parameters::section(&loaded.file) + &next;
+    output.print(&report.json(&warnings), text)?;
     warn(output, &loaded, &warnings);
     if let Some(error) = refused {
         let (hint, place) = (loaded.linkage_hint(), loaded.place_of(error));

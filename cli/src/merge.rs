@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::output::Shown;
 use crate::progress::{interruptible, watch_reading};
+use crate::text::shell_word;
 use crate::workspace::{Effort, Outcome, Work, advice, grid_flags, points, threads};
 use opm_core::mechanism::file::FileUnits;
 use opm_study::recording::{Attachment, Findings, Shards, StoredShard, WorkspaceRecording};
@@ -99,14 +100,14 @@ fn with_commands(
 
 /// The command that makes a shard.
 fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, of: u64) -> String {
-    let mut command = format!("opm workspace {}", quoted(label));
+    let mut command = format!("opm workspace {}", shell_word(label));
     if workspace.kind() != WorkspaceKind::Grid {
         command += &format!(" --kind {}", workspace.kind());
     }
     command += &format!(" {}", grid_flags(workspace.grid(), FileUnits::SI));
     let mode = workspace.mode_name();
     if !mode.is_empty() {
-        command += &format!(" --mode {}", quoted(&mode));
+        command += &format!(" --mode {}", shell_word(&mode));
     }
     let (limit, conditioning) = (workspace.limit(), workspace.conditioning_length());
     if let Some(most) = limit.and_then(opm_workspace::PoseLimit::max_condition) {
@@ -128,7 +129,7 @@ fn command(workspace: &Workspace, label: &str, part: &StoredShard, number: u64, 
         command += &format!(" --length {length}");
     }
     let output = named_like(part, number);
-    command + &format!(" --shard {number}/{of} -o {}", quoted(&output.display().to_string()))
+    command + &format!(" --shard {number}/{of} -o {}", shell_word(&output.display().to_string()))
 }
 
 /// A file name for another shard, made from that of a part: its number replaces the part's.
@@ -147,26 +148,4 @@ fn named_like(part: &StoredShard, number: u64) -> PathBuf {
         None => format!("part-{number}.mcap"),
     };
     part.path().with_file_name(name)
-}
-
-/// A word, quoted for a shell if necessary.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "._-/=:,+".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_quoted_for_a_shell() {
-        assert_eq!(quoted("part-3.mcap"), "part-3.mcap");
-        assert_eq!(quoted("++ -+"), "'++ -+'");
-        assert_eq!(quoted("it's"), "'it'\\''s'");
-    }
 }

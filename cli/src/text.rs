@@ -134,6 +134,16 @@ fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A word, quoted for a shell if necessary.
+pub fn shell_word(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "._-/=:,+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,5 +174,12 @@ mod tests {
         assert_eq!(short(123_456.0), "123456");
         assert_eq!(short(1.5e12), "1.500e12");
         assert_eq!(short(2.5e-7), "2.500e-7");
+    }
+
+    #[test]
+    fn words_are_quoted_for_a_shell() {
+        assert_eq!(shell_word("part-3.mcap"), "part-3.mcap");
+        assert_eq!(shell_word("++ -+"), "'++ -+'");
+        assert_eq!(shell_word("it's"), "'it'\\''s'");
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of usage, with tips that help.
 
-use crate::args::{Args, WIDEST};
+use crate::args::{Args, FEW, WIDEST};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
@@ -10,12 +10,28 @@ use std::io::{self, IsTerminal, Write};
 
 /// Reads a command line, which begins with the program's name.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Args, clap::Error> {
-    let mut command = Args::command();
+    let mut command = with_short_help(Args::command());
     if has_no_width() {
         command = command.term_width(WIDEST);
     }
     let mut matches = command.try_get_matches_from_mut(arguments)?;
     Args::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
+}
+
+/// The program where the short help of a command with many options has only those without a heading, and says so.
+fn with_short_help(program: clap::Command) -> clap::Command {
+    program.mut_subcommands(|command| {
+        let command = with_short_help(command);
+        if command.get_opts().count() <= FEW {
+            return command;
+        }
+        command
+            .mut_args(|argument| {
+                let headed = argument.get_help_heading().is_some();
+                argument.hide_short_help(headed)
+            })
+            .after_help("--help has all options.")
+    })
 }
 
 /// Whether the width of the help is unknown. Without a terminal clap takes it from COLUMNS, also where that is 0.

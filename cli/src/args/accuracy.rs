@@ -1,6 +1,6 @@
 //! Arguments of `opm accuracy`.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, heading};
 use crate::accuracy::sizes::Pair;
 use crate::pose::{GridAxis, Number, OverAxis, Pose};
 use clap::ValueHint;
@@ -63,7 +63,7 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "grid", "over"])]
+    #[arg(help_heading = heading::TABLE, long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "grid", "over"])]
     pub columns: Option<ColumnNames>,
     /// Values of one task coordinate, for the largest errors over a grid; other coordinates stay at home
     #[arg(
@@ -82,6 +82,7 @@ pub struct AccuracyArgs {
     pub over: Vec<OverAxis>,
     /// With --over: stop when the bounds are within this share above the largest errors found
     #[arg(
+        help_heading = heading::BOX,
         long,
         value_name = "SHARE",
         default_value_t = 0.05,
@@ -91,6 +92,7 @@ pub struct AccuracyArgs {
     pub gap: f64,
     /// With --over: largest number of boxes
     #[arg(
+        help_heading = heading::BOX,
         long,
         value_name = "BOXES",
         default_value_t = BOX_BUDGET,
@@ -114,13 +116,14 @@ pub struct AccuracyArgs {
     pub tolerances: Option<PathBuf>,
     /// What errors of axes are: `axes`, of the numbers in the file, so that joints fit at home; `links`, of parts, whose
     /// errors act everywhere
-    #[arg(long, value_name = "axes|links", value_parser = errors(), default_value = "axes")]
+    #[arg(help_heading = heading::ERRORS, long, value_name = "axes|links", value_parser = errors(), default_value = "axes")]
     pub errors: ErrorModel,
     /// The play that joints have, a length and an angle, or one of them: tells which tolerances keep within it
-    #[arg(long, value_name = "LENGTH,ANGLE", allow_hyphen_values = true, conflicts_with = "poses")]
+    #[arg(help_heading = heading::ERRORS, long, value_name = "LENGTH,ANGLE", allow_hyphen_values = true, conflicts_with = "poses")]
     pub clearance: Option<Pair>,
     /// Also assemble so many mechanisms with errors drawn at random; each takes some hundred bytes of memory
     #[arg(
+        help_heading = heading::SAMPLES,
         long,
         value_name = "N",
         value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES),
@@ -128,17 +131,18 @@ pub struct AccuracyArgs {
     )]
     pub samples: Option<u64>,
     /// Seed of --samples: the same seed draws the same mechanisms
-    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "samples")]
+    #[arg(help_heading = heading::SAMPLES, long, value_name = "SEED", default_value_t = 1, requires = "samples")]
     pub seed: u64,
     /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Characteristic length, by which lengths and angles are compared, instead of the spread of the joint axes
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::ERRORS, long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
     /// The errors for each of these values of a number that --set takes, as a table; `misfit` is the largest of all joints,
     /// and with --clearance `uniform` is one tolerance for all axes
     #[arg(
+        help_heading = heading::COMPARE,
         long,
         value_name = "NAME=MIN:MAX:COUNT",
         allow_hyphen_values = true,
@@ -146,7 +150,7 @@ pub struct AccuracyArgs {
     )]
     pub vary: Option<GridAxis>,
     /// Number of threads of --grid, --over and --samples, instead of one per processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    #[arg(help_heading = heading::WORK, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
     /// Output file (.csv) for the table of --poses or --grid; standard output if it is -
     #[arg(

@@ -1,6 +1,6 @@
 //! Arguments of `opm analyze`.
 
-use super::{MechanismArgs, SetupArgs};
+use super::{MechanismArgs, SetupArgs, heading};
 use crate::pose::{GridAxis, Number, Pose};
 use clap::ValueHint;
 use opm_core::table::ColumnNames;
@@ -51,7 +51,7 @@ pub struct AnalyzeArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "pose")]
+    #[arg(help_heading = heading::TABLE, long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "pose")]
     pub columns: Option<ColumnNames>,
     /// What acts on the mechanism, and how much it gives way.
     #[command(flatten)]
@@ -60,10 +60,10 @@ pub struct AnalyzeArgs {
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Characteristic length, by which forces and moments are compared, instead of the spread of the joint axes
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::ALSO, long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
     /// Analyze for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "link_stiffness"])]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "link_stiffness"])]
     pub vary: Option<GridAxis>,
     /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(

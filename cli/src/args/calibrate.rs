@@ -1,6 +1,6 @@
 //! Arguments of `opm calibrate`.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, heading};
 use crate::calibrate::given::{NamedPoint, Sigmas};
 use clap::ValueHint;
 use std::path::PathBuf;
@@ -45,7 +45,7 @@ pub struct CalibrateArgs {
     #[arg(long, value_name = "LENGTH,ANGLE", allow_hyphen_values = true)]
     pub sigma: Option<Sigmas>,
     /// Those of actuated joints, if they are others
-    #[arg(long, value_name = "LENGTH,ANGLE", allow_hyphen_values = true, requires = "sigma")]
+    #[arg(help_heading = heading::FIT, long, value_name = "LENGTH,ANGLE", allow_hyphen_values = true, requires = "sigma")]
     pub joint_sigma: Option<Sigmas>,
     /// A point of the base for columns distance.NAME
     #[arg(long, value_name = "NAME=X,Y,Z", allow_hyphen_values = true)]
@@ -54,23 +54,24 @@ pub struct CalibrateArgs {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub only: Vec<String>,
     /// Hold the parameters whose names have these words
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(help_heading = heading::FIT, long, value_name = "NAME,...", value_delimiter = ',')]
     pub hold: Vec<String>,
     /// Leave out outliers, the worst first, until there are none
-    #[arg(long, conflicts_with = "plan")]
+    #[arg(help_heading = heading::FIT, long, conflicts_with = "plan")]
     pub reject_outliers: bool,
     /// With --sigma: hold combinations of parameters whose standard error would be larger than this, in radians and in shares
     /// of the mechanism's size
-    #[arg(long, value_name = "SHARE", default_value_t = 0.05, allow_hyphen_values = true)]
+    #[arg(help_heading = heading::FIT, long, value_name = "SHARE", default_value_t = 0.05, allow_hyphen_values = true)]
     pub weakest: f64,
     /// Choose this number of poses to measure
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub plan: Option<u32>,
     /// What will be measured at the chosen poses, instead of all task coordinates and actuated joints
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', requires = "plan")]
+    #[arg(help_heading = heading::PLAN, long, value_name = "NAME,...", value_delimiter = ',', requires = "plan")]
     pub columns: Vec<String>,
     /// Number of poses to choose from, drawn from the workspace
     #[arg(
+        help_heading = heading::PLAN,
         long,
         value_name = "COUNT",
         default_value_t = 500,
@@ -79,10 +80,10 @@ pub struct CalibrateArgs {
     )]
     pub candidates: u32,
     /// A CSV file of poses to choose from instead
-    #[arg(long, value_name = "IN.csv", requires = "plan", conflicts_with = "candidates", value_hint = ValueHint::FilePath)]
+    #[arg(help_heading = heading::PLAN, long, value_name = "IN.csv", requires = "plan", conflicts_with = "candidates", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
     /// Seed of the draws
-    #[arg(long, value_name = "SEED", default_value_t = 0, requires = "plan")]
+    #[arg(help_heading = heading::PLAN, long, value_name = "SEED", default_value_t = 0, requires = "plan")]
     pub seed: u64,
     /// Working mode of all measurements: `home`, or a sign for every two-valued choice ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]

@@ -1,6 +1,6 @@
 //! Arguments of `opm check`.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, heading};
 use crate::pose::GridAxis;
 
 /// Hold a mechanism's closed forms to independent computations: a certificate
@@ -37,6 +37,6 @@ pub struct CheckArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
     /// Check for each of these values of a number that --set takes, and print a table of the worst differences
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
     pub vary: Option<GridAxis>,
 }

@@ -1,5 +1,6 @@
 //! Arguments of `opm design`.
 
+use super::heading;
 use clap::ValueHint;
 use opm_workspace::MOST_THREADS;
 use std::path::PathBuf;
@@ -29,13 +30,13 @@ pub struct DesignArgs {
     #[arg(value_name = "PROBLEM.toml", value_hint = ValueHint::FilePath)]
     pub problem: PathBuf,
     /// Evaluate this number of designs, instead of the `budget` of the problem
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
+    #[arg(help_heading = heading::SEARCH, long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
     pub budget: Option<u64>,
     /// Seed of all random numbers, instead of that of the problem
-    #[arg(long, value_name = "SEED")]
+    #[arg(help_heading = heading::SEARCH, long, value_name = "SEED")]
     pub seed: Option<u64>,
     /// Design all variables at once, although the problem says `split = true`
-    #[arg(long)]
+    #[arg(help_heading = heading::SEARCH, long)]
     pub undivided: bool,
     /// Go on with an interrupted run: what the evaluations beside OUT.toml have is not evaluated again
     #[arg(long, requires = "output")]
@@ -44,10 +45,10 @@ pub struct DesignArgs {
     #[arg(long, requires = "output", conflicts_with = "resume")]
     pub force: bool,
     /// Of a front, write at most this number of mechanism files, evenly spread, instead of all
-    #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(help_heading = heading::SEARCH, long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u64).range(1..))]
     pub designs: Option<u64>,
     /// Number of threads, instead of one per processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    #[arg(help_heading = heading::SEARCH, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
     /// Draw the mechanism, or the front
     #[arg(long, value_name = "OUT.svg|OUT.png|OUT.pdf", value_hint = ValueHint::FilePath)]

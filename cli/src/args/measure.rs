@@ -1,6 +1,6 @@
 //! Arguments of the command that measures a workspace.
 
-use super::ChangeArgs;
+use super::{ChangeArgs, heading};
 use crate::pose::{GridAxis, Number, OverAxis};
 use clap::{ValueEnum, ValueHint};
 use opm_workspace::measure::{DEFAULT_BUDGET, check_tolerance};
@@ -53,13 +53,13 @@ pub struct MeasureArgs {
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// Snap joints that miss their subspaces by at most this, as --tolerance of the other commands does
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::MECHANISM, long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub joint_tolerance: Option<Number>,
     /// What is changed of the file.
     #[command(flatten)]
     pub change: ChangeArgs,
     /// Measure for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
     pub vary: Option<GridAxis>,
     /// Range of one coordinate, or a single value
     #[arg(long, value_name = "AXIS=MIN:MAX|AXIS=VALUE")]
@@ -77,7 +77,7 @@ pub struct MeasureArgs {
     #[arg(long, value_name = "BOXES", default_value_t = DEFAULT_BUDGET, value_parser = boxes, allow_hyphen_values = true)]
     pub budget: u64,
     /// Number of threads, instead of one per processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    #[arg(help_heading = heading::WORK, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 

@@ -1,6 +1,6 @@
 //! Arguments of the commands that follow a motion: of a platform, or of a single loop.
 
-use super::{MechanismArgs, MotionTableArgs, SetupArgs};
+use super::{MechanismArgs, MotionTableArgs, SetupArgs, heading};
 use crate::linkage::input::{CouplerPoint, InputValue};
 use crate::pose::{GridAxis, Number};
 use clap::{ValueEnum, ValueHint};
@@ -56,7 +56,7 @@ pub struct LinkageArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub coupler: Option<CouplerPoint>,
     /// Solve for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["sweep", "coupler"])]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["sweep", "coupler"])]
     pub vary: Option<GridAxis>,
     /// Output file, in the format of its ending; CSV on standard output if it is - or not given
     #[arg(
@@ -125,30 +125,30 @@ pub struct TrajectoryArgs {
     #[arg(short, long, value_name = "OUT.mcap|OUT.csv|OUT.npy", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Also the rates in the table: first derivatives by time, as d.NAME
-    #[arg(long, requires = "output")]
+    #[arg(help_heading = heading::WRITTEN, long, requires = "output")]
     pub rates: bool,
     /// Also the accelerations in the table: second derivatives by time, as dd.NAME
-    #[arg(long, requires = "output")]
+    #[arg(help_heading = heading::WRITTEN, long, requires = "output")]
     pub accelerations: bool,
     /// Also the indices of `opm analyze` (lti, effort_per_force, clearance, ...) in the table or the recording, and the
     /// efforts of joints with --wrench or --gravity, as effort.NAME
-    #[arg(long, requires = "output")]
+    #[arg(help_heading = heading::WRITTEN, long, requires = "output")]
     pub indices: bool,
     /// The efforts of the actuators that move the mechanism: peak, root mean square and power of each, and effort.NAME in the
     /// table
-    #[arg(long, conflicts_with = "indices")]
+    #[arg(help_heading = heading::WRITTEN, long, conflicts_with = "indices")]
     pub efforts: bool,
     /// What indices and efforts are computed with.
     #[command(flatten)]
     pub setup: SetupArgs,
     /// Units of the table: SI and radians, or those of the mechanism file, which the header then names
-    #[arg(long, value_enum, default_value_t = TableUnits::Si, requires = "output")]
+    #[arg(help_heading = heading::WRITTEN, long, value_enum, default_value_t = TableUnits::Si, requires = "output")]
     pub units: TableUnits,
     /// How a table of poses is read.
     #[command(flatten)]
     pub table: MotionTableArgs,
     /// How the motion through the poses of a CSV file starts and ends
-    #[arg(long, value_enum)]
+    #[arg(help_heading = heading::TABLE, long, value_enum)]
     pub ends: Option<EndsName>,
     /// Samples per second, instead of the motion file's rate (100 for a CSV file)
     #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = rate)]
@@ -164,7 +164,7 @@ pub struct TrajectoryArgs {
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub clearance: Option<Number>,
     /// Follow it for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["output", "strict"])]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["output", "strict"])]
     pub vary: Option<GridAxis>,
     /// Exit with status 1 if the mechanism cannot follow all of it
     #[arg(long)]

@@ -1,6 +1,6 @@
 //! Arguments of `opm path`.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, heading};
 use crate::pose::{GridAxis, Pose};
 use clap::ValueHint;
 use opm_workspace::MOST_THREADS;
@@ -48,6 +48,7 @@ pub struct PathArgs {
     pub duration: f64,
     /// Look for a path for each of these values of a number that --set takes, and print a table
     #[arg(
+        help_heading = heading::COMPARE,
         long,
         value_name = "NAME=MIN:MAX:COUNT",
         allow_hyphen_values = true,
@@ -58,7 +59,7 @@ pub struct PathArgs {
     #[arg(short, long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Number of threads, instead of one per processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    #[arg(help_heading = heading::WORK, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 

@@ -1,6 +1,6 @@
 //! Arguments of the commands for one pose or many: inverse and forward kinematics, velocities.
 
-use super::MechanismArgs;
+use super::{MechanismArgs, heading};
 use crate::pose::{GridAxis, Number, Pose};
 use crate::transform::Transform;
 use clap::ValueHint;
@@ -56,19 +56,19 @@ pub struct IkArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "transform"])]
+    #[arg(help_heading = heading::TABLE, long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with_all = ["pose", "transform"])]
     pub columns: Option<ColumnNames>,
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
     pub all_modes: bool,
     /// Passive joints, too, in the CSV, in the order of the JSON of one pose
-    #[arg(long, requires = "poses", conflicts_with_all = ["pose", "transform"])]
+    #[arg(help_heading = heading::WRITTEN, long, requires = "poses", conflicts_with_all = ["pose", "transform"])]
     pub all_joints: bool,
     /// Working mode: `home`, or a sign for every two-valued choice, grouped by leg ("++ ++ ++ +")
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Solve for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "transform", "all_modes"])]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "transform", "all_modes"])]
     pub vary: Option<GridAxis>,
     /// Output file (.csv) for the table; standard output if it is - or not given
     #[arg(
@@ -117,7 +117,7 @@ pub struct VelocityArgs {
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Compute for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true)]
     pub vary: Option<GridAxis>,
     /// Characteristic length of the condition number, instead of the spread of the joint axes
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
@@ -168,7 +168,7 @@ pub struct FkArgs {
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath)]
     pub poses: Option<PathBuf>,
     /// The columns of --poses that are read, by the names that they have there: x=pos_x,y; others are passed over
-    #[arg(long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "joints")]
+    #[arg(help_heading = heading::TABLE, long, value_name = "NAME=HEADING,...", requires = "poses", conflicts_with = "joints")]
     pub columns: Option<ColumnNames>,
     /// Every assembly of each row of --poses, not just the one near the row before
     #[arg(long, requires = "poses", conflicts_with = "joints")]
@@ -184,13 +184,13 @@ pub struct FkArgs {
     )]
     pub output: Option<PathBuf>,
     /// Also the aspect of each assembly: those with the same number are joined by paths without a singularity
-    #[arg(long, requires = "joints", conflicts_with = "poses")]
+    #[arg(help_heading = heading::ALSO, long, requires = "joints", conflicts_with = "poses")]
     pub aspects: bool,
     /// Grid of --aspects: minimum, maximum and number of values of a task coordinate; without it, one is fitted
-    #[arg(long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE", requires = "aspects")]
+    #[arg(help_heading = heading::ALSO, long, value_name = "AXIS=MIN:MAX:COUNT|AXIS=VALUE", requires = "aspects")]
     pub grid: Vec<GridAxis>,
     /// Solve for each of these values of a number that --set takes, and print a table
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "aspects"])]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["poses", "aspects"])]
     pub vary: Option<GridAxis>,
     /// Start Newton's method at this pose; other coordinates start at home
     #[arg(long, value_name = "NAME=VALUE,...")]

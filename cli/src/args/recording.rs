@@ -1,6 +1,6 @@
 //! Arguments of the commands that read a recording.
 
-use super::ChangeArgs;
+use super::{ChangeArgs, heading};
 use crate::plot::options::{PanelName, PictureSize};
 use crate::pose::{Number, Pose, SliceValue};
 use clap::ValueHint;
@@ -56,7 +56,7 @@ pub struct PlotArgs {
     #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
     pub mode: Option<String>,
     /// Accept joints of a mechanism that miss their subspaces by at most this length, as in `opm decompose`
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::MECHANISM, long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<Number>,
     /// What is changed of a mechanism file.
     #[command(flatten)]

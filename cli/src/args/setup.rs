@@ -1,5 +1,6 @@
 //! What poses are judged by: the load, gravity, springs.
 
+use super::heading;
 use crate::analyze::load::{At, GravityVector, LinkStiffness, WrenchComponents};
 use crate::failure::Failure;
 use crate::pose::{Number, Pose};
@@ -12,11 +13,12 @@ use opm_study::{SetupOptions, SpringOptions};
 #[derive(Debug, clap::Args)]
 pub struct SetupArgs {
     /// Force and moment on the platform, N and N m
-    #[arg(long, value_name = "FX,FY,FZ,MX,MY,MZ", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::LOAD, long, value_name = "FX,FY,FZ,MX,MY,MZ", allow_hyphen_values = true)]
     pub wrench: Option<WrenchComponents>,
     /// Where the force acts: `platform`, its reference point; `base`, the base's origin; or a point of the platform, from
     /// the reference point along the axes of --frame
     #[arg(
+        help_heading = heading::LOAD,
         long,
         value_name = "POINT",
         default_value = "platform",
@@ -26,6 +28,7 @@ pub struct SetupArgs {
     pub at: At,
     /// The axes of --wrench and --at: those of the base, or those that the platform carries
     #[arg(
+        help_heading = heading::LOAD,
         long,
         value_name = "base|platform",
         value_parser = axes(),
@@ -35,17 +38,17 @@ pub struct SetupArgs {
     pub frame: LoadAxes,
     /// The weight of links and platform, whose masses are those of `opm export mjcf`: how a body falls, m/s², for
     /// example 0,0,-9.81
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::LOAD, long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<GravityVector>,
     /// Density of bodies whose masses the file does not give, kg/m³, instead of that of the file (aluminium, 2700)
-    #[arg(long, value_name = "KG/M3", requires = "gravity", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::LOAD, long, value_name = "KG/M3", requires = "gravity", allow_hyphen_values = true)]
     pub density: Option<Number>,
     /// Stiffness of each link against translations of its end, N/m, and against rotations, N m/rad: gives the platform's
     /// stiffness
-    #[arg(long, value_name = "KT,KR", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::LOAD, long, value_name = "KT,KR", allow_hyphen_values = true)]
     pub link_stiffness: Option<LinkStiffness>,
     /// Stiffness of actuators, N/m or N m/rad; one that is not given is rigid
-    #[arg(long, value_name = "NAME=K,...", requires = "link_stiffness")]
+    #[arg(help_heading = heading::LOAD, long, value_name = "NAME=K,...", requires = "link_stiffness")]
     pub joint_stiffness: Option<Pose>,
 }
 

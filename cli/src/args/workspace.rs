@@ -1,6 +1,6 @@
 //! Arguments of the commands that sweep a workspace, and join the shards of one.
 
-use super::{MechanismArgs, SetupArgs};
+use super::{MechanismArgs, SetupArgs, heading};
 use crate::pose::{GridAxis, IndexLimit, Number, Pose};
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -110,46 +110,47 @@ pub struct WorkspaceArgs {
     #[arg(long, value_name = "MODE", default_value = "home", allow_hyphen_values = true)]
     pub mode: String,
     /// Count a pose only if its condition number is at most C in one of the working modes
-    #[arg(long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
+    #[arg(help_heading = heading::COUNTS, long, value_name = "C", value_parser = condition_number, allow_hyphen_values = true)]
     pub max_condition: Option<f64>,
     /// Count a pose only if all bodies are at least this far apart, for example 5mm: see `opm ik` for the nearest two
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::COUNTS, long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub clearance: Option<Number>,
     /// Count a pose only if an index of `opm analyze` is as good as VALUE: lti=0.7, payload=50, effort=20 with --wrench,
     /// stiffness=1e5 with --link-stiffness (repeatable)
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::COUNTS, long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub limit: Vec<IndexLimit>,
     /// What indices are computed with.
     #[command(flatten)]
     pub setup: SetupArgs,
     /// Also compute the global conditioning index, the mean of 1 / condition number
-    #[arg(long)]
+    #[arg(help_heading = heading::ALSO, long)]
     pub conditioning: bool,
     /// Characteristic length of condition numbers, instead of the spread of the joint axes
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::ALSO, long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub length: Option<Number>,
     /// Also find the boundary and the connected components, as all kinds but `grid` do
-    #[arg(long)]
+    #[arg(help_heading = heading::ALSO, long)]
     pub shape: bool,
     /// Also find what rejects the other poses: for each leg, joint and limit, how many it rejects alone, and how many
     /// with others
     #[arg(long, conflicts_with_all = ["shard", "max_condition", "limit", "clearance", "vary", "all_modes"])]
     pub explain: bool,
     /// Also find the largest disc, ball or box in the set of points
-    #[arg(long, value_name = "disc|ball|box", value_parser = inscribed(), conflicts_with = "shard")]
+    #[arg(help_heading = heading::ALSO, long, value_name = "disc|ball|box", value_parser = inscribed(), conflicts_with = "shard")]
     pub inscribed: Option<InscribedShape>,
     /// Centre of --inscribed, in every coordinate in which the set varies; without it, the best one
-    #[arg(long, value_name = "x=..,y=..", requires = "inscribed", allow_hyphen_values = true)]
+    #[arg(help_heading = heading::ALSO, long, value_name = "x=..,y=..", requires = "inscribed", allow_hyphen_values = true)]
     pub centre: Option<Pose>,
     /// Sweep for each of these values of a number that --set takes, and print a table; with --grid, the counts can be
     /// compared
-    #[arg(long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["output", "all_modes"])]
+    #[arg(help_heading = heading::COMPARE, long, value_name = "NAME=MIN:MAX:COUNT", allow_hyphen_values = true, conflicts_with_all = ["output", "all_modes"])]
     pub vary: Option<GridAxis>,
     /// Sweep the same grid in every working mode, and print a table
-    #[arg(long, conflicts_with_all = ["output", "mode"])]
+    #[arg(help_heading = heading::COMPARE, long, conflicts_with_all = ["output", "mode"])]
     pub all_modes: bool,
     /// Sweep only part I of N (I counts from 1), and write it to -o, for `opm merge`
     #[arg(
+        help_heading = heading::WORK,
         long,
         value_name = "I/N",
         requires = "output",
@@ -157,13 +158,13 @@ pub struct WorkspaceArgs {
     )]
     pub shard: Option<Shard>,
     /// Sweep a shard even if its file exists, and replace the file
-    #[arg(long, requires = "shard")]
+    #[arg(help_heading = heading::WORK, long, requires = "shard")]
     pub force: bool,
     /// How points are recorded.
     #[command(flatten)]
     pub cloud: CloudArgs,
     /// Number of threads, instead of one per processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    #[arg(help_heading = heading::WORK, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 
@@ -176,7 +177,7 @@ pub struct CloudArgs {
     pub output: Option<PathBuf>,
     /// x, y and z of the cloud: three coordinates (for the kind `imaginary`, three imaginary joints), or
     /// `tip`, the position of the reference point
-    #[arg(long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
+    #[arg(help_heading = heading::WRITTEN, long, value_name = "A,B,C|tip", requires = "output", value_delimiter = ',')]
     pub axes: Vec<String>,
     /// The value that the colour shows: a task coordinate, an imaginary joint, an actuated joint, `inverse_condition`
     /// (one over the condition number), an index of `opm analyze` such as lti or clearance, or, with a load, an
@@ -184,11 +185,11 @@ pub struct CloudArgs {
     #[arg(long, value_name = "NAME", requires = "output")]
     pub color: Option<String>,
     /// Values stored with every point, with names as for --color
-    #[arg(long, value_name = "A,B,...", requires = "output", value_delimiter = ',')]
+    #[arg(help_heading = heading::WRITTEN, long, value_name = "A,B,...", requires = "output", value_delimiter = ',')]
     pub scalars: Option<Vec<String>>,
     /// Scale of the cloud's axes in a recording: `comparable` multiplies those of another unit than the first by
     /// 1, 2 or 5 times a power of ten, `none` keeps metres and radians
-    #[arg(long, requires = "output", value_parser = scale(), value_name = "SCALE")]
+    #[arg(help_heading = heading::WRITTEN, long, requires = "output", value_parser = scale(), value_name = "SCALE")]
     pub scale: Option<AxisScale>,
 }
 
@@ -215,13 +216,13 @@ pub struct MergeArgs {
     #[arg(value_name = "PART.mcap", required = true, value_hint = ValueHint::FilePath)]
     pub parts: Vec<PathBuf>,
     /// Also find the boundary and the connected components, as all kinds but `grid` do
-    #[arg(long)]
+    #[arg(help_heading = heading::ALSO, long)]
     pub shape: bool,
     /// How points are recorded.
     #[command(flatten)]
     pub cloud: CloudArgs,
     /// Number of threads, instead of one per processor
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
+    #[arg(help_heading = heading::WORK, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Option<u16>,
 }
 

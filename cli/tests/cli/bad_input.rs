@@ -445,7 +445,9 @@ fn headings_of_columns_name_units() {
 fn a_mechanism_can_come_from_standard_input() {
     let text = opm(&["examples", PLANO]).text().to_owned();
     let read = opm_reading(&text, &["decompose", "-"]);
-    assert_eq!(read.text(), opm(&["decompose", PLANO]).text());
+    // The commands that come next need a file.
+    let by_name = opm(&["decompose", PLANO]);
+    assert_eq!(by_name.text().split("\nnext:\n").next(), Some(read.text()));
     opm_reading("format = 2", &["decompose", "-"]).fails(1, &["standard input:1:10"]);
     opm_reading(&text, &["ik", "-", "--poses", "-"])
         .fails_with_one_line(2, &["--poses", "standard input is the mechanism already"]);

@@ -594,3 +594,36 @@ fn a_loop_has_another_platform_where_its_coupler_has_no_closed_form() {
         assert_eq!([first, second], [2, 2], "{converted}");
     }
 }
+
+/// The report ends with commands for this very mechanism, which work as they are typed.
+#[test]
+fn the_next_commands_work() {
+    let folder = Folder::new();
+    let text = opm(&["examples", "stewart"]).stdout;
+    let file = folder.write("it's mine.toml", &text);
+    for args in [
+        &["decompose", &file][..],
+        &["decompose", "delta", "--set", "rod=1.2,rp=50mm"],
+        &["decompose", PLANO, "--coordinates", "tilt-torsion", "--tolerance", "0.5mm"],
+        &["decompose", "bennett-double-spherical-6r"],
+    ] {
+        let report = opm(args);
+        let (_, next) = report.text().split_once("\nnext:\n").expect("commands");
+        assert!(next.lines().count() >= 2, "{next}");
+        for line in next.lines() {
+            let (command, _) = line.trim().split_once("  ").expect("what it does");
+            let program = env!("CARGO_BIN_EXE_opm");
+            let command = command.replacen("opm", program, 1);
+            let run = std::process::Command::new("sh")
+                .args(["-c", &command])
+                .current_dir(folder.path("."))
+                .output()
+                .unwrap();
+            assert!(run.status.success(), "{command}: {}", String::from_utf8_lossy(&run.stderr));
+            let told = String::from_utf8_lossy(&run.stdout);
+            assert!(!told.contains("out of reach"), "{command}: {told}");
+        }
+    }
+    // What came through a pipe cannot be read again.
+    assert!(!opm_reading(&text, &["decompose", "-"]).text().contains("next:"));
+}

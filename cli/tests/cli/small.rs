@@ -206,3 +206,22 @@ fn the_examples_in_the_help_parse() {
         }
     }
 }
+
+/// The short help of a command with many options has those that matter, the long one all of them under headings.
+#[test]
+fn the_short_help_is_short() {
+    for command in ["workspace", "trajectory", "accuracy", "calibrate", "analyze", "ik", "fk"] {
+        let short = opm(&[command, "-h"]);
+        let lines = short.text().lines().count();
+        assert!(lines <= 45, "{command}: {lines} lines");
+        assert!(short.text().ends_with("--help has all options.\n"), "{}", short.stdout);
+        let long = opm(&[command, "--help"]);
+        assert!(long.text().contains("\nThe mechanism:\n"), "{}", long.stdout);
+        let options =
+            |text: &str| text.lines().filter(|line| line.trim_start().starts_with("--")).count();
+        assert!(options(&short.stdout) <= 10, "{}", short.stdout);
+        assert!(options(&long.stdout) > options(&short.stdout) + 3, "{}", long.stdout);
+    }
+    // A command with few options has all of them in both.
+    assert!(opm(&["decompose", "-h"]).text().contains("--vary"));
+}
