@@ -12,11 +12,9 @@ use crate::motion::{self, LoadedMotion, Reading};
 use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
 use crate::text::count;
-use nalgebra::Vector3;
 use opm_analysis::Gravity;
 use opm_core::manipulator::Manipulator;
 use opm_core::motion::TimingError;
-use opm_core::skeleton::Density;
 use opm_mcap::RecordError;
 use opm_study::recording::{
     MotionRecorder, TableOptions, is_motion_table, partial, write_motion_csv, write_motion_table,
@@ -92,11 +90,6 @@ fn given_setup(setup: &SetupOptions) -> &'static str {
     }
 }
 
-/// The acceleration of what falls, where it is not given.
-fn standard_gravity() -> Gravity {
-    Gravity { acceleration: Vector3::new(0.0, 0.0, -9.81), density: Density::default() }
-}
-
 /// The motion of the flags, and the duration that it was given with if it got another timing.
 fn motion(
     args: &TrajectoryArgs,
@@ -148,7 +141,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let mut setup = args.setup.options(None)?;
     if args.efforts {
         // Motors carry the mechanism.
-        setup.gravity = setup.gravity.or(Some(standard_gravity()));
+        setup.gravity = setup.gravity.or(Some(Gravity::default()));
     }
     if setup != SetupOptions::default() && !args.indices && !args.efforts {
         let problem = "nothing uses it; --indices and --efforts do";

@@ -8,6 +8,7 @@
 //! | which loads actuators with limits bear | [`Statics::capacity`], [`Statics::facets`] |
 //! | how well motion and force are transmitted | [`Transmissions`] |
 //! | what acts: a load on the platform, and the weight of all bodies | [`Loads`] |
+//! | the equations of motion: mass matrix, bias, gravity, friction; accelerations for efforts | [`Dynamics`] |
 //! | how much the platform gives way, and how the legs share a load | [`Compliant`] |
 //! | one number for a colour, a column or a limit | [`Indices`] |
 //!
@@ -35,6 +36,7 @@
 //! ```
 
 mod capacity;
+mod dynamics;
 mod efforts;
 mod index;
 mod screws;
@@ -47,6 +49,7 @@ mod weights;
 mod wrench;
 
 pub use capacity::{Capacity, Facet};
+pub use dynamics::Dynamics;
 pub use efforts::{Balance, Efforts, Worst};
 pub use index::{Facts, Index, IndexBounds, IndexError, Indices};
 pub use screws::{Freedom, Screws};

@@ -3,7 +3,7 @@
 use crate::efforts::{Balance, Efforts};
 use crate::springs::Springs;
 use crate::statics::{Statics, Velocity};
-use crate::weights::{Gravity, JointMotion, Weights};
+use crate::weights::{Gravity, JointMotion, Part, Weights};
 use crate::wrench::{Load, Wrench};
 use opm_core::manipulator::{Manipulator, Solution};
 
@@ -64,11 +64,16 @@ pub struct Loads<'a> {
 impl<'a> Loads<'a> {
     /// The loads of a setup; `None` if it has none.
     pub fn new(manipulator: &'a Manipulator, setup: &Setup) -> Option<Self> {
-        setup.has_load().then(|| Self {
+        setup.has_load().then(|| Self::of(manipulator, setup))
+    }
+
+    /// The same, also if it has none.
+    pub(crate) fn of(manipulator: &'a Manipulator, setup: &Setup) -> Self {
+        Self {
             manipulator,
             load: setup.load.unwrap_or_default(),
             weights: setup.gravity.map(|gravity| Weights::new(manipulator, &gravity)),
-        })
+        }
     }
 
     /// The mass of the bodies whose weights act, kilograms; 0 without gravity.
@@ -100,11 +105,23 @@ impl<'a> Loads<'a> {
         motion: Option<JointMotion<'_>>,
     ) -> Option<Velocity> {
         let mut work = statics.work(&self.wrench(at));
-        if let Some(weights) = &mut self.weights {
-            let own = weights.work(statics, at, motion)?;
-            work.iter_mut().zip(own).for_each(|(part, own)| *part += own);
-        }
+        let own = self.work_of(statics, at, motion, Part::All)?;
+        work.iter_mut().zip(own).for_each(|(part, own)| *part += own);
         Some(work)
+    }
+
+    /// The work of one part of what acts on the bodies, without the load on the platform.
+    pub(crate) fn work_of(
+        &mut self,
+        statics: &Statics<'_>,
+        at: &Solution,
+        motion: Option<JointMotion<'_>>,
+        part: Part,
+    ) -> Option<Velocity> {
+        match &mut self.weights {
+            Some(weights) => weights.work_of(statics, at, motion, part),
+            None => Some(Velocity::default()),
+        }
     }
 
     /// The efforts that balance all loads.

@@ -133,7 +133,8 @@ impl<'a> Statics<'a> {
     /// Whether the singular value of a velocity is not zero, so that the actuators hold it.
     pub(crate) fn holds(&self, k: usize) -> bool {
         let largest = self.values[..self.free].iter().copied().fold(0.0, f64::max);
-        self.values[k] > SINGULAR * largest
+        // Where no actuator moves at all, rounding is the largest.
+        self.values[k] > SINGULAR * largest.max(SINGULAR)
     }
 
     /// The number of independent motions of the platform that the actuators do not hold: zero, but at parallel singularities

@@ -28,6 +28,37 @@ pub struct JointMotion<'a> {
     pub accelerations: &'a [f64],
 }
 
+/// What acts in a motion: all of it, or one part. The parts add up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    All,
+    Weight,
+    /// What resists accelerations, of bodies and rotors.
+    Inertia,
+    Viscous,
+    Coulomb,
+}
+
+impl Part {
+    fn has(self, part: Self) -> bool {
+        self == Self::All || self == part
+    }
+
+    /// The effort that a drive needs for this part.
+    fn of_drive(self, drive: &Drive, rate: f64, acceleration: f64) -> f64 {
+        let none = Drive::default();
+        let (inertia, viscous, coulomb) =
+            (self.has(Self::Inertia), self.has(Self::Viscous), self.has(Self::Coulomb));
+        let part = Drive {
+            rotor_inertia: if inertia { drive.rotor_inertia } else { none.rotor_inertia },
+            viscous_friction: if viscous { drive.viscous_friction } else { none.viscous_friction },
+            coulomb_friction: if coulomb { drive.coulomb_friction } else { none.coulomb_friction },
+            ..*drive
+        };
+        part.effort(rate, acceleration)
+    }
+}
+
 /// What makes bodies heavy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gravity {
@@ -35,6 +66,13 @@ pub struct Gravity {
     pub acceleration: Vector3<f64>,
     /// The density of bodies whose masses the mechanism does not give.
     pub density: Density,
+}
+
+impl Default for Gravity {
+    /// 9.81 m/s² along -z, and the density of the mechanism.
+    fn default() -> Self {
+        Self { acceleration: Vector3::new(0.0, 0.0, -9.81), density: Density::default() }
+    }
 }
 
 /// The links and the platform of a mechanism with their masses: those that models for simulators have
@@ -131,6 +169,17 @@ impl<'a> Weights<'a> {
         at: &Solution,
         motion: Option<JointMotion<'_>>,
     ) -> Option<Velocity> {
+        self.work_of(statics, at, motion, Part::All)
+    }
+
+    /// The work of one part of it.
+    pub(crate) fn work_of(
+        &mut self,
+        statics: &Statics<'_>,
+        at: &Solution,
+        motion: Option<JointMotion<'_>>,
+        part: Part,
+    ) -> Option<Velocity> {
         self.screws.update(at);
         let unknown = |link: &Link| {
             let mut singular = statics.singular().iter().filter(|s| s.leg == link.leg);
@@ -142,7 +191,7 @@ impl<'a> Weights<'a> {
         let displacement = at.displacement(self.manipulator);
         let reference = displacement * self.manipulator.mechanism().platform;
         let arm = displacement * self.platform.centre - reference;
-        let on_platform = self.act(&displacement, motion);
+        let on_platform = self.act(&displacement, motion, part);
         let mut work = [0.0; MOST];
         for (k, work) in work.iter_mut().enumerate().take(statics.free) {
             let twist = statics.twists.column(k);
@@ -163,15 +212,21 @@ impl<'a> Weights<'a> {
     }
 
     /// Finds what acts on all links, and returns what acts on the platform.
-    fn act(&mut self, displacement: &Isometry3<f64>, motion: Option<JointMotion<'_>>) -> Acting {
-        let weight = |mass: &Mass| [self.gravity * mass.mass, Vector3::zeros()];
+    fn act(
+        &mut self,
+        displacement: &Isometry3<f64>,
+        motion: Option<JointMotion<'_>>,
+        part: Part,
+    ) -> Acting {
+        let gravity = if part.has(Part::Weight) { self.gravity } else { Vector3::zeros() };
+        let weight = |mass: &Mass| [gravity * mass.mass, Vector3::zeros()];
         for (number, effort) in &mut self.drives {
             let drive = self.manipulator.coordinates()[*number].drive;
             *effort = motion.map_or(0.0, |motion| {
-                drive.effort(motion.rates[*number], motion.accelerations[*number])
+                part.of_drive(&drive, motion.rates[*number], motion.accelerations[*number])
             });
         }
-        let Some(motion) = motion else {
+        let Some(motion) = motion.filter(|_| part.has(Part::Inertia)) else {
             for (acting, link) in self.acting.iter_mut().zip(&self.links) {
                 *acting = weight(&link.mass);
             }
@@ -181,12 +236,12 @@ impl<'a> Weights<'a> {
         for (acting, link) in self.acting.iter_mut().zip(&self.links) {
             let last = link.moved_by.end - 1;
             let after = &self.screws.freedoms[last].after;
-            *acting = inertial(&link.mass, after, &self.moving[last], &self.gravity);
+            *acting = inertial(&link.mass, after, &self.moving[last], &gravity);
         }
         // All legs end at the platform.
         let last = self.screws.legs.first().and_then(|leg| leg.clone().last());
         let moving = last.map_or([Screw::default(); 2], |last| self.moving[last]);
-        inertial(&self.platform, displacement, &moving, &self.gravity)
+        inertial(&self.platform, displacement, &moving, &gravity)
     }
 
     /// The twist of what each freedom moves, and its rate.

@@ -1,99 +1,46 @@
 //! Inverse dynamics, against Lagrange's equations of what moves: energies come from where bodies are, and their derivatives are
 //! differences.
 
+mod bodies;
+
+use bodies::Bodies;
 use fastrand::Rng;
 use nalgebra::{DVector, Vector3};
 use opm_analysis::{Gravity, JointMotion, Loads, Setup, Statics};
-use opm_core::manipulator::{Manipulator, Solution};
+use opm_core::Manipulator;
 use opm_core::mechanism::examples::{EXAMPLES, TEMPLATES};
-use opm_core::skeleton::{Configuration, Density, Mass, Skeleton};
+use opm_core::skeleton::Density;
 
-/// A mechanism with its bodies.
-struct Bodies<'a> {
-    manipulator: &'a Manipulator,
-    skeleton: Skeleton,
-    masses: Vec<Mass>,
-    gravity: Vector3<f64>,
-}
-
-impl<'a> Bodies<'a> {
-    fn new(manipulator: &'a Manipulator, gravity: &Gravity) -> Self {
-        let skeleton = Skeleton::new(manipulator.mechanism(), None);
-        let masses = skeleton.masses(manipulator.mechanism(), gravity.density);
-        Self { manipulator, skeleton, masses, gravity: gravity.acceleration }
-    }
-
-    fn solved(&self, pose: &[f64]) -> Option<Solution> {
-        let mut at = self.manipulator.solution();
-        self.manipulator.inverse(pose, self.manipulator.home_mode(), &mut at).ok()??;
-        Some(at)
-    }
-
-    /// Where all bodies are at a pose.
-    fn placed(&self, pose: &[f64]) -> Option<Vec<nalgebra::Isometry3<f64>>> {
-        let at = self.solved(pose)?;
-        let platform = at.displacement(self.manipulator);
-        let configuration = Configuration { joints: at.joints(), imaginary: &[], platform };
-        self.skeleton.place_in_base(&configuration).ok()
-    }
-
-    /// The kinetic energy at a pose for rates of its coordinates.
-    fn kinetic(&self, pose: &DVector<f64>, rates: &DVector<f64>) -> Option<f64> {
-        const STEP: f64 = 1e-5;
-        let here = self.placed(pose.as_slice())?;
-        let [after, before] =
-            [STEP, -STEP].map(|step| self.placed((pose + rates * step).as_slice()));
-        let (after, before) = (after?, before?);
-        let mut energy = 0.0;
-        for (k, mass) in self.masses.iter().enumerate().skip(1) {
-            let velocity = (after[k] * mass.centre - before[k] * mass.centre) / (2.0 * STEP);
-            let turned = after[k].rotation * before[k].rotation.inverse();
-            let angular = turned.scaled_axis() / (2.0 * STEP);
-            let own = here[k].rotation.inverse() * angular;
-            energy += 0.5 * (mass.mass * velocity.norm_squared() + own.dot(&(mass.inertia * own)));
-        }
-        Some(energy)
-    }
-
-    fn potential(&self, pose: &DVector<f64>) -> Option<f64> {
-        let here = self.placed(pose.as_slice())?;
-        let of = |(at, mass): (&nalgebra::Isometry3<f64>, &Mass)| {
-            -mass.mass * self.gravity.dot(&(at * mass.centre).coords)
+/// The generalised forces that a motion needs: `d/dt ∂T/∂v - ∂T/∂x + ∂U/∂x`.
+fn lagrange(
+    bodies: &Bodies<'_>,
+    x: &DVector<f64>,
+    v: &DVector<f64>,
+    a: &DVector<f64>,
+) -> Option<DVector<f64>> {
+    const STEP: f64 = 1e-3;
+    let unit = |j: usize| DVector::from_fn(x.len(), |i, _| f64::from(u8::from(i == j)));
+    let mut forces = DVector::zeros(x.len());
+    for j in 0..x.len() {
+        // Quadratic in the rates: this difference is exact.
+        let momentum = |t: f64| {
+            let (x, v) = (x + v * t + a * (0.5 * t * t), v + a * t);
+            Some(
+                0.5 * (bodies.kinetic(&x, &(&v + unit(j)))?
+                    - bodies.kinetic(&x, &(&v - unit(j)))?),
+            )
         };
-        Some(here.iter().zip(&self.masses).skip(1).map(of).sum())
+        let fourth = |f: &dyn Fn(f64) -> Option<f64>| {
+            let [one, two] = [1.0, 2.0].map(|k| Some(f(k * STEP)? - f(-k * STEP)?));
+            Some((8.0 * one? - two?) / (12.0 * STEP))
+        };
+        let along = |t: f64| {
+            let moved = x + unit(j) * t;
+            Some(bodies.kinetic(&moved, v)? - bodies.potential(&moved)?)
+        };
+        forces[j] = fourth(&momentum)? - fourth(&along)?;
     }
-
-    /// The generalised forces that a motion needs: `d/dt ∂T/∂v - ∂T/∂x + ∂U/∂x`.
-    fn lagrange(
-        &self,
-        x: &DVector<f64>,
-        v: &DVector<f64>,
-        a: &DVector<f64>,
-    ) -> Option<DVector<f64>> {
-        const STEP: f64 = 1e-3;
-        let unit = |j: usize| DVector::from_fn(x.len(), |i, _| f64::from(u8::from(i == j)));
-        let mut forces = DVector::zeros(x.len());
-        for j in 0..x.len() {
-            // Quadratic in the rates: this difference is exact.
-            let momentum = |t: f64| {
-                let (x, v) = (x + v * t + a * (0.5 * t * t), v + a * t);
-                Some(
-                    0.5 * (self.kinetic(&x, &(&v + unit(j)))?
-                        - self.kinetic(&x, &(&v - unit(j)))?),
-                )
-            };
-            let fourth = |f: &dyn Fn(f64) -> Option<f64>| {
-                let [one, two] = [1.0, 2.0].map(|k| Some(f(k * STEP)? - f(-k * STEP)?));
-                Some((8.0 * one? - two?) / (12.0 * STEP))
-            };
-            let along = |t: f64| {
-                let moved = x + unit(j) * t;
-                Some(self.kinetic(&moved, v)? - self.potential(&moved)?)
-            };
-            forces[j] = fourth(&momentum)? - fourth(&along)?;
-        }
-        Some(forces)
-    }
+    Some(forces)
 }
 
 #[test]
@@ -145,7 +92,7 @@ fn efforts_are_those_of_lagranges_equations() {
                 JointMotion { rates: rates.as_slice(), accelerations: accelerations.as_slice() };
             let efforts = loads.efforts_in(&statics, &at, Some(motion));
             let known: Option<Vec<f64>> = efforts.actuated.iter().copied().collect();
-            let (Some(efforts), Some(expected)) = (known, bodies.lagrange(&x, &v, &a)) else {
+            let (Some(efforts), Some(expected)) = (known, lagrange(&bodies, &x, &v, &a)) else {
                 continue;
             };
             let by_pose = jacobians.joints_by_pose();
