@@ -9,8 +9,9 @@ use crate::args::{AnalyzeArgs, Output};
 use crate::failure::Failure;
 use crate::load as mechanisms;
 use crate::unitless;
+use nalgebra::Vector3;
 use opm_analysis::{
-    Balance, Compliant, Efforts, Index, Indices, Loads, NoTransmission, Setup, Statics,
+    Balance, Compliant, Efforts, Gravity, Index, Indices, Loads, NoTransmission, Setup, Statics,
     Transmissions, Velocity,
 };
 use opm_core::manipulator::{Manipulator, Solution};
@@ -35,10 +36,10 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();
     let springs = setup.springs.clone().map(|springs| Compliant::new(&manipulator, springs));
     let springs = springs.transpose().map_err(|error| Failure::flag("--link-stiffness", error))?;
-    let mut springs = springs.map(|springs| match &setup.gravity {
-        Some(gravity) => springs.with_gravity(gravity),
-        None => springs,
-    });
+    // Bodies have masses in any case.
+    let weightless = Gravity { acceleration: Vector3::zeros(), ..Gravity::default() };
+    let gravity = setup.gravity.unwrap_or(weightless);
+    let mut springs = springs.map(|springs| springs.with_gravity(&gravity));
     let mut elastic = None;
     if reached {
         let verified = checks.verify(&manipulator, at.dependent(), loaded.file.units);
@@ -48,7 +49,8 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
             let stiffness = compliant.stiffness(&at)?;
             let load = setup.has_load().then(|| analyser.wrench(&at).unwrap_or_default());
             let reactions = load.and_then(|load| compliant.reactions(&stiffness, &load));
-            Some(Elastic { stiffness, reactions })
+            let vibrations = compliant.vibrations(&stiffness);
+            Some(Elastic { stiffness, reactions, vibrations })
         });
     }
     let units = loaded.file.units;

@@ -54,6 +54,8 @@ pub struct Analysis {
     stiffness: Py<PyArrayDyn<f64>>,
     /// (...), N m/rad: least moment that turns the platform by a unit of angle about its axis.
     rotational_stiffness: Py<PyArrayDyn<f64>>,
+    /// (...), Hz: lowest natural frequency, with the springs of links and actuators.
+    natural_frequency: Py<PyArrayDyn<f64>>,
     /// (...), m: distance of the nearest two bodies; negative where they overlap.
     clearance: Py<PyArrayDyn<f64>>,
     /// (..., 6, 6): force and moment on the platform at its reference point, by its translations along x, y and z of the base and
@@ -61,6 +63,11 @@ pub struct Analysis {
     stiffness_matrix: Option<Py<PyArrayDyn<f64>>>,
     /// (..., legs, 6, 6): the same for each leg, whose sum it is: what a leg carries is this times the platform's displacement.
     leg_stiffness: Option<Py<PyArrayDyn<f64>>>,
+    /// (..., 6), Hz: all natural frequencies of the platform on its springs, rising; None without stiffnesses.
+    natural_frequencies: Option<Py<PyArrayDyn<f64>>>,
+    /// (..., 6, 6): a row for each of them, how the platform moves: translation of its reference point along x, y and z of the base, m,
+    /// and its rotation vector, rad.
+    vibration_shapes: Option<Py<PyArrayDyn<f64>>>,
     /// (...): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
     /// (...): whether the actuators balance the load.
@@ -84,9 +91,12 @@ pickled!(Analysis {
     payload_ball,
     stiffness,
     rotational_stiffness,
+    natural_frequency,
     clearance,
     stiffness_matrix,
     leg_stiffness,
+    natural_frequencies,
+    vibration_shapes,
     reachable,
     balanced,
 });
@@ -104,7 +114,7 @@ impl Analysis {
 }
 
 /// The number of tables before those of the indices.
-const TABLES: usize = 5;
+const TABLES: usize = 7;
 
 /// What a thread computes with.
 struct Buffers<'a> {
@@ -214,7 +224,9 @@ impl Manipulator {
         let (actuated, imaginary) = (inner.actuated().len(), inner.imaginary().len());
         let known = Index::known(inner, &judged);
         let legs = inner.mechanism().legs.len();
-        let square = if springs { 36 } else { 0 };
+        let (six, square) = if springs { (6, 36) } else { (0, 0) };
+        // Masses alone: what weights do to each leg is not asked for.
+        let masses = setup.gravity.unwrap_or_default();
         let mut widths = [1; TABLES + Index::ALL.len()];
         widths[..TABLES].copy_from_slice(&[
             actuated,
@@ -222,6 +234,8 @@ impl Manipulator {
             6 * actuated,
             square,
             square * legs,
+            six,
+            square,
         ]);
         let mut tables = Tables::fill(
             py,
@@ -233,9 +247,14 @@ impl Manipulator {
                 statics: Statics::new(inner, setup.length),
                 loads: Loads::new(inner, &setup),
                 indices: Indices::new(inner, &judged, known.iter().copied()).ok(),
-                compliant: setup.springs.clone().and_then(|of| Compliant::new(inner, of).ok()),
+                compliant: setup
+                    .springs
+                    .clone()
+                    .and_then(|of| Some(Compliant::new(inner, of).ok()?.with_gravity(&masses))),
             },
-            |buffers, row, [efforts, between, units, matrix, of_legs, numbers @ ..]| {
+            |buffers,
+             row,
+             [efforts, between, units, matrix, of_legs, hertz, shapes, numbers @ ..]| {
                 let Buffers { solution, statics, loads, indices, compliant } = buffers;
                 if !self.solve(&poses, row, mode, solution)? {
                     return Ok([false; 2]);
@@ -264,6 +283,12 @@ impl Manipulator {
                     matrix.copy_from_slice(found.platform.as_slice());
                     for (out, leg) in of_legs.chunks_exact_mut(36).zip(&found.legs) {
                         out.copy_from_slice(leg.as_slice());
+                    }
+                    let vibrations =
+                        compliant.as_ref().and_then(|compliant| compliant.vibrations(&found));
+                    for (i, found) in vibrations.iter().flatten().enumerate() {
+                        hertz[i] = found.frequency;
+                        shapes[6 * i..][..6].copy_from_slice(found.shape.as_slice());
                     }
                 }
                 if let Some(indices) = indices {
@@ -295,6 +320,7 @@ impl Manipulator {
             payload_ball: index(Index::PayloadBall)?,
             stiffness: index(Index::Stiffness)?,
             rotational_stiffness: index(Index::RotationalStiffness)?,
+            natural_frequency: index(Index::NaturalFrequency)?,
             clearance: index(Index::Clearance)?,
             stiffness_matrix: match springs {
                 true => Some(poses.frozen(&tables.table(3), &[6, 6])?),
@@ -302,6 +328,14 @@ impl Manipulator {
             },
             leg_stiffness: match springs {
                 true => Some(poses.frozen(&tables.table(4), &[legs, 6, 6])?),
+                false => None,
+            },
+            natural_frequencies: match springs {
+                true => Some(poses.frozen(&tables.table(5), &[6])?),
+                false => None,
+            },
+            vibration_shapes: match springs {
+                true => Some(poses.frozen(&tables.table(6), &[6, 6])?),
                 false => None,
             },
             reachable: poses.frozen(&reachable, &[])?,

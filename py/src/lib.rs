@@ -17,6 +17,7 @@ mod columns;
 mod command;
 mod decomposition;
 mod dimensions;
+mod dynamics;
 mod error;
 mod explorer;
 mod export;

@@ -57,6 +57,14 @@ impl Given<'_, '_> {
     }
 }
 
+/// Gravity and the density of bodies, where every body has a mass.
+pub fn gravity(given: Option<&Bound<'_, PyAny>>, density: Option<f64>) -> PyResult<Gravity> {
+    let standard = Gravity::default();
+    let acceleration = given.map(|given| vector(given, "gravity")).transpose()?;
+    let density = arguments::density(density)?;
+    Ok(Gravity { acceleration: acceleration.unwrap_or(standard.acceleration), density })
+}
+
 /// A wrench of six finite numbers.
 fn six(given: &Bound<'_, PyAny>) -> PyResult<Wrench> {
     let row = arguments::row(given, "wrench", Columns::all(&WRENCH))?;

@@ -5,7 +5,9 @@ use crate::output::named;
 use crate::text::{self, Table, short};
 use crate::transform;
 use nalgebra::Vector3;
-use opm_analysis::{Balance, Capacity, Efforts, Reactions, Stiffness, Transmission, Wrench};
+use opm_analysis::{
+    Balance, Capacity, Efforts, Reactions, Stiffness, Transmission, Vibration, Wrench,
+};
 use opm_core::Quantity;
 use opm_core::manipulator::{Mode, Solution, part_of};
 use opm_core::mechanism::file::FileUnits;
@@ -30,6 +32,8 @@ pub struct Elastic {
     pub stiffness: Stiffness,
     /// For the load, if there is one.
     pub reactions: Option<Reactions>,
+    /// Unless the platform moves without resistance.
+    pub vibrations: Option<[Vibration; 6]>,
 }
 
 impl Elastic {
@@ -40,6 +44,10 @@ impl Elastic {
         let mut json = json!({
             "matrix": rows.map(|row| row.iter().copied().collect::<Vec<f64>>()).collect::<Vec<_>>(),
         });
+        let vibrations = self.vibrations.iter().flatten().map(|found| {
+            json!({ "frequency": finite(found.frequency), "shape": found.shape.as_slice() })
+        });
+        json["vibrations"] = vibrations.collect::<Vec<_>>().into();
         let Some(found) = &self.reactions else { return json };
         let wrenches = |names: &mut dyn Iterator<Item = String>, all: &[Wrench]| {
             let each = names.zip(all).map(|(name, w)| (name, json!(w.components())));
@@ -63,6 +71,10 @@ impl Elastic {
             table.row(std::iter::once((*name).to_owned()).chain(cells));
         }
         let mut text = format!("{table}\n");
+        if let Some(found) = &self.vibrations {
+            let each: Vec<_> = found.iter().map(|found| short(found.frequency)).collect();
+            let _ = writeln!(text, "natural frequencies: {} Hz\n", each.join(", "));
+        }
         let Some(found) = &self.reactions else { return text };
         let mut table = Table::new(["load on", ">FX", ">FY", ">FZ", ">MX", ">MY", ">MZ"]);
         for (leg, wrench) in manipulator.mechanism().legs.iter().zip(&found.legs) {

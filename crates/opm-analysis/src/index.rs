@@ -44,6 +44,8 @@ pub enum Index {
     Stiffness,
     /// The least moment that turns the platform by a unit of angle about its axis.
     RotationalStiffness,
+    /// The lowest natural frequency.
+    NaturalFrequency,
     /// The distance of the nearest two bodies.
     Clearance,
 }
@@ -109,7 +111,7 @@ pub enum IndexError {
 
 impl Index {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Iti,
         Self::Oti,
         Self::Lti,
@@ -123,6 +125,7 @@ impl Index {
         Self::PayloadBall,
         Self::Stiffness,
         Self::RotationalStiffness,
+        Self::NaturalFrequency,
         Self::Clearance,
     ];
 
@@ -150,6 +153,7 @@ impl Index {
             Self::RotationalStiffness => {
                 good("rotational_stiffness", "N m/rad", "least stiffness against a moment")
             }
+            Self::NaturalFrequency => good("natural_frequency", "Hz", "lowest natural frequency"),
             Self::Clearance => good("clearance", "m", "distance of the nearest two bodies"),
         }
     }
@@ -191,7 +195,12 @@ impl Index {
 
     /// Whether its value depends on how much the mechanism gives way.
     pub fn depends_on_springs(self) -> bool {
-        matches!(self, Self::Stiffness | Self::RotationalStiffness)
+        matches!(self, Self::Stiffness | Self::RotationalStiffness | Self::NaturalFrequency)
+    }
+
+    /// Whether its value depends on the masses of bodies.
+    pub fn depends_on_masses(self) -> bool {
+        self == Self::NaturalFrequency
     }
 
     /// Whether a value is as good as a bound, or better. A value that is not a number is not.
@@ -344,11 +353,12 @@ impl<'a> Indices<'a> {
                 self.transmissions = Some(found);
                 return Ok(());
             }
-            Index::Stiffness | Index::RotationalStiffness => {
+            Index::Stiffness | Index::RotationalStiffness | Index::NaturalFrequency => {
                 let springs = setup.springs.clone().ok_or(IndexError::Rigid(index))?;
                 let found = Compliant::new(manipulator, springs);
-                self.compliant =
-                    Some(found.map_err(|reason| IndexError::Springs { index, reason })?);
+                let found = found.map_err(|reason| IndexError::Springs { index, reason })?;
+                // Weights do not change the stiffness.
+                self.compliant = Some(found.with_gravity(&setup.gravity.unwrap_or_default()));
                 return Ok(());
             }
             Index::Clearance => {
@@ -441,7 +451,12 @@ impl<'a> Indices<'a> {
             .flatten();
         let stiffness = compliant.as_mut().and_then(|compliant| {
             let found = compliant.stiffness(at)?;
-            Some(compliant.least(&found))
+            let vibrates = indices.contains(&Index::NaturalFrequency);
+            let frequency = vibrates.then(|| {
+                // What moves without resistance swings infinitely slowly.
+                compliant.vibrations(&found).map_or(0.0, |found| found[0].frequency)
+            });
+            Some((compliant.least(&found), frequency))
         });
         let nearest = distances.as_mut().and_then(|distances| {
             distances.place(manipulator, at);
@@ -463,8 +478,11 @@ impl<'a> Indices<'a> {
                 Index::Payload => capacity.map(|found| found.force),
                 Index::PayloadMoment => capacity.map(|found| found.moment),
                 Index::PayloadBall => capacity.map(|found| found.ball),
-                Index::Stiffness => stiffness.map(|[against_force, _]| against_force),
-                Index::RotationalStiffness => stiffness.map(|[_, against_moment]| against_moment),
+                Index::Stiffness => stiffness.map(|([against_force, _], _)| against_force),
+                Index::RotationalStiffness => {
+                    stiffness.map(|([_, against_moment], _)| against_moment)
+                }
+                Index::NaturalFrequency => stiffness.and_then(|(_, frequency)| frequency),
                 Index::Clearance => nearest.map(|found| found.distance),
             };
             *value = found.unwrap_or(f64::NAN);

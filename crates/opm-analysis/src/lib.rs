@@ -9,7 +9,7 @@
 //! | how well motion and force are transmitted | [`Transmissions`] |
 //! | what acts: a load on the platform, and the weight of all bodies | [`Loads`] |
 //! | the equations of motion: mass matrix, bias, gravity, friction; accelerations for efforts | [`Dynamics`] |
-//! | how much the platform gives way, and how the legs share a load | [`Compliant`] |
+//! | how much the platform gives way, how the legs share a load, and its natural frequencies | [`Compliant`] |
 //! | one number for a colour, a column or a limit | [`Indices`] |
 //!
 //! Everything is in SI and radians. The signs, the formulas and their sources are in `docs/analysis.md`.
@@ -45,6 +45,7 @@ mod springs;
 mod statics;
 mod stiffness;
 mod transmission;
+mod vibration;
 mod weights;
 mod wrench;
 
@@ -60,5 +61,6 @@ pub use stiffness::{Compliant, Reactions, Stiffness};
 pub use transmission::{
     ConstraintIndex, InputIndices, NoTransmission, Transmission, Transmissions,
 };
+pub use vibration::Vibration;
 pub use weights::{Gravity, JointMotion, Weights};
 pub use wrench::{Load, LoadAxes, LoadPoint, Wrench};

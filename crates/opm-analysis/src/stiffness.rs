@@ -29,7 +29,7 @@ use crate::screws::Screws;
 use crate::springs::{SpringError, Springs};
 use crate::weights::{Gravity, Weights};
 use crate::wrench::Wrench;
-use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Point3, U6, Vector3, Vector6};
+use nalgebra::{Cholesky, DMatrix, DVector, Isometry3, Matrix6, Point3, U6, Vector3, Vector6};
 use opm_core::manipulator::{Manipulator, Solution};
 use std::ops::Range;
 
@@ -83,12 +83,14 @@ pub struct Reactions {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Compliant<'a> {
-    manipulator: &'a Manipulator,
+    pub(crate) manipulator: &'a Manipulator,
     springs: Springs,
-    weights: Option<Weights<'a>>,
-    screws: Screws,
+    pub(crate) weights: Option<Weights<'a>>,
+    pub(crate) screws: Screws,
+    /// The platform's displacement from home.
+    pub(crate) displacement: Isometry3<f64>,
     /// The platform's reference point.
-    reference: Point3<f64>,
+    pub(crate) reference: Point3<f64>,
     /// The weights of links at the pose, at the reference point, and the coordinates that move each.
     heavy: Vec<(Range<usize>, Vector6<f64>)>,
     /// The platform's own weight, at the reference point.
@@ -97,6 +99,32 @@ pub struct Compliant<'a> {
     held: Vec<Vector6<f64>>,
     /// The unit of length, in which all numbers of a matrix are comparable.
     length: f64,
+}
+
+/// A spring of a leg.
+struct Spring {
+    /// The first joint coordinate that moves what is behind it.
+    behind: usize,
+    /// What its displacement moves, as [`Compliant::twist`].
+    twist: Vector6<f64>,
+    /// N/m or N m/rad.
+    stiffness: f64,
+    of: Sprung,
+}
+
+/// What gives way.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sprung {
+    Actuator,
+    Link,
+}
+
+/// How a leg moves for displacements of the platform.
+pub(crate) struct LegRates {
+    /// For each spring and each passive joint: the first joint coordinate behind it, and by what it displaces what is behind.
+    pub each: Vec<(usize, Matrix6<f64>)>,
+    /// The rates of joint coordinates.
+    pub drives: Vec<(usize, Vector6<f64>)>,
 }
 
 impl<'a> Compliant<'a> {
@@ -111,6 +139,7 @@ impl<'a> Compliant<'a> {
             springs,
             weights: None,
             screws: Screws::new(manipulator),
+            displacement: Isometry3::identity(),
             reference: manipulator.mechanism().platform,
             heavy: Vec::new(),
             platform: Vector6::zeros(),
@@ -129,7 +158,8 @@ impl<'a> Compliant<'a> {
     /// serial singularities, and where a leg has no link: a single joint between base and platform.
     pub fn stiffness(&mut self, at: &Solution) -> Option<Stiffness> {
         self.screws.update(at);
-        let platform = self.manipulator.platform_at(&at.displacement(self.manipulator));
+        self.displacement = at.displacement(self.manipulator);
+        let platform = self.manipulator.platform_at(&self.displacement);
         self.reference = Point3::from(platform.translation.vector);
         let at_reference = |force: Vector3<f64>, point: &Point3<f64>| {
             let wrench = Wrench { force, moment: Vector3::zeros() };
@@ -139,7 +169,7 @@ impl<'a> Compliant<'a> {
             let links = weights.links(&self.screws);
             self.heavy =
                 links.map(|(own, force, point)| (own, at_reference(force, &point))).collect();
-            let (force, point) = weights.platform(&at.displacement(self.manipulator));
+            let (force, point) = weights.platform(&self.displacement);
             self.platform = at_reference(force, &point);
         }
         let count = self.screws.legs.len();
@@ -154,9 +184,8 @@ impl<'a> Compliant<'a> {
     /// the worst axis turns the platform by one over the second about it. Both are zero where it can move without resistance.
     pub fn least(&self, stiffness: &Stiffness) -> [f64; 2] {
         let unit = self.unit();
-        let scaled = unit * stiffness.platform * unit;
-        let Some(compliance) = inverse(&scaled) else { return [0.0; 2] };
-        let compliance = unit * compliance * unit;
+        let Some(decomposed) = self.decomposed_stiffness(stiffness) else { return [0.0; 2] };
+        let compliance = unit * decomposed.inverse() * unit;
         [0, 3].map(|first| {
             let block = compliance.fixed_view::<3, 3>(first, first).into_owned();
             block.symmetric_eigenvalues().max().recip()
@@ -167,10 +196,9 @@ impl<'a> Compliant<'a> {
     /// which is the last that was computed. `None` where the platform can move without resistance.
     pub fn reactions(&self, stiffness: &Stiffness, load: &Wrench) -> Option<Reactions> {
         let unit = self.unit();
-        let scaled = unit * stiffness.platform * unit;
         let held: Vector6<f64> = self.held.iter().sum();
         let load = Vector6::from(load.components()) + self.platform - held;
-        let displacement = unit * solve(&scaled, &(unit * load))?;
+        let displacement = unit * self.decomposed_stiffness(stiffness)?.solve(&(unit * load));
         let each = stiffness.legs.iter().zip(&self.held);
         let legs: Vec<Vector6<f64>> = each.map(|(leg, held)| leg * displacement + held).collect();
         let leg_of = |number: usize| self.screws.legs.iter().position(|l| l.contains(&number));
@@ -197,7 +225,7 @@ impl<'a> Compliant<'a> {
 
     /// What lengths are multiplied by: rotations of one radian, and translations of the characteristic length, are
     /// comparable.
-    fn unit(&self) -> Matrix6<f64> {
+    pub(crate) fn unit(&self) -> Matrix6<f64> {
         let l = self.length;
         Matrix6::from_diagonal(&Vector6::new(l, l, l, 1.0, 1.0, 1.0))
     }
@@ -218,37 +246,15 @@ impl<'a> Compliant<'a> {
 
     /// The stiffness of a leg, and what the platform does to it under its own weight, if the platform is held.
     fn leg(&self, leg: usize) -> Option<(Matrix6<f64>, Vector6<f64>)> {
-        let own = self.screws.legs[leg].clone();
         let (mut compliance, mut sag) = (Matrix6::zeros(), Vector6::zeros());
-        let mut spring = |twist: &Vector6<f64>, stiffness: f64, behind: &Vector6<f64>| {
+        for Spring { behind, twist, stiffness, .. } in self.springs_of(leg) {
             compliance += twist * twist.transpose() / stiffness;
-            sag += twist * (twist.dot(behind) / stiffness);
-        };
-        let actuated = self.manipulator.actuated();
-        let mut passive = Vec::new();
-        for number in own.clone() {
-            match actuated.iter().position(|&coordinate| coordinate == number) {
-                Some(actuator) => {
-                    let stiffness = self.springs.actuators[actuator];
-                    spring(&self.twist(number), stiffness, &self.behind(number));
-                }
-                None => passive.push(number),
-            }
+            sag += twist * (twist.dot(&self.behind(behind)) / stiffness);
         }
-        for (number, end) in self.link_ends(leg, own) {
-            let behind = self.behind(number);
-            for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-                let translation = Vector6::new(axis.x, axis.y, axis.z, 0.0, 0.0, 0.0);
-                spring(&translation, self.springs.translation, &behind);
-                let moved = axis.cross(&(self.reference - end));
-                let rotation = Vector6::new(moved.x, moved.y, moved.z, axis.x, axis.y, axis.z);
-                spring(&rotation, self.springs.rotation, &behind);
-            }
-        }
-        let unit = self.unit();
-        let back = unit.map(|part| if part == 0.0 { 0.0 } else { part.recip() });
+        let back = self.per_unit();
         let inverse = (back * compliance * back).cholesky()?.inverse();
         let (mut stiffness, mut balancing) = (inverse, Vector6::zeros());
+        let passive = self.passive(leg);
         if !passive.is_empty() {
             let twists: Vec<_> = passive.iter().map(|&number| back * self.twist(number)).collect();
             let q = DMatrix::from_fn(6, twists.len(), |i, j| twists[j][i] / twists[j].norm());
@@ -265,6 +271,86 @@ impl<'a> Compliant<'a> {
         }
         let held = -(back * (stiffness * (back * sag) + balancing));
         Some((back * stiffness * back, held))
+    }
+
+    /// How the joints and springs of a leg move for displacements of the platform.
+    ///
+    /// The least energy of the springs: `C F + Jq δq = δt` and `Jqᵀ F = 0`, with `F = K δt`.
+    pub(crate) fn leg_rates(&self, leg: usize, stiffness: &Matrix6<f64>) -> Option<LegRates> {
+        let mut rates = LegRates { each: Vec::new(), drives: Vec::new() };
+        let mut left = Matrix6::identity();
+        for Spring { behind, twist, stiffness: own, of } in self.springs_of(leg) {
+            let row = stiffness.tr_mul(&twist) / own;
+            let map = twist * row.transpose();
+            left -= map;
+            rates.each.push((behind, map));
+            if of == Sprung::Actuator {
+                rates.drives.push((behind, row));
+            }
+        }
+        // What the springs leave is that of the passive joints: their screws are independent.
+        let passive = self.passive(leg);
+        if passive.is_empty() {
+            return Some(rates);
+        }
+        let back = self.per_unit();
+        let twists: Vec<_> = passive.iter().map(|&number| back * self.twist(number)).collect();
+        let q = DMatrix::from_fn(6, twists.len(), |i, j| twists[j][i] / twists[j].norm());
+        let square = regular_inverse(q.tr_mul(&q))?;
+        let found = square * q.transpose() * back * left;
+        for (j, &number) in passive.iter().enumerate() {
+            let row = Vector6::from_fn(|i, _| found[(j, i)] / twists[j].norm());
+            rates.each.push((number, self.twist(number) * row.transpose()));
+            rates.drives.push((number, row));
+        }
+        Some(rates)
+    }
+
+    /// The springs of a leg.
+    fn springs_of(&self, leg: usize) -> Vec<Spring> {
+        let own = self.screws.legs[leg].clone();
+        let actuated = self.manipulator.actuated().iter().enumerate();
+        let mut springs: Vec<Spring> = actuated
+            .filter(|(_, number)| own.contains(number))
+            .map(|(actuator, &behind)| {
+                let stiffness = self.springs.actuators[actuator];
+                Spring { behind, twist: self.twist(behind), stiffness, of: Sprung::Actuator }
+            })
+            .collect();
+        springs.sort_by_key(|spring| spring.behind);
+        for (behind, end) in self.link_ends(leg, own) {
+            for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                let twist = Vector6::new(axis.x, axis.y, axis.z, 0.0, 0.0, 0.0);
+                let stiffness = self.springs.translation;
+                springs.push(Spring { behind, twist, stiffness, of: Sprung::Link });
+                let moved = axis.cross(&(self.reference - end));
+                let twist = Vector6::new(moved.x, moved.y, moved.z, axis.x, axis.y, axis.z);
+                let stiffness = self.springs.rotation;
+                springs.push(Spring { behind, twist, stiffness, of: Sprung::Link });
+            }
+        }
+        springs
+    }
+
+    /// The passive joint coordinates of a leg.
+    fn passive(&self, leg: usize) -> Vec<usize> {
+        let actuated = self.manipulator.actuated();
+        self.screws.legs[leg].clone().filter(|number| !actuated.contains(number)).collect()
+    }
+
+    /// One over [`Compliant::unit`].
+    fn per_unit(&self) -> Matrix6<f64> {
+        self.unit().map(|part| if part == 0.0 { 0.0 } else { part.recip() })
+    }
+
+    /// A stiffness in comparable numbers; `None` where the platform can move without resistance.
+    pub(crate) fn decomposed_stiffness(&self, stiffness: &Stiffness) -> Option<Cholesky<f64, U6>> {
+        let unit = self.unit();
+        let scaled = unit * stiffness.platform * unit;
+        let largest = scaled.diagonal().amax();
+        let decomposed = scaled.cholesky()?;
+        let least = decomposed.l_dirty().diagonal().iter().copied().fold(f64::INFINITY, f64::min);
+        (least * least > SINGULAR * largest).then_some(decomposed)
     }
 
     /// The ends of a leg's links that give way, each at the next joint: the number of that joint's first coordinate, and its
@@ -292,21 +378,4 @@ fn regular_inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let decomposed = matrix.cholesky()?;
     let least = decomposed.l_dirty().diagonal().iter().copied().fold(f64::INFINITY, f64::min);
     (least * least > SINGULAR * largest).then(|| decomposed.inverse())
-}
-
-/// The solution of a symmetric system; `None` if it is singular.
-fn solve(matrix: &Matrix6<f64>, right: &Vector6<f64>) -> Option<Vector6<f64>> {
-    decomposed(matrix).map(|decomposed| decomposed.solve(right))
-}
-
-/// The inverse of a symmetric matrix; `None` if it is singular.
-fn inverse(matrix: &Matrix6<f64>) -> Option<Matrix6<f64>> {
-    decomposed(matrix).map(|decomposed| decomposed.inverse())
-}
-
-fn decomposed(matrix: &Matrix6<f64>) -> Option<Cholesky<f64, U6>> {
-    let largest = matrix.diagonal().amax();
-    let decomposed = matrix.cholesky()?;
-    let least = decomposed.l_dirty().diagonal().iter().copied().fold(f64::INFINITY, f64::min);
-    (least * least > SINGULAR * largest).then_some(decomposed)
 }

@@ -155,6 +155,21 @@ impl<'a> Weights<'a> {
         })
     }
 
+    /// The mass of each link at a pose: the coordinates of the joints that move it, its mass at home, and its displacement.
+    pub(crate) fn masses<'b>(
+        &'b self,
+        screws: &'b Screws,
+    ) -> impl Iterator<Item = (Range<usize>, &'b Mass, &'b Isometry3<f64>)> {
+        self.links.iter().map(|link| {
+            (link.moved_by.clone(), &link.mass, &screws.freedoms[link.moved_by.end - 1].after)
+        })
+    }
+
+    /// The platform's mass at home.
+    pub(crate) fn platform_mass(&self) -> &Mass {
+        &self.platform
+    }
+
     /// The weight of the platform, and its centre of mass, where the platform is displaced from home.
     pub(crate) fn platform(&self, displacement: &Isometry3<f64>) -> (Vector3<f64>, Point3<f64>) {
         (self.gravity * self.platform.mass, displacement * self.platform.centre)

@@ -260,7 +260,7 @@ impl CheckedRequest {
         if self.setup.load.is_some() && !load {
             return Err(RequestError::UnusedLoad { option: RequestOption::Wrench });
         }
-        if self.setup.gravity.is_some() && !load {
+        if self.setup.gravity.is_some() && !load && !uses(Index::depends_on_masses) {
             return Err(RequestError::UnusedLoad { option: RequestOption::Gravity });
         }
         if self.setup.springs.is_some() && !uses(Index::depends_on_springs) {

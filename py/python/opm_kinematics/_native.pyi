@@ -398,6 +398,52 @@ class Manipulator:
         mode: str = "home",
         threads: int | None = None,
     ) -> Motion: ...
+    def mass_matrix(
+        self, poses: _Rows, *, density: float | None = None, mode: str = "home", threads: int | None = None
+    ) -> NDArray[np.float64]: ...
+    def bias(
+        self,
+        poses: _Rows,
+        rates: _Rows,
+        *,
+        density: float | None = None,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> NDArray[np.float64]: ...
+    def gravity(
+        self,
+        poses: _Rows,
+        *,
+        gravity: ArrayLike | None = None,
+        density: float | None = None,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> NDArray[np.float64]: ...
+    def friction(
+        self, poses: _Rows, rates: _Rows, *, mode: str = "home", threads: int | None = None
+    ) -> NDArray[np.float64]: ...
+    def inverse_dynamics(
+        self,
+        poses: _Rows,
+        rates: _Rows,
+        accelerations: _Rows,
+        *,
+        gravity: ArrayLike | None = None,
+        density: float | None = None,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> NDArray[np.float64]: ...
+    def forward_dynamics(
+        self,
+        poses: _Rows,
+        rates: _Rows,
+        efforts: _Rows,
+        *,
+        gravity: ArrayLike | None = None,
+        density: float | None = None,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> NDArray[np.float64]: ...
     def singularity(
         self, poses: _Rows, *, mode: str = "home", length: float | None = None, threads: int | None = None
     ) -> Singularity: ...
@@ -594,11 +640,17 @@ class Analysis:
     @property
     def rotational_stiffness(self) -> NDArray[np.float64]: ...
     @property
+    def natural_frequency(self) -> NDArray[np.float64]: ...
+    @property
     def clearance(self) -> NDArray[np.float64]: ...
     @property
     def stiffness_matrix(self) -> NDArray[np.float64] | None: ...
     @property
     def leg_stiffness(self) -> NDArray[np.float64] | None: ...
+    @property
+    def natural_frequencies(self) -> NDArray[np.float64] | None: ...
+    @property
+    def vibration_shapes(self) -> NDArray[np.float64] | None: ...
     @property
     def reachable(self) -> NDArray[np.bool_]: ...
     @property

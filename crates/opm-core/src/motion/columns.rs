@@ -27,6 +27,7 @@ const NAMES: &[&str] = &[
     "payload_ball",
     "stiffness",
     "rotational_stiffness",
+    "natural_frequency",
     "clearance",
 ];
 

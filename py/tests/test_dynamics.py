@@ -1,0 +1,92 @@
+"""The equations of motion from Python against each other, and against differences of energies."""
+
+import numpy as np
+import opm_kinematics as opm
+import pytest
+
+NAMES = ["delta", "stewart", "plano-spherical-5dof", "five-bar", "tricept"]
+
+
+def drawn(name, count=40):
+    m = opm.examples.load(name)
+    rng = np.random.default_rng(7)
+    size = np.array([0.02 if c.unit == "m" else 0.2 for c in m.task_coordinates])
+    poses = m.home + rng.uniform(-1, 1, (count, len(m.home))) * size
+    near = m.singularity(poses)
+    poses = poses[near.reachable & (np.abs(near.serial) > 1e-3) & (np.abs(near.coordinates) > 1e-2)]
+    assert len(poses) > 5
+    return m, poses, rng.normal(size=poses.shape), rng.normal(size=poses.shape)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_forward_dynamics_undoes_inverse_dynamics(name):
+    m, poses, rates, accelerations = drawn(name)
+    efforts = m.inverse_dynamics(poses, rates, accelerations)
+    assert efforts.shape == (len(poses), len(m.actuated))
+    np.testing.assert_allclose(m.forward_dynamics(poses, rates, efforts), accelerations, atol=1e-6)
+    parts = m.bias(poses, rates) + m.gravity(poses) + m.friction(poses, rates)
+    needed = np.einsum("nij,nj->ni", m.mass_matrix(poses), accelerations) + parts
+    found = np.einsum("nai,na->ni", m.jacobian(poses), efforts)
+    np.testing.assert_allclose(found, needed, rtol=1e-8, atol=1e-8 * np.abs(needed).max())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_bias_is_what_changes_of_the_mass_matrix_need(name):
+    """Lagrange: c = dM/dt v - 1/2 d(v M v)/dx."""
+    m, poses, rates, _ = drawn(name)
+    step = 1e-5
+    ahead, back = m.mass_matrix(poses + step * rates), m.mass_matrix(poses - step * rates)
+    expected = np.einsum("nij,nj->ni", (ahead - back) / (2 * step), rates)
+    for j in range(poses.shape[1]):
+        moved = step * np.eye(poses.shape[1])[j]
+        slope = (m.mass_matrix(poses + moved) - m.mass_matrix(poses - moved)) / (2 * step)
+        expected[:, j] -= 0.5 * np.einsum("ni,nij,nj->n", rates, slope, rates)
+    found = m.bias(poses, rates)
+    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5 * np.abs(expected).max())
+
+
+def test_shapes_names_and_threads():
+    m, poses, rates, _ = drawn("plano-spherical-5dof")
+    one = m.forward_dynamics(poses[0], rates[0], np.zeros(5))
+    assert one.shape == (5,) and m.mass_matrix(poses[0]).shape == (5, 5)
+    many = m.forward_dynamics(poses, rates, {m.joint_names[m.actuated[0]]: 0.0}, threads=1)
+    np.testing.assert_array_equal(many[0], one)
+    np.testing.assert_array_equal(many, m.forward_dynamics(poses, rates, np.zeros((len(poses), 5)), threads=3))
+    double = m.mass_matrix(poses, density=5400) / m.mass_matrix(poses, density=2700)
+    assert np.nanmax(double) < 2 + 1e-9
+    np.testing.assert_allclose(m.gravity(poses, gravity=[0, 0, 0]), 0)
+    assert np.isnan(m.mass_matrix([100.0, 0, 0, 0.1, 0])).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (([0, 0], [0, 0, 0]), "efforts has shape"),
+        (([0, 0, 0], [0, 0]), "rates has shape"),
+        (([0, np.nan, 0], [0, 0, 0]), "NaN is among efforts"),
+        (({"Q9": 1.0}, [0, 0, 0]), "efforts has a column 'Q9'"),
+        ((np.zeros((2, 3)), [0, 0, 0]), "2 rows of efforts, expected 1, or one"),
+    ],
+)
+def test_wrong_arguments_are_named(arguments, message):
+    m = opm.examples.load("delta")
+    efforts, rates = arguments
+    with pytest.raises(opm.OpmError, match=message):
+        m.forward_dynamics(m.home, rates, efforts)
+    with pytest.raises(opm.OpmError, match="gravity"):
+        m.gravity(m.home, gravity=[0, 0])
+
+
+def test_natural_frequencies_are_those_of_the_equations_of_motion():
+    m = opm.examples.load("delta")
+    stiff = np.array([2000.0, 3000.0, 4000.0])
+    names = [m.joint_names[i] for i in m.actuated]
+    found = m.analyze(m.home, link_stiffness=(1e9, 1e9), joint_stiffness=dict(zip(names, stiff, strict=True)))
+    jacobian, mass = m.jacobian(m.home), m.mass_matrix(m.home)
+    squares = np.linalg.eigvals(np.linalg.solve(mass, jacobian.T * stiff @ jacobian))
+    expected = np.sort(np.sqrt(squares.real)) / (2 * np.pi)
+    np.testing.assert_allclose(found.natural_frequencies[:3], expected, rtol=1e-3)
+    assert found.natural_frequency == found.natural_frequencies[0] and found.vibration_shapes.shape == (6, 6)
+    assert m.analyze(m.home).natural_frequencies is None
+    light = m.analyze(m.home, gravity=[0, 0, -1], density=300, link_stiffness=(1e9, 1e9)).natural_frequency
+    assert light > m.analyze(m.home, gravity=[0, 0, -1], density=3000, link_stiffness=(1e9, 1e9)).natural_frequency
