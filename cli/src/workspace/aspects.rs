@@ -10,6 +10,16 @@ use std::fmt::Write;
 /// Number of aspects that are listed one by one in text.
 const LISTED: usize = 12;
 
+/// A part of so few poses tells more of the grid than of the mechanism.
+const SPECK: u64 = 2;
+
+/// The aspects without and with the specks, which come last: there are none where all are as small.
+fn specks(aspects: &Aspects) -> (&[Aspect], &[Aspect]) {
+    let list = aspects.list();
+    let large = list.partition_point(|aspect| aspect.poses > SPECK);
+    list.split_at(if large == 0 { list.len() } else { large })
+}
+
 /// The aspects: number, sign of the parallel measure, poses, measure, extent.
 pub fn json(workspace: &Workspace, aspects: &Aspects) -> Value {
     let one = |(number, aspect): (usize, &Aspect)| {
@@ -28,7 +38,8 @@ pub fn json(workspace: &Workspace, aspects: &Aspects) -> Value {
         })
     };
     let list: Vec<Value> = aspects.list().iter().enumerate().map(one).collect();
-    json!({ "number": list.len(), "singular": aspects.singular(), "list": list })
+    let specks = specks(aspects).1.len();
+    json!({ "number": list.len(), "specks": specks, "singular": aspects.singular(), "list": list })
 }
 
 /// The singularity curves, slice by slice.
@@ -61,7 +72,8 @@ pub fn text(workspace: &Workspace, aspects: &Aspects, units: FileUnits) -> Strin
         headers.push(">to".to_owned());
     }
     let mut table = Table::new(headers);
-    for (number, aspect) in aspects.list().iter().take(LISTED).enumerate() {
+    let (large, specks) = specks(aspects);
+    for (number, aspect) in large.iter().take(LISTED).enumerate() {
         let mut row = vec![count(number as u64 + 1), sign(aspect).to_owned()];
         row.push(count(aspect.poses));
         row.extend(measured(aspect).map(|measure| short(measure.value)));
@@ -72,13 +84,21 @@ pub fn text(workspace: &Workspace, aspects: &Aspects, units: FileUnits) -> Strin
         table.row(row);
     }
     let mut text = String::new();
-    let rest = aspects.list().iter().skip(LISTED);
-    let (more, poses) = rest.fold((0, 0), |(n, poses), aspect| (n + 1, poses + aspect.poses));
+    let poses = |of: &[Aspect]| count(of.iter().map(|aspect| aspect.poses).sum());
     if !aspects.list().is_empty() {
         let _ = write!(text, "\n{table}");
     }
-    if more > 0 {
-        let _ = writeln!(text, "and {} smaller aspects with {} poses", count(more), count(poses));
+    if let Some(more @ [_, ..]) = large.get(LISTED..) {
+        let number = count(more.len() as u64);
+        let _ = writeln!(text, "and {number} smaller aspects with {} poses", poses(more));
+    }
+    if !specks.is_empty() {
+        let number = count(specks.len() as u64);
+        let _ = writeln!(
+            text,
+            "and {number} specks of one or two poses, {} together: a finer --grid tells what they are",
+            poses(specks)
+        );
     }
     if aspects.singular() > 0 {
         let _ = writeln!(text, "singular, and in no aspect: {} poses", count(aspects.singular()));

@@ -25,6 +25,9 @@ fn aspects_are_listed_with_their_signs_and_their_extents() {
     assert_eq!(all + aspects["singular"].as_u64().unwrap(), json["reachable"].as_u64().unwrap());
     assert!(list.windows(2).all(|two| poses(&two[0]) >= poses(&two[1])));
     assert_ne!(list[0]["sign"], list[1]["sign"]);
+    let specks = list.iter().filter(|one| poses(one) <= 2).count();
+    assert_eq!(aspects["specks"], specks);
+    assert_eq!(text.contains(&format!("and {specks} specks of one or two poses")), specks > 0);
     let measure = |one: &Value| one["measure"]["value"].as_f64().unwrap();
     let shares: f64 = list.iter().map(measure).sum();
     let share = shares / json["measure"]["value"].as_f64().unwrap();
