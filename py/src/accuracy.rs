@@ -8,6 +8,7 @@ pub use over::AccuracyBounds;
 pub use samples::AccuracySamples;
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::{Rows, Tables};
@@ -56,7 +57,13 @@ pub struct Accuracy {
     reachable: Py<PyArrayDyn<bool>>,
     /// (...): whether the actuators hold the platform, so that its error is known.
     held: Py<PyArrayDyn<bool>>,
+    /// Names of the task coordinates.
+    pose_names: Vec<String>,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
+
+tabled!(Accuracy);
 
 pickled!(Accuracy {
     pose_error,
@@ -74,6 +81,8 @@ pickled!(Accuracy {
     joints,
     reachable,
     held,
+    pose_names,
+    index
 });
 
 #[pymethods]
@@ -226,6 +235,8 @@ impl Manipulator {
             joints,
             reachable: poses.frozen(&reachable, &[])?,
             held: poses.frozen(&held, &[])?,
+            pose_names: self.pose_names().into_iter().map(str::to_owned).collect(),
+            index: poses.index(py),
         })
     }
 }

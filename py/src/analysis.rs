@@ -1,6 +1,7 @@
 //! Forces and transmission for arrays of poses.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::request;
 use crate::error::wrong;
 use crate::given::{Columns, together};
@@ -72,7 +73,15 @@ pub struct Analysis {
     reachable: Py<PyArrayDyn<bool>>,
     /// (...): whether the actuators balance the load.
     balanced: Py<PyArrayDyn<bool>>,
+    /// Names along the last axis of `efforts`.
+    joint_names: Vec<String>,
+    /// Names along the last axis of `imaginary_efforts`.
+    imaginary_names: Vec<String>,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
+
+tabled!(Analysis);
 
 pickled!(Analysis {
     efforts,
@@ -99,6 +108,9 @@ pickled!(Analysis {
     vibration_shapes,
     reachable,
     balanced,
+    joint_names,
+    imaginary_names,
+    index
 });
 
 #[pymethods]
@@ -340,6 +352,9 @@ impl Manipulator {
             },
             reachable: poses.frozen(&reachable, &[])?,
             balanced: poses.frozen(&balanced, &[])?,
+            joint_names: self.input_names().into_iter().map(str::to_owned).collect(),
+            imaginary_names: self.imaginary_names(),
+            index: poses.index(py),
         })
     }
 }

@@ -189,7 +189,7 @@ pub fn numbers<'py>(
 
 /// One value for each of `columns`.
 pub fn row(given: &Bound<'_, PyAny>, what: &str, columns: Columns<'_>) -> PyResult<Vec<f64>> {
-    let Given { array, lead } = columns.read(given, what)?;
+    let Given { array, lead, .. } = columns.read(given, what)?;
     if !lead.is_empty() {
         let names = columns.names;
         return Err(wrong(format!(
@@ -207,7 +207,7 @@ pub fn column<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>
     let py = given.py();
     if let Ok(number) = given.extract::<f64>() {
         let array = PyArray2::from_vec2(py, &[vec![number]]).map_err(|error| failed(&error))?;
-        return Ok(Given { array: array.as_any().extract()?, lead: Vec::new() });
+        return Ok(Given { array: array.as_any().extract()?, lead: Vec::new(), index: None });
     }
     Given::new(&numbers(given, what, &|| "a number or an array of numbers".to_owned())?, 0)
 }

@@ -1,6 +1,7 @@
 //! Calibration from measurements.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::{failed, wrong};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
@@ -63,6 +64,8 @@ pub struct Calibration {
     /// (length, angle) by the name of each joint: the play that it needs at least.
     play: BTreeMap<String, (f64, f64)>,
 }
+
+tabled!(Calibration);
 
 pickled!(Calibration {
     manipulator,

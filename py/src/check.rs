@@ -1,6 +1,7 @@
 //! A certificate for a mechanism, and recordings that were cut short.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::{failed, wrong};
 use crate::interrupt;
 use crate::manipulator::Manipulator;
@@ -52,6 +53,8 @@ pub struct Comparison {
     /// The first comparison that does not hold: what differs, and where.
     problem: Option<String>,
 }
+
+tabled!(Certificate);
 
 pickled!(Certificate { name, samples, seed, holds, comparisons });
 pickled!(Comparison { name, what, holds, compared, left_out, because, worst, tolerance, problem });

@@ -1,6 +1,7 @@
 //! How far the bodies of a mechanism are from each other at many poses.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
@@ -24,9 +25,13 @@ pub struct Clearance {
     set_aside: Vec<(String, String, f64)>,
     /// The working mode.
     mode: String,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
 
-pickled!(Clearance { distance, pair, pairs, set_aside, mode });
+tabled!(Clearance);
+
+pickled!(Clearance { distance, pair, pairs, set_aside, mode, index });
 
 #[pymethods]
 impl Clearance {
@@ -116,6 +121,7 @@ impl Manipulator {
             pairs: (0..interference.pairs()).map(names).collect(),
             set_aside: set_aside.collect(),
             mode: manipulator.format_mode(mode),
+            index: poses.index(py),
         })
     }
 }

@@ -139,3 +139,26 @@ macro_rules! columns {
 }
 
 pub(crate) use columns;
+
+/// Implements a table of pandas for a result.
+macro_rules! tabled {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            /// A table of pandas.
+            ///
+            /// Of a result at poses it has a row for each pose and a column for each number, such as ``joint_rates.S1``; of others
+            /// it has a row for each entry. The rows of a data frame keep their labels.
+            ///
+            /// Returns
+            /// -------
+            /// pandas.DataFrame
+            ///     SI units and radians.
+            fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                $crate::columns::table(slf.as_any(), "result_to_pandas")
+            }
+        }
+    };
+}
+
+pub(crate) use tabled;

@@ -1,6 +1,7 @@
 //! Rates of joints and poses with the dimensions of a mechanism.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
@@ -25,9 +26,17 @@ pub struct ParameterJacobian {
     parameters: Vec<String>,
     /// (...): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
+    /// Names along the second axis from the end of `joints`.
+    joint_names: Vec<String>,
+    /// Names of the task coordinates.
+    pose_names: Vec<String>,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
 
-pickled!(ParameterJacobian { joints, pose, parameters, reachable });
+tabled!(ParameterJacobian);
+
+pickled!(ParameterJacobian { joints, pose, parameters, reachable, joint_names, pose_names, index });
 
 #[pymethods]
 impl ParameterJacobian {
@@ -128,6 +137,9 @@ impl Manipulator {
             joints: poses.frozen(&tables.table(0), &[j, p])?,
             pose: poses.frozen(&tables.table(1), &[d, p])?,
             parameters: names,
+            joint_names: self.joint_names(),
+            pose_names: self.pose_names().into_iter().map(str::to_owned).collect(),
+            index: poses.index(py),
             reachable: poses.frozen(&reachable, &[])?,
         })
     }

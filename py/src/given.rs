@@ -4,6 +4,7 @@ use crate::arguments::{Array, numbers, shown};
 use crate::error::wrong;
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
@@ -20,6 +21,8 @@ pub struct Given<'py> {
     pub array: Array<'py>,
     /// The axes before that of the columns; none of one row alone.
     pub lead: Vec<usize>,
+    /// The labels of its rows, if it is a data frame of pandas.
+    pub index: Option<Py<PyAny>>,
 }
 
 impl<'a> Columns<'a> {
@@ -29,6 +32,18 @@ impl<'a> Columns<'a> {
 
     /// Rows of these columns, along any axes: an array, a table with names, or numbers by name.
     pub fn read<'py>(self, given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
+        let read = self.read_numbers(given, what)?;
+        let framed = read.lead.len() == 1
+            && !given.is_instance_of::<PyUntypedArray>()
+            && given.hasattr(intern!(given.py(), "columns"))?;
+        let index = match framed {
+            true => given.getattr_opt(intern!(given.py(), "index"))?.map(Bound::unbind),
+            false => None,
+        };
+        Ok(Given { index, ..read })
+    }
+
+    fn read_numbers<'py>(self, given: &Bound<'py, PyAny>, what: &str) -> PyResult<Given<'py>> {
         if let Some(labels) = labels(given)? {
             return self.by_name(given, &labels, what);
         }
@@ -106,7 +121,7 @@ impl<'py> Given<'py> {
             true => array.extract()?,
             false => array.call_method1("reshape", (shape,))?.extract()?,
         };
-        Ok(Self { array, lead })
+        Ok(Self { array, lead, index: None })
     }
 
     /// The same, if it is one row or one axis of rows: what is followed in time.
@@ -132,7 +147,7 @@ impl<'py> Given<'py> {
         let full = numpy.call_method1("broadcast_to", (full, with(lead)))?;
         let rows = lead.iter().product::<usize>();
         self.array = full.call_method1("reshape", ((rows, width),))?.extract()?;
-        self.lead = lead.to_vec();
+        (self.lead, self.index) = (lead.to_vec(), None);
         Ok(())
     }
 }

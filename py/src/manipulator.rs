@@ -495,7 +495,7 @@ impl Manipulator {
             (Some(poses), None) => self.poses(poses)?,
             (None, Some(places)) => {
                 let poses = self.located_poses(py, places, mode, threads)?;
-                Given { array: poses.as_any().extract()?, lead: places.lead.to_vec() }
+                Given { array: poses.as_any().extract()?, lead: places.lead.to_vec(), index: None }
             }
             _ => return Err(wrong("expected poses or transforms, one of the two")),
         };

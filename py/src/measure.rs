@@ -1,6 +1,7 @@
 //! Measures of the workspace with guaranteed bounds.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::{failed, wrong};
 use crate::html::{self, digits};
 use crate::interrupt;
@@ -288,6 +289,8 @@ impl Boxes {
         Ok(Self { query, domain })
     }
 }
+
+tabled!(Measure);
 
 #[pymethods]
 impl Measure {

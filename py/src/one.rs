@@ -98,6 +98,7 @@ impl Manipulator {
                 1,
                 [frozen(py, &numbers[0])?, frozen(py, &numbers[1])?],
                 [answer(py, reached)?, answer(py, within)?],
+                None,
             )
         })
     }

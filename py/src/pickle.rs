@@ -67,6 +67,13 @@ fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> PyResult<bool> {
         }
         return Ok(true);
     }
+    if a.is_none() || b.is_none() {
+        return Ok(a.is_none() && b.is_none());
+    }
+    // The labels of rows, whose == is by entry.
+    if let Some(equals) = a.getattr_opt("equals")? {
+        return equals.call1((b,))?.is_truthy();
+    }
     a.eq(b)
 }
 

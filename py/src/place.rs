@@ -1,6 +1,7 @@
 //! Poses as displacements in SE(3), and back.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::manipulator::Manipulator;
 use crate::matrices::matrices;
 use crate::pickle::pickled;
@@ -24,9 +25,13 @@ pub struct Nearest {
     /// (..., 3): from the platform's points at the poses to those given, base coordinates, metres; zero
     /// where the displacement is in the motion.
     translation: Py<PyArrayDyn<f64>>,
+    /// Names of the task coordinates.
+    pose_names: Vec<String>,
 }
 
-pickled!(Nearest { poses, rotation, translation });
+tabled!(Nearest);
+
+pickled!(Nearest { poses, rotation, translation, pose_names });
 
 #[pymethods]
 impl Nearest {
@@ -208,6 +213,7 @@ impl Manipulator {
             poses: transforms.frozen(&located.table(0), &widths[..1])?,
             rotation: transforms.frozen(&located.table(1), &[3])?,
             translation: transforms.frozen(&located.table(2), &[3])?,
+            pose_names: self.pose_names().into_iter().map(str::to_owned).collect(),
         })
     }
 }

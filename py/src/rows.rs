@@ -22,6 +22,7 @@ pub struct Rows<'a> {
     width: usize,
     /// The axes along which the rows were given; results have the same ones.
     pub lead: &'a [usize],
+    index: Option<&'a Py<PyAny>>,
 }
 
 impl<'a> Rows<'a> {
@@ -42,7 +43,12 @@ impl<'a> Rows<'a> {
                 Cow::Owned(values)
             }
         };
-        Ok(Self { values, count, width, lead: &given.lead })
+        Ok(Self { values, count, width, lead: &given.lead, index: given.index.as_ref() })
+    }
+
+    /// The labels of the rows, if they were given with some.
+    pub fn index(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+        self.index.map(|index| index.clone_ref(py))
     }
 
     /// The values of all rows, one row after the other.

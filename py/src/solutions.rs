@@ -47,6 +47,8 @@ pub struct Solutions {
     modes: Vec<String>,
     /// Number of poses.
     rows: usize,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
 
 impl Solutions {
@@ -85,7 +87,7 @@ impl Solutions {
         let tables =
             [poses.shaped(&joints, &widths[..1])?, poses.shaped(&imaginary, &widths[1..])?];
         let answers = [poses.shaped(&reachable, &[])?, poses.shaped(&within_limits, &[])?];
-        Self::new(names, poses.count, tables, answers)
+        Self::new(names, poses, tables, answers)
     }
 
     /// Makes solutions from tables with one row for each mode of each of these rows, the modes of a row together.
@@ -103,18 +105,20 @@ impl Solutions {
         let py = numbers[0].py();
         let [reachable, within_limits] = std::mem::take(&mut tables.answers)
             .map(|answers| rows.shaped(&answers.into_pyarray(py), &[modes]));
-        Self::new(names, rows.count, numbers, [reachable?, within_limits?])
+        Self::new(names, rows, numbers, [reachable?, within_limits?])
     }
 
     /// The arrays and the names along their axes.
     fn new(
         names: Names,
-        rows: usize,
+        rows: &Rows<'_>,
         [joints, imaginary]: [Bound<'_, PyArrayDyn<f64>>; 2],
         [reachable, within_limits]: [Bound<'_, PyArrayDyn<bool>>; 2],
     ) -> PyResult<Self> {
+        let index = rows.index(joints.py());
         let numbers = [frozen(joints)?, frozen(imaginary)?];
-        Self::of_arrays(names, rows, numbers, [frozen(reachable)?, frozen(within_limits)?])
+        let answers = [frozen(reachable)?, frozen(within_limits)?];
+        Self::of_arrays(names, rows.count, numbers, answers, index)
     }
 
     /// The same from read-only arrays.
@@ -123,6 +127,7 @@ impl Solutions {
         rows: usize,
         [joints, imaginary]: [Py<PyArrayDyn<f64>>; 2],
         [reachable, within_limits]: [Py<PyArrayDyn<bool>>; 2],
+        index: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let Names { joints: joint_names, imaginary: imaginary_names, units, mode, modes } = names;
         Ok(Self {
@@ -136,6 +141,7 @@ impl Solutions {
             mode,
             modes,
             rows,
+            index,
         })
     }
 }
@@ -367,6 +373,7 @@ pickled!(Solutions {
     mode,
     modes,
     rows,
+    index,
 });
 
 #[pymethods]

@@ -1,6 +1,7 @@
 //! Jacobians, rates and accelerations, and measures of singularity, for arrays of poses.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::request;
 use crate::given::{Columns, together};
 use crate::html;
@@ -29,6 +30,12 @@ pub struct Motion {
     reachable: Py<PyArrayDyn<bool>>,
     /// (...): whether the pose is in reach and every joint has a rate.
     regular: Py<PyArrayDyn<bool>>,
+    /// Names along the last axis of what is of joints.
+    joint_names: Vec<String>,
+    /// Names along the last axis of what is of imaginary joints.
+    imaginary_names: Vec<String>,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
 
 /// How near many poses are to a singularity: signed measures without unit, (...) each, that vanish at a singularity.
@@ -58,7 +65,12 @@ pub struct Singularity {
     coordinates: Py<PyArrayDyn<f64>>,
     /// (...): whether the pose is in reach, joint limits not considered.
     reachable: Py<PyArrayDyn<bool>>,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
+
+tabled!(Motion);
+tabled!(Singularity);
 
 pickled!(Motion {
     joint_rates,
@@ -67,6 +79,9 @@ pickled!(Motion {
     imaginary_accelerations,
     reachable,
     regular,
+    joint_names,
+    imaginary_names,
+    index,
 });
 pickled!(Singularity {
     upper_serial,
@@ -79,6 +94,7 @@ pickled!(Singularity {
     manipulability,
     coordinates,
     reachable,
+    index,
 });
 
 #[pymethods]
@@ -331,6 +347,9 @@ impl Manipulator {
             imaginary_accelerations: poses.frozen(&tables.table(3), &[imaginary])?,
             reachable: poses.frozen(&reachable, &[])?,
             regular: poses.frozen(&regular, &[])?,
+            joint_names: self.joint_names(),
+            imaginary_names: self.imaginary_names(),
+            index: poses.index(py),
         })
     }
 
@@ -408,6 +427,7 @@ impl Manipulator {
             manipulability: take(7)?,
             coordinates: take(8)?,
             reachable: poses.frozen(&reachable, &[])?,
+            index: poses.index(py),
         })
     }
 }

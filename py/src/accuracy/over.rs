@@ -2,6 +2,7 @@
 
 use super::sizes::ErrorArguments;
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::wrong;
 use crate::interrupt;
 use crate::manipulator::Manipulator;
@@ -33,6 +34,8 @@ pub struct AccuracyBounds {
     /// How many boxes were bounded.
     boxes: u64,
 }
+
+tabled!(AccuracyBounds);
 
 pickled!(AccuracyBounds {
     length,

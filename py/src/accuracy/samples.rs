@@ -1,5 +1,6 @@
 //! Mechanisms with errors that are drawn at random, at many poses.
 
+use crate::columns::tabled;
 use crate::error::wrong;
 use crate::interrupt;
 use crate::pickle::pickled;
@@ -32,7 +33,15 @@ pub struct AccuracySamples {
     count: u64,
     /// The seed of what is drawn.
     seed: u64,
+    /// Names of the task coordinates.
+    pose_names: Vec<String>,
+    /// Names of the joints.
+    joints: Vec<String>,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
+
+tabled!(AccuracySamples);
 
 pickled!(AccuracySamples {
     deviations,
@@ -43,6 +52,9 @@ pickled!(AccuracySamples {
     failed,
     count,
     seed,
+    pose_names,
+    joints,
+    index
 });
 
 #[pymethods]
@@ -104,5 +116,8 @@ pub fn draw(
         failed: poses.frozen(&failed.into_pyarray(py), &[])?,
         count: count.get(),
         seed,
+        pose_names: manipulator.task_coordinates().iter().map(|c| c.name.into()).collect(),
+        joints: manipulator.mechanism().joints().map(|joint| joint.name.clone()).collect(),
+        index: poses.index(py),
     })
 }

@@ -1,6 +1,7 @@
 //! The assemblies for many rows of joint values, as arrays and as lists.
 
 use super::{Assembly, Found};
+use crate::columns::tabled;
 use crate::manipulator::Manipulator;
 use crate::pickle::{frozen, pickled};
 use crate::rows::Rows;
@@ -39,7 +40,11 @@ pub struct Assemblies {
     joint_names: Vec<String>,
     /// Names along the last axis of `imaginary`.
     imaginary_names: Vec<String>,
+    /// Names of the task coordinates.
+    pose_names: Vec<String>,
 }
+
+tabled!(Assemblies);
 
 pickled!(Assemblies {
     counts,
@@ -53,6 +58,7 @@ pickled!(Assemblies {
     modes,
     joint_names,
     imaginary_names,
+    pose_names
 });
 
 /// The lists of all rows, as lists of lists along these axes.
@@ -121,6 +127,7 @@ impl Assemblies {
             modes: modes.unbind(),
             joint_names: manipulator.joint_names(),
             imaginary_names: manipulator.imaginary_names(),
+            pose_names: manipulator.pose_names().into_iter().map(str::to_owned).collect(),
         })
     }
 
@@ -169,6 +176,7 @@ impl Assemblies {
             modes: self.modes.bind(py).get_item(at)?.cast_into()?.unbind(),
             joint_names: self.joint_names.clone(),
             imaginary_names: self.imaginary_names.clone(),
+            pose_names: self.pose_names.clone(),
         })
     }
 }
