@@ -44,6 +44,8 @@ ELSEWHERE = {
     ("docs/scaling.md", "sh"): "tests/python/test_shards.py",
     ("docs/scaling.md", "python"): "tests/python/test_shards.py",
     ("docs/extending.md", "sh"): "make lint and make test",
+    ("docs/frameworks.md", "python (jax)"): "py/tests/test_frameworks.py",
+    ("docs/frameworks.md", "python (torch)"): "py/tests/test_frameworks.py",
     ("docs/generating.md", "c"): "crates/opm-generate/tests/languages",
     ("docs/generating.md", "rust"): "crates/opm-generate/tests/languages",
     ("docs/generating.md", "matlab"): "crates/opm-generate/tests/languages",
