@@ -46,7 +46,7 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         // The mobility of a mechanism that is nearly right is not that of the right one.
         let warnings = match found.applies {
             Applies::Nearly => Vec::new(),
-            Applies::Decomposed(_) | Applies::Outside(_) => actuator_warnings(&found.mobility),
+            Applies::Decomposed(_) | Applies::Outside(_) => warnings_of(&loaded, &found.mobility),
         };
         let next = match found.applies {
             // The answer offers a tolerance.
@@ -73,7 +73,7 @@ pub fn run(args: &DecomposeArgs, output: &Output) -> Result<(), Failure> {
         let place = loaded.place_of(&CompileError::Task(error.clone()));
         return Err(Failure::at(place, error.clone()));
     }
-    let mut warnings = actuator_warnings(&found.mobility);
+    let mut warnings = warnings_of(&loaded, &found.mobility);
     let deviation = ways[0].decomposition.deviation;
     match (&found.near, slightly_off(mechanism)) {
         (Some(near), _) => warnings.push(format!(
@@ -144,11 +144,17 @@ fn warn(output: &Output, loaded: &Loaded, warnings: &[String]) {
     }
 }
 
+/// What is wrong with the actuators, and what is probably a mistake in the file.
+fn warnings_of(loaded: &Loaded, report: &Mobility) -> Vec<String> {
+    let doubts = load::other_doubts(&loaded.file.mechanism, report);
+    actuator_warnings(loaded, report).into_iter().chain(doubts).collect()
+}
+
 /// What is wrong with the actuators: none yet, too few, too many, or in the wrong places.
-fn actuator_warnings(report: &Mobility) -> Vec<String> {
+fn actuator_warnings(loaded: &Loaded, report: &Mobility) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Err(error) = check_actuators(report) {
-        warnings.push(error.to_string());
+        warnings.push(format!("{error}{}", loaded.motors_hint()));
         return warnings;
     }
     warnings.extend(report.parallel_home());

@@ -14,6 +14,7 @@ use crate::restored;
 use crate::rows::{Rows, Tables, no_memory};
 use crate::snap;
 use crate::solutions::{CommonNames, Names, Solutions};
+use opm_core::decomposition::doubts;
 use opm_core::decomposition::mobility::mobility;
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{self as core, Mode};
@@ -658,9 +659,11 @@ impl Manipulator {
         Ok(Self { inner, text: text.into(), label, family, named: named(file), names, memories })
     }
 
-    /// The same, after a warning where home is a parallel singularity.
+    /// The same, after warnings where home is a parallel singularity, and of what is probably a mistake in the file.
     pub fn warned(self, py: Python<'_>) -> PyResult<Self> {
-        if let Some(text) = self.home_warning() {
+        let Ok(report) = mobility(self.inner.mechanism()) else { return Ok(self) };
+        let doubts = doubts(self.inner.mechanism(), &report);
+        for text in report.parallel_home().into_iter().chain(doubts) {
             let message = CString::new(format!("{}: {text}", self.label))?;
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
         }

@@ -106,9 +106,9 @@ fn wrong_drives_and_flags_are_told() {
         .fails_with_one_line(1, &["wrong.toml:13:", "`coulomb_friction` is -1, expected 0 to"]);
     let lift = folder.write("lift.toml", LIFT);
     let recording = folder.arg("up.mcap");
-    opm(&["trajectory", &lift, "--motion", &motion, "--efforts", "-o", &recording])
+    opm(&["trajectory", &lift, "--motion", &motion, "--efforts", "-o", &recording, "-q"])
         .fails_with_one_line(2, &["--efforts", "a recording has none"]);
-    opm(&["trajectory", &lift, "--motion", &motion, "--gravity", "0,0,-9"])
+    opm(&["trajectory", &lift, "--motion", &motion, "--gravity", "0,0,-9", "-q"])
         .fails_with_one_line(2, &["--gravity", "--efforts"]);
     assert_eq!(folder.names(), ["lift.toml", "up.toml", "wrong.toml"]);
 }

@@ -15,6 +15,7 @@
 //! lower part displaces by elements of `A` and its upper part by elements of `B`.
 
 mod architecture;
+mod doubts;
 mod element;
 pub(crate) mod height;
 mod imaginary;
@@ -32,6 +33,7 @@ pub(crate) mod whole;
 #[cfg(test)]
 pub(crate) mod samples;
 
+pub use doubts::doubts;
 pub use height::{HeightMiss, HeightReason};
 pub use near::{JointMiss, NearMiss, Snapped, nearly, slightly_off, snap};
 pub use reorder::{OrderChange, Reordered};

@@ -27,12 +27,38 @@ pub fn read(text: &str) -> Result<MechanismFile, FileErrors> {
     Ok(file)
 }
 
+/// What a text is that is XML, and where to go with it: one message in place of the parser's about each line.
+fn foreign(text: &str, kind: &str) -> Option<Problem> {
+    let text = text.trim_start_matches('\u{feff}');
+    if !text.trim_start().starts_with('<') {
+        return None;
+    }
+    let what = [
+        ("<robot", "a URDF model (XML)"),
+        ("<mujoco", "an MJCF model (XML)"),
+        ("<sdf", "an SDF model (XML)"),
+    ];
+    let what = what.iter().find(|(tag, _)| text.contains(tag)).map_or("XML", |(_, what)| what);
+    let more = match kind {
+        "mechanism" => {
+            "; opm writes such models (`opm export`) and does not read them: write the joints at home as a list, \
+             which `opm help format` explains, or begin with a known architecture (`opm new`)"
+        }
+        _ => "",
+    };
+    let message = format!("this is {what}, expected a {kind} file (TOML){more}");
+    Some(Problem { line: 1, column: 1, message })
+}
+
 /// Reads a TOML text as a file of the kind `kind`. `read` reads its content.
 pub fn document<T>(
     text: &str,
     kind: &str,
     read: impl FnOnce(&Table<'_>) -> Option<T>,
 ) -> Result<T, FileErrors> {
+    if let Some(problem) = foreign(text, kind) {
+        return Err(FileErrors { problems: vec![problem] });
+    }
     let reader = Reader::new();
     let (document, syntax) = DeTable::parse_recoverable(text);
     for error in &syntax {
