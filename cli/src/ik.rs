@@ -1,5 +1,6 @@
 //! `opm ik`: inverse kinematics.
 
+pub mod nearest;
 mod table;
 
 use crate::args::{IkArgs, Output};
@@ -13,13 +14,14 @@ use crate::text::{self, Table, reason};
 use crate::transform::{self, Located};
 use crate::unitless;
 use nalgebra::Point3;
+use nearest::Nearest;
 use opm_core::chain::limits::Limits;
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution, Unreachable};
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::joint::{JointCoordinate, Quantity};
 use opm_core::task::TaskCoordinate;
-use opm_interference::{Distances, Interference, Nearest};
+use opm_interference::{self as bodies, Distances, Interference};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Write;
@@ -61,7 +63,12 @@ pub fn run(args: &IkArgs, output: &Output) -> Result<(), Failure> {
         }
         Located::Outside(outside) => Answer::outside(&loaded, &manipulator, modes, outside),
     };
-    output.print(&answer.json(), answer.text())
+    if !args.nearest {
+        return output.print(&answer.json(), answer.text());
+    }
+    let nearest = Nearest::of(&answer, modes, nearest::length(args, &manipulator)?)?;
+    let json = Json { nearest_pose: Some(nearest.json()), ..answer.json() };
+    output.print(&json, answer.text() + &nearest.text())
 }
 
 /// The working modes that the flags select.
@@ -104,6 +111,9 @@ struct Json<'a> {
     outside: Option<Value>,
     /// The pairs of bodies that are not tested for interference.
     set_aside: Value,
+    /// What --nearest found; null if the pose is in reach itself, or nothing was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nearest_pose: Option<Value>,
 }
 
 #[derive(Serialize)]
@@ -201,7 +211,7 @@ impl<'a> Answer<'a> {
     }
 
     /// The two bodies that are nearest to each other in a solution.
-    fn nearest(&self, solution: &Solution) -> Option<Nearest> {
+    fn nearest(&self, solution: &Solution) -> Option<bodies::Nearest> {
         let mut distances = Distances::new(&self.interference);
         distances.place(self.manipulator, solution);
         distances.nearest()
@@ -237,6 +247,7 @@ impl<'a> Answer<'a> {
             },
             outside: self.outside.as_ref().map(transform::outside_json),
             set_aside: interference::set_aside_json(&self.interference),
+            nearest_pose: None,
         }
     }
 
@@ -437,6 +448,18 @@ impl Of<'_> {
             Self::Imaginary(_) => true,
         }
     }
+}
+
+/// The names of the joint coordinates that are beyond their limits in a solution, or the first of a joint beyond its cone.
+pub fn beyond<'a>(manipulator: &'a Manipulator, solution: &Solution) -> Vec<&'a str> {
+    let cones: Vec<usize> =
+        manipulator.beyond_cones(solution.joints()).map(|(_, first)| first).collect();
+    let limits = manipulator.limits().iter().zip(solution.joints());
+    let all = manipulator.coordinates().iter().zip(limits).enumerate();
+    let beyond = all.filter(|&(i, (c, (limits, &value)))| {
+        !Of::Joint(c, limits).admits(value) || cones.contains(&i)
+    });
+    beyond.map(|(_, (c, _))| &*c.name).collect()
 }
 
 /// The distance and the direction of a transform from the motion, and the point that it places if coordinates place another.

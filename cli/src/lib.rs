@@ -48,6 +48,7 @@ mod target;
 mod text;
 mod trajectory;
 mod transform;
+mod tum;
 mod unitless;
 mod usage;
 mod velocity;

@@ -4,11 +4,14 @@ use crate::args::{Format, Output};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::Shown;
-use crate::pose::{Checks, find};
-use crate::stream::{Columns, MODE, Stream, Streams, Wanted, other_columns};
+use crate::pose::{Checks, Misread, find};
+use crate::stream::{self, Columns, MODE, Stream, Streams, Wanted, other_columns};
 use crate::text::{count, short};
+use crate::transform::Transform;
 use crate::unitless::plausible;
+use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
+use opm_core::table::Plausible;
 use opm_core::task::TaskCoordinate;
 use opm_mcap::csv::Rows;
 use serde::Serialize;
@@ -80,11 +83,76 @@ pub fn columns<'m>(
     columns_beside(stream, mechanism, &[])
 }
 
+/// The columns of a table of poses, or of places in SE(3): `x,y,z,qx,qy,qz,qw`, metres and a unit quaternion, as --transform
+/// has them. Where there are quaternions, [`transform`] reads a row. Their values come behind those of poses.
+pub fn columns_or_places<'m>(
+    stream: &mut Stream<'_>,
+    (loaded, manipulator): (&Loaded, &'m Manipulator),
+) -> Result<(Columns<'m>, bool), Failure> {
+    let columns = read_columns(stream, (loaded, manipulator), (&[], true))?;
+    let given = |name: &str| columns.has(name);
+    if !QUATERNION.into_iter().any(given) {
+        let lost = POSITION.into_iter().find(|&name| {
+            given(name) && manipulator.task_coordinates().iter().all(|c| c.name != name)
+        });
+        return match lost {
+            None => Ok((columns, false)),
+            Some(name) => {
+                let error = find(name, manipulator.task_coordinates()).err();
+                let error = error.map_or_else(String::new, |error| error.to_string());
+                Err(stream::at(stream.label, columns.number, format!("column {name}: {error}")))
+            }
+        };
+    }
+    let all = POSITION.into_iter().chain(QUATERNION);
+    let lost: Vec<&str> = all.clone().filter(|&name| !given(name)).collect();
+    let own = manipulator.task_coordinates().iter().chain(manipulator.dependent_coordinates());
+    let more: Vec<&str> = own
+        .map(|c| c.name)
+        .filter(|&name| given(name) && all.clone().all(|other| other != name))
+        .collect();
+    let problem = match (&*lost, &*more) {
+        ([], []) => return Ok((columns, true)),
+        ([], more) => {
+            format!("{} beside a quaternion, which gives the orientation", more.join(", "))
+        }
+        (lost, _) => format!("no column {}, expected a place: x,y,z,qx,qy,qz,qw", lost.join(", ")),
+    };
+    Err(stream::at(stream.label, columns.number, problem))
+}
+
+/// The position of the reference point in a table of places.
+const POSITION: [&str; 3] = ["x", "y", "z"];
+/// The orientation of the platform in a table of places.
+const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
+
+/// The place in SE(3) of a row whose columns are those of [`columns_or_places`].
+pub fn transform(manipulator: &Manipulator, row: &[f64]) -> Result<Transform, Misread> {
+    let own = manipulator.task_coordinates();
+    let places = &row[own.len() + manipulator.dependent_coordinates().len()..];
+    let position = |number: usize| {
+        let coordinate = own.iter().position(|c| c.name == POSITION[number]);
+        coordinate.map_or(places[number], |number| row[number])
+    };
+    let [x, y, z] = [0, 1, 2].map(position);
+    let [qx, qy, qz, qw] = [3, 4, 5, 6].map(|number| places[number]);
+    Transform::new([x, y, z, qw, qx, qy, qz])
+}
+
 /// The same where the table may have columns with these names, too, which are passed over.
 pub fn columns_beside<'m>(
     stream: &mut Stream<'_>,
-    (loaded, manipulator): (&Loaded, &'m Manipulator),
+    mechanism: (&Loaded, &'m Manipulator),
     beside: &[String],
+) -> Result<Columns<'m>, Failure> {
+    read_columns(stream, mechanism, (beside, false))
+}
+
+/// The same, with the columns of places behind the others if these are read.
+fn read_columns<'m>(
+    stream: &mut Stream<'_>,
+    (loaded, manipulator): (&Loaded, &'m Manipulator),
+    (beside, places): (&[String], bool),
 ) -> Result<Columns<'m>, Failure> {
     let (own, following) = (manipulator.task_coordinates(), manipulator.dependent_coordinates());
     let wanted = |optional: bool| {
@@ -93,9 +161,25 @@ pub fn columns_beside<'m>(
             quantity: c.quantity,
             plausible: plausible(c.quantity, c.home, (loaded, manipulator)),
             optional,
+            offered: true,
         }
     };
     let values = own.iter().map(wanted(false)).chain(following.iter().map(wanted(true)));
+    let place = |name: &'static str| Wanted {
+        name,
+        quantity: Quantity::Length,
+        plausible: match POSITION.contains(&name) {
+            true => plausible(Quantity::Length, 0.0, (loaded, manipulator)),
+            // A part of a unit vector.
+            false => Plausible::new(Quantity::Length, 0.0, 1.0, loaded.file.units),
+        },
+        optional: false,
+        offered: false,
+    };
+    let before = own.len() + following.len();
+    let places: Vec<&str> =
+        if places { POSITION.into_iter().chain(QUATERNION).collect() } else { Vec::new() };
+    let values = values.chain(places.iter().copied().map(place));
     // The other columns of a table that this program wrote.
     let others = other_columns(manipulator);
     let mut has_mode = false;
@@ -107,12 +191,23 @@ pub fn columns_beside<'m>(
         if let Some(number) = following.iter().position(|c| c.name == name) {
             return Ok(Some(own.len() + number));
         }
-        find(name, own).map(Some).map_err(|error| error.to_string())
+        let place = places.iter().position(|&place| place == name);
+        match (find(name, own), place) {
+            (Err(_), Some(number)) => Ok(Some(before + number)),
+            (found, _) => found.map(Some).map_err(|error| error.to_string()),
+        }
     })?;
     if has_mode {
         stream.note(format_args!("column {MODE} is not read; --mode chooses the working mode"));
     }
     Ok(columns)
+}
+
+/// The values of a row in which nothing is given, not even a place: see [`columns_or_places`].
+pub fn blank_or_places(manipulator: &Manipulator) -> Vec<f64> {
+    let mut row = blank(manipulator);
+    row.extend([f64::NAN; POSITION.len() + QUATERNION.len()]);
+    row
 }
 
 /// The values of a row in which nothing is given: the pose at home, and no value of what follows from it.
@@ -124,5 +219,5 @@ pub fn blank(manipulator: &Manipulator) -> Vec<f64> {
 /// The pose of a row, and the given values of what follows from it.
 pub fn split<'r>(manipulator: &Manipulator, row: &'r [f64]) -> (&'r [f64], Checks) {
     let (pose, following) = row.split_at(manipulator.task_coordinates().len());
-    (pose, Checks::of_row(following))
+    (pose, Checks::of_row(&following[..manipulator.dependent_coordinates().len()]))
 }

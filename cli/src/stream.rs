@@ -7,6 +7,7 @@ use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
 use crate::target::ends_in;
 use crate::text::plural;
+use crate::tum;
 use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
@@ -56,6 +57,8 @@ pub struct Stream<'a> {
     /// The name of the input in messages.
     pub label: &'a str,
     pub lines: Lines<'static>,
+    /// The number of lines before the first one of the file.
+    before: u64,
     pub rows: Rows<'a>,
     names: Option<&'a ColumnNames>,
     output: &'a Output,
@@ -83,7 +86,7 @@ impl Stream<'_> {
             if self.progress.is_cancelled() {
                 return Err(Failure::interrupted("interrupted").into());
             }
-            let number = line.number;
+            let number = line.number - self.before;
             let usual =
                 columns.read(line, &places, &mut row, |problem| at(label, number, problem))?;
             let [values @ .., time] = &*row else { unreachable!("the row has a place for a time") };
@@ -112,13 +115,13 @@ impl Stream<'_> {
     ) -> Result<Columns<'n>, Failure> {
         let label = self.label;
         let header = self.lines.next().map_err(|error| Failure::at(label, error))?;
-        let names = || values.iter().map(|value| value.name);
+        let names = || values.iter().filter(|value| value.offered).map(|value| value.name);
         let no_header = |number| {
             let names = names().collect::<Vec<_>>().join(",");
             at(label, number, format!("no header, expected one of names: {names}"))
         };
         let Some(header) = header else { return Err(no_header(1)) };
-        let number = header.number;
+        let number = (header.number - self.before).max(1);
         if let Some(problem) = not_commas(header) {
             return Err(at(label, number, problem));
         }
@@ -205,9 +208,11 @@ pub fn run<T>(
     }
     let (label, reader) = load::table(input, Expected::ROWS)?;
     let progress = interruptible()?;
+    let (reader, before) = tum::as_csv(reader).map_err(|error| Failure::at(&label, error))?;
     let rows = AtomicU64::new(0);
     let (label, names) = (&*label, streams.columns);
-    let source = Source { label, reader, names, output, number: &rows, progress: &progress };
+    let source =
+        Source { label, reader, before, names, output, number: &rows, progress: &progress };
     let Some(path) = target else {
         // There is no progress bar, since the rows may go to the terminal.
         return match solve(source.to(&mut stdout())) {
@@ -245,10 +250,18 @@ pub fn run<T>(
 /// The column of the working mode in tables that are written.
 pub const MODE: &str = "mode";
 
+/// The column of how far away the pose is that was asked for.
+pub const DISTANCE: &str = "distance";
+/// The column of the legs that do not reach.
+pub const UNREACHABLE: &str = "unreachable";
+/// The column of the joints beyond limits.
+pub const BEYOND: &str = "beyond_limits";
+
 /// What a stream reads, without where it writes.
 struct Source<'a> {
     label: &'a str,
     reader: Box<dyn Read>,
+    before: u64,
     names: Option<&'a ColumnNames>,
     output: &'a Output,
     number: &'a AtomicU64,
@@ -257,9 +270,9 @@ struct Source<'a> {
 
 impl<'a> Source<'a> {
     fn to(self, sink: &'a mut (dyn Write + Send)) -> Stream<'a> {
-        let Self { label, reader, names, output, number, progress } = self;
+        let Self { label, reader, before, names, output, number, progress } = self;
         let (lines, rows) = (Lines::new(reader), Rows::new(sink));
-        Stream { label, lines, rows, names, output, number, progress }
+        Stream { label, lines, before, rows, names, output, number, progress }
     }
 }
 
@@ -283,6 +296,8 @@ pub struct Wanted<'a> {
     pub plausible: Plausible,
     /// Whether a row may have an empty cell there, which is read as not a number.
     pub optional: bool,
+    /// Whether messages offer its name.
+    pub offered: bool,
 }
 
 /// The columns of the input.
@@ -306,9 +321,17 @@ impl Columns<'_> {
 
     /// The names of the values that have no column.
     pub fn missing(&self) -> Vec<&str> {
-        let has =
-            |number: usize| self.columns.iter().any(|(column, _)| *column == Column::Value(number));
-        self.values.iter().enumerate().filter(|&(i, _)| !has(i)).map(|(_, v)| v.name).collect()
+        let values = self.values.iter().enumerate();
+        values.filter(|&(i, _)| !self.has_value(i)).map(|(_, v)| v.name).collect()
+    }
+
+    /// Whether a value of this name has a column.
+    pub fn has(&self, name: &str) -> bool {
+        self.values.iter().enumerate().any(|(i, value)| value.name == name && self.has_value(i))
+    }
+
+    fn has_value(&self, number: usize) -> bool {
+        self.columns.iter().any(|(column, _)| *column == Column::Value(number))
     }
 
     /// Notes values of columns without a unit that look as if they were meant in another one.
@@ -383,7 +406,16 @@ pub fn other_columns(manipulator: &Manipulator) -> Vec<String> {
     let names: Vec<&str> = joints.chain(imaginary).collect();
     let rates = names.iter().copied().chain(tasks.map(|c| c.name));
     let rates = rates.flat_map(|name| [format!("d.{name}"), format!("dd.{name}")]);
-    let known = ["reachable", "within_limits", MODE, "valid", "inverse_condition"];
+    let known = [
+        "reachable",
+        "within_limits",
+        MODE,
+        DISTANCE,
+        UNREACHABLE,
+        BEYOND,
+        "valid",
+        "inverse_condition",
+    ];
     let known = known.into_iter().chain(Index::ALL.map(Index::name)).map(str::to_owned);
     let efforts = effort_names(manipulator);
     names.iter().map(|&name| name.to_owned()).chain(rates).chain(known).chain(efforts).collect()

@@ -45,7 +45,16 @@ impl FromStr for Transform {
                 0..3 => given.value_of(name, Quantity::Length)?,
                 _ => given.bare(name)?,
             };
-            if value.abs() > FARTHEST {
+        }
+        Self::new(values)
+    }
+}
+
+impl Transform {
+    /// From the numbers in the order of the flag: X,Y,Z,QW,QX,QY,QZ; metres.
+    pub fn new(values: [f64; 7]) -> Result<Self, Misread> {
+        for (value, name) in values.into_iter().zip(NAMES) {
+            if value.is_nan() || value.abs() > FARTHEST {
                 return Err(Misread(format!(
                     "{name} is {value:?}, expected a number of at most {FARTHEST:e}"
                 )));

@@ -32,6 +32,7 @@ mod linkage;
 mod manipulator;
 mod matrices;
 mod measure;
+mod nearest;
 mod one;
 mod parts;
 mod pickle;
@@ -83,6 +84,8 @@ mod _native {
     use crate::manipulator::{Manipulator, TaskCoordinate, example, examples};
     #[pymodule_export]
     use crate::measure::{Measure, measure};
+    #[pymodule_export]
+    use crate::nearest::NearestReachable;
     #[pymodule_export]
     use crate::place::Nearest;
     #[pymodule_export]

@@ -28,8 +28,20 @@ use std::path::PathBuf;
 /// the header names: `x [mm],xi [deg]`. A column `t`, as in the table of a motion, is carried through. Columns of
 /// coordinates that depend on the others are compared with the values that follow, where a cell is not empty. The other
 /// columns of tables that opm writes are not read, nor is `mode`: --mode chooses the working mode.
+/// A table may have places in SE(3) instead, `x,y,z,qx,qy,qz,qw` as for --transform, or be one of the TUM benchmark: lines of
+/// `t x y z qx qy qz qw` without a header. `opm trajectory --motion` reads the CSV that comes out.
+///
 /// CSV out: all task coordinates, those that depend on them, `reachable` and `within_limits` (1 or 0), `mode`, the imaginary joints,
 /// the actuated joints, or with --all-joints every joint. A pose out of reach keeps its row; its joint cells are empty.
+/// With --failures, two columns say why: `unreachable`, the legs that do not reach, and `beyond_limits`, the joints beyond
+/// their limits; names have a space between them.
+///
+/// --nearest looks for the nearest pose in reach where one is out of reach, or beyond limits: of least distance in the
+/// coordinates of the pose, where an angle counts as its radians times --length, in the working mode that is asked for, or
+/// with --all-modes in any. It begins at poses in reach, bisects the way to the pose, and follows the boundary of reach
+/// down. What it finds is in reach by the same computation as every other pose. Nothing proves that it is the nearest of
+/// all. JSON has it as `nearest_pose`. In a table the row has that pose, and a column `distance` (m) says how far away the
+/// pose is that was asked for: 0 where it is in reach itself, empty where nothing was found.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -37,6 +49,7 @@ Examples:
   opm ik plano-spherical-5dof --pose xi=15deg --mode \"-+ ++ ++ +\"
   opm ik plano-spherical-5dof --pose xi=15deg --all-modes --format json
   opm ik plano-spherical-5dof --transform 10mm,0,0,0.8,0.6,0,0
+  opm ik plano-spherical-5dof --pose x=400mm,xi=15deg --nearest
   opm ik plano-spherical-5dof --pose xi=15deg --vary h=100mm:160mm:7
   opm ik plano-spherical-5dof --poses poses.csv -o joints.csv
   opm ik plano-spherical-5dof --poses poses.csv --all-joints --all-modes -o joints.csv
@@ -61,6 +74,15 @@ pub struct IkArgs {
     /// Every working mode in which the pose is in reach, not just one
     #[arg(long, conflicts_with = "mode")]
     pub all_modes: bool,
+    /// Where a pose is out of reach or beyond limits, also the nearest pose found that is not
+    #[arg(long, conflicts_with = "vary")]
+    pub nearest: bool,
+    /// Characteristic length of --nearest, by which angles are multiplied, instead of the spread of the joint axes
+    #[arg(help_heading = heading::ALSO, long, value_name = "LENGTH", requires = "nearest", allow_hyphen_values = true)]
+    pub length: Option<Number>,
+    /// Columns of the legs that do not reach, and of the joints beyond limits, in the CSV
+    #[arg(help_heading = heading::WRITTEN, long, requires = "poses", conflicts_with_all = ["pose", "transform"])]
+    pub failures: bool,
     /// Passive joints, too, in the CSV, in the order of the JSON of one pose
     #[arg(help_heading = heading::WRITTEN, long, requires = "poses", conflicts_with_all = ["pose", "transform"])]
     pub all_joints: bool,

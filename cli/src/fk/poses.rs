@@ -105,6 +105,7 @@ impl Request<'_> {
             quantity: c.quantity,
             plausible: plausible(c.quantity, c.home, (self.loaded, m)),
             optional: false,
+            offered: true,
         });
         let tasks = m.task_coordinates().iter().chain(m.dependent_coordinates());
         let tasks: Vec<&str> = tasks.map(|c| c.name).collect();

@@ -322,3 +322,83 @@ fn an_output_is_written_through_a_link() {
     assert!(folder.path("link.csv").is_symlink());
     assert_eq!(folder.names(), ["link.csv", "poses.csv", "real.csv"]);
 }
+
+/// A table of places gives what `--transform` gives of each, and the form of the TUM benchmark the same.
+#[test]
+fn places_in_se3() {
+    let folder = Folder::new();
+    let half = |angle: f64| [(angle / 2.0).sin(), (angle / 2.0).cos()];
+    let rows = [(0.0, 0.52, 0.0), (0.02, 0.53, 0.1), (0.04, 0.54, -0.2), (3.0, 0.54, 0.0)];
+    let (mut csv, mut tum) = (String::from("t,x,y,z,qx,qy,qz,qw\n"), String::from("# t x y z q\n"));
+    for (number, (x, z, angle)) in rows.into_iter().enumerate() {
+        let [s, c] = half(angle);
+        csv += &format!("{number},{x},0,{z},0,0,{s},{c}\n");
+        tum += &format!("{number} {x} 0   {z}\t0 0 {s} {c}\n");
+    }
+    let (csv, tum) = (folder.write("places.csv", csv), folder.write("places.tum", tum));
+    let out = opm(&["ik", "stewart", "--poses", &csv, "--failures"]);
+    assert_eq!(opm(&["ik", "stewart", "--poses", &tum, "--failures"]).stdout, out.stdout);
+    let found = Csv::parse(out.text());
+    for (row, (x, z, angle)) in rows.into_iter().enumerate() {
+        let [s, c] = half(angle);
+        let place = format!("{x},0,{z},{c},0,0,{s}");
+        let one = opm(&["ik", "stewart", "--transform", &place, "--format", "json"]).json();
+        assert_eq!(one["reachable"] == true, found.cell(row, "reachable") == "1");
+        for name in ["x", "y", "z", "roll", "pitch", "yaw"] {
+            let expected = one["pose"][name].as_f64().unwrap();
+            assert!((found.number(row, name) - expected).abs() < 1e-12, "{row} {name}");
+        }
+        if let Some(joints) = one["solutions"][0]["joints"].as_object() {
+            let value = joints["S1"].as_f64().unwrap();
+            assert!((found.number(row, "S1") - value).abs() < 1e-12);
+        }
+    }
+    // The last one is far beyond the limits of all struts; prismatic legs reach it.
+    assert_eq!((found.cell(3, "within_limits"), found.cell(3, "unreachable")), ("0", ""));
+    assert_eq!(found.cell(3, "beyond_limits"), "S1 S2 S3 S4 S5 S6");
+    assert_eq!((found.cell(0, "unreachable"), found.cell(0, "beyond_limits")), ("", ""));
+
+    // Wrong tables say where.
+    for (text, parts) in [
+        ("x,y,z,qx,qy,qz\n0,0,0,0,0,0\n", ["table.csv:1", "no column qw"]),
+        ("x,y,z,qx,qy,qz,qw,roll\n0,0,0,0,0,0,1,0\n", ["table.csv:1", "roll beside a quaternion"]),
+        ("x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n0,0,0,0,0,0,2\n", ["table.csv:3", "has length 2.0000"]),
+        ("x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,\n", ["table.csv:2", "qw"]),
+        ("# a\n0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 x\n", ["table.csv:3", "is not a number"]),
+    ] {
+        let file = folder.write("table.csv", text);
+        let out = folder.arg("out.csv");
+        opm(&["ik", "stewart", "--poses", &file, "-o", &out]).fails(1, &parts);
+    }
+    // A place that the plane does not have.
+    let file = folder.write("table.csv", "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n0,0,0.1,0,0,0,1\n");
+    let run = opm(&["ik", "planar-3rrr", "--poses", &file]);
+    assert!(run.stderr.contains("1 place is outside the manipulator's motion"), "{}", run.stderr);
+    let found = Csv::parse(run.text());
+    assert_eq!([0, 1].map(|row| found.cell(row, "reachable").to_owned()), ["1", "0"]);
+}
+
+/// Rows of poses out of reach have the nearest pose that is in reach, as for one pose.
+#[test]
+fn the_nearest_poses_of_a_table() {
+    let folder = Folder::new();
+    let file = folder.write("poses.csv", "t,x,y\n0,0,0.3\n1,-1,0.2\n");
+    let run = opm(&["ik", "five-bar", "--poses", &file, "--nearest", "--failures"]);
+    let found = Csv::parse(run.text());
+    assert_eq!(found.number(0, "distance"), 0.0);
+    let asked = ["ik", "five-bar", "--pose", "x=-1,y=0.2", "--nearest", "--format", "json"];
+    let one = opm(&asked).json();
+    assert_eq!(Some(found.number(1, "distance")), one["nearest_pose"]["distance"].as_f64());
+    assert_eq!(Some(found.number(1, "x")), one["nearest_pose"]["pose"]["x"].as_f64());
+    assert_eq!((found.cell(1, "reachable"), found.cell(1, "unreachable")), ("1", ""));
+    // Without it, the legs that fail are named.
+    let run = opm(&["ik", "five-bar", "--poses", &file, "--failures"]);
+    let found = Csv::parse(run.text());
+    let legs: Vec<&str> =
+        one["unreachable"].as_array().unwrap().iter().map(|u| u["leg"].as_str().unwrap()).collect();
+    assert!(!legs.is_empty());
+    assert_eq!(found.cell(1, "unreachable"), legs.join(" "));
+    // What comes out can be read again.
+    let again = folder.write("again.csv", run.text());
+    opm(&["ik", "five-bar", "--poses", &again]).text();
+}

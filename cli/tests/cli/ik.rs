@@ -305,3 +305,54 @@ fn dependent_coordinates_are_given_and_checked() {
         (&false.into(), &"right".into())
     );
 }
+
+/// The right arm of the five-bar is 445 mm long, its shoulder at (160 mm, 0); the nearest place is on its circle, where the
+/// left arm reaches, too.
+#[test]
+fn the_nearest_pose_in_reach() {
+    let asked = ["ik", "five-bar", "--pose", "x=-1,y=1", "--nearest", "--all-modes"];
+    let found = opm(&[&asked[..], &["--format", "json"]].concat()).json();
+    let nearest = &found["nearest_pose"];
+    let away = 1.16_f64.hypot(1.0);
+    assert!((number(&nearest["distance"]) - (away - 0.445)).abs() < 1e-9, "{nearest}");
+    assert!((number(&nearest["pose"]["x"]) - (0.16 - 1.16 * 0.445 / away)).abs() < 1e-6);
+    assert_eq!(found["reachable"], false);
+    assert!(!nearest["solutions"].as_array().unwrap().is_empty());
+    let text = opm(&asked);
+    assert!(text.text().contains("nearest found in reach, 1086.5"), "{}", text.stdout);
+    // A pose in reach is its own answer.
+    let asked = ["ik", "five-bar", "--pose", "x=0", "--nearest"];
+    let home = opm(&[&asked[..], &["--format", "json"]].concat()).json();
+    assert!(home["nearest_pose"].is_null() && home["reachable"] == true);
+    assert_eq!(opm(&asked).text(), opm(&asked[..4]).text());
+    assert!(
+        opm(&["ik", "five-bar", "--pose", "x=0", "--format", "json"])
+            .json()
+            .get("nearest_pose")
+            .is_none()
+    );
+    opm(&["ik", "five-bar", "--pose", "x=9", "--nearest", "--length", "0"])
+        .fails(2, &["--length", "positive"]);
+    opm(&["ik", "five-bar", "--pose", "x=9", "--length", "1"]).fails(2, &["--nearest"]);
+}
+
+#[test]
+fn doubts_about_a_file_are_warnings() {
+    let folder = Folder::new();
+    let text = opm(&["examples", "planar-3rrr"]).stdout;
+    let limited = text.replace("name = \"C{i}\", ", "name = \"C{i}\", limits = [-1.5, 1.5], ");
+    let file = folder.write("limited.toml", &limited);
+    for command in [&["ik", &file, "--pose", "x=0"][..], &["check", &file, "--samples", "1"]] {
+        let told = opm(command);
+        assert_eq!(told.stderr.matches("warning").count(), 1, "{}", told.stderr);
+        assert!(told.stderr.contains("limits of C1, C2, C3 are at most 1.5"), "{}", told.stderr);
+    }
+    assert_eq!(opm(&["ik", &file, "--pose", "x=0", "-q"]).stderr, "");
+    let warnings = &opm(&["decompose", &file, "--format", "json"]).json()["warnings"];
+    assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
+    // A model of another program: one message, and where to go.
+    let urdf =
+        folder.write("a.urdf", "\u{feff}<?xml version=\"1.0\"?>\n<robot name=\"a\">\n</robot>\n");
+    opm(&["check", &urdf])
+        .fails_with_one_line(1, &["a.urdf:1:1: this is a URDF model", "opm help format"]);
+}

@@ -19,6 +19,7 @@
 //! | a pose | does a leg reach it on a branch? | [`reaches`](Reach::reaches) |
 //! | many poses | does a leg reach each of them on a branch? | [`reaches_many`](Reach::reaches_many) |
 //! | | which of them are in reach? are they decided together? | [`decide_many`](Reach::decide_many), [`decides_many`](Reach::decides_many) |
+//! | | which in reach is nearest to one that is not? | [`nearest`](Reach::nearest) |
 //! | the plane | which translations does a leg reach on a branch? | [`region`](Reach::region), [`link_regions`](Reach::link_regions) |
 //! | | are these regions the whole answer? | [`regions_decide`](Reach::regions_decide) |
 //! | rows | what does a leg not reach of them, on a sphere? | [`row_arcs`](Reach::row_arcs), if it [`has_arcs`](Reach::has_arcs) |
@@ -76,9 +77,11 @@
 //! [`Task::upper`]: crate::task::Task::upper
 
 mod decide;
+mod nearest;
 mod rows;
 mod transitions;
 
+pub use nearest::NearestPose;
 pub use rows::{RowArcs, RowEnds, SheetRows};
 pub use transitions::Transitions;
 
