@@ -16,11 +16,19 @@ use crate::setup::{Loads, Setup};
 use crate::statics::{Statics, Velocity};
 use crate::weights::{JointMotion, Part};
 use nalgebra::{DMatrix, DVector, Vector6};
+use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::velocity::{self, JointMotion as Buffer, Singularities, VelocityError};
 
 /// A square of a pivot below this share of its diagonal is rounding.
 const SINGULAR: f64 = 1e-11;
+
+/// Whether dry friction counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DryFriction {
+    Counts,
+    LeftOut,
+}
 
 /// The dynamics at one pose after the other. Forces are those on the task coordinates: N for lengths, N m for angles.
 ///
@@ -173,13 +181,38 @@ impl<'a> Dynamics<'a> {
         rates: &DVector<f64>,
         efforts: &DVector<f64>,
     ) -> Option<DVector<f64>> {
+        self.forward_with(rates, efforts, DryFriction::Counts)
+    }
+
+    /// The same with dry friction, or without.
+    pub(crate) fn forward_with(
+        &mut self,
+        rates: &DVector<f64>,
+        efforts: &DVector<f64>,
+        dry: DryFriction,
+    ) -> Option<DVector<f64>> {
         if self.measured.coordinates.abs() < velocity::SINGULAR {
             return None;
         }
         let rest = DVector::zeros(rates.len());
         let work = self.work(rates, &rest, Part::All)?;
-        let missing = self.actuated.tr_mul(efforts) + self.on_coordinates(&work)?;
+        let mut missing = self.actuated.tr_mul(efforts) + self.on_coordinates(&work)?;
+        if dry == DryFriction::LeftOut {
+            missing += self.part(rates, &rest, Part::Coulomb)?;
+        }
         solve(&self.mass_matrix()?, &missing)
+    }
+
+    /// The manipulator.
+    pub fn manipulator(&self) -> &'a Manipulator {
+        self.manipulator
+    }
+
+    /// What a task coordinate is compared by: the characteristic length, or a radian.
+    pub(crate) fn units(&self) -> Vec<f64> {
+        let length = self.statics.length();
+        let of = |quantity| if quantity == Quantity::Length { length } else { 1.0 };
+        self.manipulator.task_coordinates().iter().map(|c| of(c.quantity)).collect()
     }
 
     /// One part of the forces that a motion needs on the task coordinates.

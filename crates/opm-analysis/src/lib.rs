@@ -8,7 +8,7 @@
 //! | which loads actuators with limits bear | [`Statics::capacity`], [`Statics::facets`] |
 //! | how well motion and force are transmitted | [`Transmissions`] |
 //! | what acts: a load on the platform, and the weight of all bodies | [`Loads`] |
-//! | the equations of motion: mass matrix, bias, gravity, friction; accelerations for efforts | [`Dynamics`] |
+//! | the equations of motion: mass matrix, bias, gravity, friction; accelerations and motion under efforts; the linear model | [`Dynamics`] |
 //! | how much the platform gives way, how the legs share a load, and its natural frequencies | [`Compliant`] |
 //! | one number for a colour, a column or a limit | [`Indices`] |
 //!
@@ -41,6 +41,7 @@ mod efforts;
 mod index;
 mod screws;
 mod setup;
+mod simulation;
 mod springs;
 mod statics;
 mod stiffness;
@@ -55,6 +56,7 @@ pub use efforts::{Balance, Efforts, Worst};
 pub use index::{Facts, Index, IndexBounds, IndexError, Indices};
 pub use screws::{Freedom, Screws};
 pub use setup::{Loads, Setup};
+pub use simulation::{LinearModel, SimulationError, State};
 pub use springs::{SpringError, Springs};
 pub use statics::{Statics, Velocity};
 pub use stiffness::{Compliant, Reactions, Stiffness};
