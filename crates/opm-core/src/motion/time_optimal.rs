@@ -17,9 +17,19 @@
 //! At an end at which the motion itself is at rest, `q'` is zero and every `ds/dt` is rest: `x` is free there, and the
 //! acceleration `q'' x` limits it. At other ends `x` is zero.
 
+mod efforts;
+mod error;
+mod half_planes;
+
+pub use efforts::{PathEffort, PathEfforts};
+pub use error::TimingError;
+
 use super::{Instant, Path, PlatformMotion, TimedPath, Timing};
-use crate::manipulator::{Manipulator, Mode, PoseError, Solution};
+use crate::manipulator::{Manipulator, Mode, Solution};
+use crate::mechanism::joint::DriveLimit;
 use crate::velocity::{JointMotion, VelocityError};
+use efforts::Effort;
+use half_planes::{HalfPlane, largest_end, largest_start};
 
 /// The smallest number of intervals of the grid. The duration is above the shortest by a share of the order of one in
 /// this number, because accelerations are at their limits at one end of each interval.
@@ -27,6 +37,12 @@ const INTERVALS: f64 = 4000.0;
 
 /// The grid is refined until no square of a rate and no acceleration is above its limit by more than this share of it.
 const EXCESS: f64 = 5e-7;
+
+/// How often a timing is computed anew with viscous friction at the speeds of the last one.
+const REPETITIONS: usize = 4;
+
+/// How much larger a square may be than in the last timing: the tighter, the better the line for braking friction.
+const NEAR: f64 = 1.2;
 
 /// How often intervals are halved at most.
 const ROUNDS: usize = 24;
@@ -51,64 +67,6 @@ const REST: f64 = 1e-9;
 /// a thousand times faster than others.
 const FASTEST: f64 = 1e6;
 
-/// Why a motion has no fastest timing.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TimingError {
-    /// Actuated joints have no limit of their accelerations.
-    #[error(
-        "no max_acceleration of {}: the fastest timing needs one for every actuated joint, and max_rate where there is one",
-        .joints.join(", ")
-    )]
-    NoLimits {
-        /// The names of the joints.
-        joints: Vec<String>,
-    },
-    /// The motion is for a manipulator with another number of task coordinates.
-    #[error("the motion has {given} task coordinates, expected {expected}, as the manipulator has")]
-    Coordinates {
-        /// The number of coordinates of the motion.
-        given: usize,
-        /// The number of task coordinates of the manipulator.
-        expected: usize,
-    },
-    /// The platform or the joints that have limits do not move.
-    #[error("nothing moves that has a limit, expected a motion from one pose to another")]
-    Still,
-    /// A leg does not reach a pose.
-    #[error(
-        "at t = {time} s, {leg} does not reach the pose: what cannot be followed has no timing"
-    )]
-    OutOfReach {
-        /// The time of the motion as it is given, seconds.
-        time: f64,
-        /// The name of the leg.
-        leg: String,
-    },
-    /// A joint has no rate, or the limits leave none.
-    #[error("at t = {time} s, a leg is singular: its joints cannot have limited rates there")]
-    Singular {
-        /// The time of the motion as it is given, seconds.
-        time: f64,
-    },
-    /// A pose of the motion cannot be computed with.
-    #[error("at t = {time} s: {source}")]
-    Pose {
-        /// The time of the motion as it is given, seconds.
-        time: f64,
-        /// The reason.
-        source: PoseError,
-    },
-    /// A velocity or acceleration of the motion cannot be computed with.
-    #[error("at t = {time} s: {source}")]
-    Velocity {
-        /// The time of the motion as it is given, seconds.
-        time: f64,
-        /// The reason.
-        source: VelocityError,
-    },
-}
-
 impl PlatformMotion {
     /// The same path, from rest to rest, in the shortest time within `max_rate` and `max_acceleration` of all joints
     /// that have them. Every actuated joint must have a `max_acceleration`.
@@ -120,12 +78,34 @@ impl PlatformMotion {
     /// # Errors
     /// [`TimingError`]: an actuated joint has no limit, nothing moves, or the motion cannot be followed.
     pub fn time_optimal(&self, manipulator: &Manipulator, mode: Mode) -> Result<Self, TimingError> {
-        let limits = limits(manipulator)?;
+        self.timed(manipulator, mode, None)
+    }
+
+    /// The same, also within the largest efforts of actuators: each of these needs a `max_acceleration` or a `max_effort`.
+    ///
+    /// # Errors
+    /// As for [`PlatformMotion::time_optimal`]; also if an actuator cannot stand what there is at rest, or efforts are not known.
+    pub fn time_optimal_within(
+        &self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        efforts: &mut dyn PathEfforts,
+    ) -> Result<Self, TimingError> {
+        self.timed(manipulator, mode, Some(efforts))
+    }
+
+    fn timed(
+        &self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        efforts: Option<&mut dyn PathEfforts>,
+    ) -> Result<Self, TimingError> {
+        let limits = limits(manipulator, efforts.as_deref())?;
         let (given, expected) = (self.coordinate_count(), manipulator.task_coordinates().len());
         if given != expected {
             return Err(TimingError::Coordinates { given, expected });
         }
-        let mut joints = Joints::new(self, manipulator, mode, &limits);
+        let mut joints = Joints::new((self, manipulator, mode), &limits, efforts);
         let mut grid = Grid::new(&mut joints)?;
         let (mut squares, mut excess);
         let mut round = 0;
@@ -159,11 +139,17 @@ struct Limit {
 }
 
 /// The limits of all joint coordinates that have any.
-fn limits(manipulator: &Manipulator) -> Result<Vec<Limit>, TimingError> {
+fn limits(
+    manipulator: &Manipulator,
+    efforts: Option<&dyn PathEfforts>,
+) -> Result<Vec<Limit>, TimingError> {
     let mut joints = Vec::new();
     for &number in manipulator.actuated() {
         let coordinate = &manipulator.coordinates()[number];
-        if coordinate.motion_limits.max_acceleration.is_none() {
+        let mut limited = efforts.iter().flat_map(|efforts| efforts.limits());
+        if coordinate.motion_limits.max_acceleration.is_none()
+            && !limited.any(|(of, _)| *of == number)
+        {
             joints.push(coordinate.name.clone());
         }
     }
@@ -181,8 +167,17 @@ fn limits(manipulator: &Manipulator) -> Result<Vec<Limit>, TimingError> {
 /// The first and the second derivative of a limited joint by the parameter.
 type Derivatives = [f64; 2];
 
+/// What is limited at a point of the path.
+#[derive(Clone, Debug)]
+struct Place {
+    /// The derivatives of every limited joint.
+    joints: Vec<Derivatives>,
+    /// The efforts of every limited actuator.
+    efforts: Vec<Effort>,
+}
+
 /// The joints along the motion.
-struct Joints<'a> {
+struct Joints<'a, 'e> {
     motion: &'a PlatformMotion,
     manipulator: &'a Manipulator,
     mode: Mode,
@@ -190,23 +185,23 @@ struct Joints<'a> {
     instant: Instant,
     solution: Solution,
     rates: JointMotion,
+    efforts: Option<&'e mut (dyn PathEfforts + 'e)>,
 }
 
-impl<'a> Joints<'a> {
+impl<'a, 'e> Joints<'a, 'e> {
     fn new(
-        motion: &'a PlatformMotion,
-        manipulator: &'a Manipulator,
-        mode: Mode,
+        (motion, manipulator, mode): (&'a PlatformMotion, &'a Manipulator, Mode),
         limits: &'a [Limit],
+        efforts: Option<&'e mut (dyn PathEfforts + 'e)>,
     ) -> Self {
         let instant = Instant::new(manipulator.task_coordinates().len());
         let (solution, rates) = (manipulator.solution(), manipulator.joint_motion());
-        Self { motion, manipulator, mode, limits, instant, solution, rates }
+        Self { motion, manipulator, mode, limits, instant, solution, rates, efforts }
     }
 
-    /// The derivatives of every limited joint.
-    fn at(&mut self, time: f64) -> Result<Vec<Derivatives>, TimingError> {
-        let Self { motion, manipulator, mode, limits, instant, solution, rates } = self;
+    /// What is limited at a point.
+    fn at(&mut self, time: f64) -> Result<Place, TimingError> {
+        let Self { motion, manipulator, mode, limits, instant, solution, rates, .. } = self;
         motion.at(time, instant);
         let reached = manipulator.inverse(&instant.pose, *mode, solution);
         if reached.map_err(|source| TimingError::Pose { time, source })?.is_none() {
@@ -227,12 +222,34 @@ impl<'a> Joints<'a> {
             let number = limit.coordinate;
             [rates.joint_rates[number], rates.joint_accelerations[number]]
         };
-        Ok(limits.iter().map(of).collect())
+        let joints = limits.iter().map(of).collect();
+        Ok(Place { joints, efforts: self.efforts_at(time)? })
+    }
+
+    /// The efforts of every limited actuator at the solution.
+    fn efforts_at(&mut self, time: f64) -> Result<Vec<Effort>, TimingError> {
+        let Some(model) = &mut self.efforts else { return Ok(Vec::new()) };
+        let mut found = vec![PathEffort::default(); model.limits().len()];
+        if !model.at(&self.solution, &self.rates, &mut found) {
+            return Err(TimingError::NoEffort { time });
+        }
+        let each = model.limits().iter().zip(found);
+        each.map(|(&(number, limit), of)| {
+            let room = [limit - of.still, limit + of.still];
+            if room[0] > 0.0 && room[1] > 0.0 {
+                return Ok(Effort { of, room });
+            }
+            let coordinate = &self.manipulator.coordinates()[number];
+            let unit = DriveLimit::Effort.unit(coordinate.quantity);
+            let (joint, effort) = (coordinate.name.clone(), of.still.abs());
+            Err(TimingError::Effort { time, joint, effort, limit, unit })
+        })
+        .collect()
     }
 }
 
-/// The interval between two points of the grid: the derivatives at its ends.
-struct Interval([Vec<Derivatives>; 2]);
+/// The interval between two points of the grid: what is limited at its ends.
+struct Interval([Place; 2]);
 
 /// The points at which the timing is computed.
 struct Grid {
@@ -246,16 +263,8 @@ struct Grid {
     fastest: f64,
 }
 
-/// `|a x + b y| <= c`, for `x` at the start of an interval and `y` at its end.
-#[derive(Clone, Copy)]
-struct Strip {
-    a: f64,
-    b: f64,
-    c: f64,
-}
-
 impl Grid {
-    fn new(joints: &mut Joints<'_>) -> Result<Self, TimingError> {
+    fn new(joints: &mut Joints<'_, '_>) -> Result<Self, TimingError> {
         let motion = joints.motion;
         let mut knots = vec![motion.start];
         let inside = |t: &&f64| **t > motion.start && **t < motion.end();
@@ -278,7 +287,7 @@ impl Grid {
     }
 
     /// Finds the largest `x` anywhere, and at both ends.
-    fn limit_ends(&mut self, joints: &Joints<'_>) {
+    fn limit_ends(&mut self, joints: &Joints<'_, '_>) {
         let Joints { motion, limits, .. } = joints;
         let mut instant = joints.instant.clone();
         let mut largest = vec![0.0_f64; instant.velocity.len()];
@@ -302,7 +311,9 @@ impl Grid {
                 (by_rate * by_rate).min(by_acceleration)
             };
             if !rests(velocity) {
-                let each = limits.iter().zip(&interval.0[0]).map(of);
+                let Place { joints, efforts } = &interval.0[0];
+                let by_effort = efforts.iter().map(|effort| effort.usual_square(motion.duration));
+                let each = limits.iter().zip(joints).map(of).chain(by_effort);
                 usual.push(each.fold(f64::INFINITY, f64::min));
             }
         }
@@ -312,56 +323,103 @@ impl Grid {
         self.ends = [first, last].map(|end| if rests(&moves[end]) { self.fastest } else { 0.0 });
     }
 
-    /// The squares of the parameter's rate at the points: controllable sets backwards, then the largest values forwards.
+    /// The squares of the parameter's rate at the points.
     fn squares(&self, limits: &[Limit]) -> Vec<f64> {
-        let last = self.intervals.len();
-        let mut largest = vec![self.fastest; last + 1];
-        for (i, Interval(ends)) in self.intervals.iter().enumerate() {
-            for (limit, [before, after]) in
-                limits.iter().zip(ends[0].iter().zip(&ends[1]).map(|(a, b)| [a[0], b[0]]))
-            {
-                largest[i] = largest[i].min((limit.rate / before).powi(2));
-                largest[i + 1] = largest[i + 1].min((limit.rate / after).powi(2));
+        let most = self.largest(limits);
+        let mut squares = self.squares_about(limits, &most, &most);
+        let viscous = |place: &Place| place.efforts.iter().any(|effort| effort.of.viscous != 0.0);
+        if self.intervals.iter().flat_map(|interval| &interval.0).any(viscous) {
+            for _ in 0..REPETITIONS {
+                let near = most.iter().zip(&squares);
+                let near = near.map(|(most, x)| most.min(NEAR * x).max(efforts::LEAST * most));
+                squares = self.squares_about(limits, &near.collect::<Vec<_>>(), &squares);
             }
-        }
-        largest[0] = largest[0].min(self.ends[0]);
-        largest[last] = largest[last].min(self.ends[1]);
-        let mut strips = Vec::new();
-        for i in (0..last).rev() {
-            self.strips(i, limits, &mut strips);
-            largest[i] = largest_start(&strips, [largest[i], largest[i + 1]]);
-        }
-        largest.iter_mut().for_each(|largest| *largest *= 1.0 - ROOM);
-        let mut squares = vec![largest[0]];
-        for i in 0..last {
-            self.strips(i, limits, &mut strips);
-            squares.push(largest_end(&strips, squares[i], largest[i + 1]));
         }
         squares
     }
 
-    /// The limits of accelerations in an interval, at its two ends.
-    fn strips(&self, i: usize, limits: &[Limit], strips: &mut Vec<Strip>) {
-        // u = (y - x) / twice.
-        let twice = 2.0 * (self.points[i + 1] - self.points[i]);
-        let Interval([before, after]) = &self.intervals[i];
-        strips.clear();
-        for (limit, (before, after)) in limits.iter().zip(before.iter().zip(after)) {
-            let c = limit.acceleration;
-            let [first, second] = [before[0] / twice, before[1]];
-            strips.push(Strip { a: second - first, b: first, c });
-            let [first, second] = [after[0] / twice, after[1]];
-            strips.push(Strip { a: -first, b: first + second, c });
+    /// The largest squares by the limits of rates, and of efforts against friction.
+    fn largest(&self, limits: &[Limit]) -> Vec<f64> {
+        let last = self.intervals.len();
+        let mut largest = vec![self.fastest; last + 1];
+        for (i, Interval(ends)) in self.intervals.iter().enumerate() {
+            let joints = ends.each_ref().map(|place| &place.joints);
+            for (limit, [before, after]) in
+                limits.iter().zip(joints[0].iter().zip(joints[1]).map(|(a, b)| [a[0], b[0]]))
+            {
+                largest[i] = largest[i].min((limit.rate / before).powi(2));
+                largest[i + 1] = largest[i + 1].min((limit.rate / after).powi(2));
+            }
+            for (end, place) in ends.iter().enumerate() {
+                let by_friction = place.efforts.iter().map(Effort::largest_square);
+                largest[i + end] = by_friction.fold(largest[i + end], f64::min);
+            }
         }
-        strips.retain(|strip| strip.c.is_finite());
+        largest
     }
 
-    /// For each interval, by which share a square of a rate or an acceleration is above its limit: at the quarters, and
+    /// Controllable sets backwards, then the largest values forwards, with viscous friction about some squares.
+    fn squares_about(&self, limits: &[Limit], most: &[f64], guess: &[f64]) -> Vec<f64> {
+        let last = self.intervals.len();
+        let mut largest = most.to_vec();
+        largest[0] = largest[0].min(self.ends[0]);
+        largest[last] = largest[last].min(self.ends[1]);
+        let mut planes = Vec::new();
+        for i in (0..last).rev() {
+            self.half_planes(i, limits, [guess, most], &mut planes);
+            largest[i] = largest_start(&planes, [largest[i], largest[i + 1]]);
+        }
+        largest.iter_mut().for_each(|largest| *largest *= 1.0 - ROOM);
+        let mut squares = vec![largest[0]];
+        for i in 0..last {
+            self.half_planes(i, limits, [guess, most], &mut planes);
+            squares.push(largest_end(&planes, squares[i], largest[i + 1]));
+        }
+        squares
+    }
+
+    /// The limits of accelerations and efforts in an interval, at its two ends.
+    fn half_planes(
+        &self,
+        i: usize,
+        limits: &[Limit],
+        [guess, most]: [&[f64]; 2],
+        planes: &mut Vec<HalfPlane>,
+    ) {
+        // u = (y - x) / twice.
+        let twice = 2.0 * (self.points[i + 1] - self.points[i]);
+        let Interval(ends) = &self.intervals[i];
+        planes.clear();
+        for (end, place) in ends.iter().enumerate() {
+            let mut add = |by_u: f64, by_x: f64, c: f64| {
+                planes.push(match end {
+                    0 => HalfPlane::at_start(by_u, by_x, c, twice),
+                    _ => HalfPlane::at_end(by_u, by_x, c, twice),
+                });
+            };
+            for (limit, [first, second]) in limits.iter().zip(&place.joints) {
+                if limit.acceleration.is_finite() {
+                    add(*first, *second, limit.acceleration);
+                    add(-first, -second, limit.acceleration);
+                }
+            }
+            for effort in &place.efforts {
+                effort.half_planes([guess[i + end], most[i + end]], &mut add);
+            }
+        }
+    }
+
+    /// For each interval, by which share a square of a rate, an acceleration or an effort is above its limit: at the quarters, and
     /// between them where it has its peak there.
-    fn excesses(&self, joints: &mut Joints<'_>, squares: &[f64]) -> Result<Vec<f64>, TimingError> {
+    fn excesses(
+        &self,
+        joints: &mut Joints<'_, '_>,
+        squares: &[f64],
+    ) -> Result<Vec<f64>, TimingError> {
         let mut excesses = Vec::with_capacity(self.intervals.len());
         // Shares of the limits of each joint: of the square of its rate, and of its acceleration.
-        let mut shares = vec![[[0.0; QUARTERS.len()]; 2]; joints.limits.len()];
+        let count = joints.efforts.as_ref().map_or(0, |efforts| efforts.limits().len());
+        let mut shares = vec![[[0.0; QUARTERS.len()]; 2]; joints.limits.len() + count];
         for (i, Interval(ends)) in self.intervals.iter().enumerate() {
             let [from, to] = [self.points[i], self.points[i + 1]];
             let [x, y] = [squares[i], squares[i + 1]];
@@ -369,7 +427,7 @@ impl Grid {
             for (place, share) in QUARTERS.into_iter().enumerate() {
                 let square = x + share * (y - x);
                 let between;
-                let derivatives = match share {
+                let Place { joints: derivatives, efforts } = match share {
                     0.0 => &ends[0],
                     1.0 => &ends[1],
                     share => {
@@ -383,6 +441,13 @@ impl Grid {
                     shares[0][place] = rate * rate * square;
                     shares[1][place] = (first * u + second * square) / limit.acceleration;
                 }
+                for (effort, shares) in efforts.iter().zip(&mut shares[joints.limits.len()..]) {
+                    // A slower clock lessens viscous friction by half as much as what else there is.
+                    let weight = if effort.of.viscous == 0.0 { 1.0 } else { 2.0 };
+                    for (to, share) in shares.iter_mut().zip(effort.shares(u, square)) {
+                        to[place] = if share > 1.0 { 1.0 + weight * (share - 1.0) } else { share };
+                    }
+                }
             }
             let most = shares.as_flattened().iter().map(peak).fold(0.0, f64::max);
             excesses.push((most - 1.0).max(0.0));
@@ -391,7 +456,7 @@ impl Grid {
     }
 
     /// Halves the intervals with too large an excess.
-    fn refine(&mut self, joints: &mut Joints<'_>, excesses: &[f64]) -> Result<(), TimingError> {
+    fn refine(&mut self, joints: &mut Joints<'_, '_>, excesses: &[f64]) -> Result<(), TimingError> {
         let mut points = vec![self.points[0]];
         let mut intervals = Vec::with_capacity(self.intervals.len());
         let old = std::mem::take(&mut self.intervals);
@@ -426,49 +491,8 @@ fn peak(values: &[f64; QUARTERS.len()]) -> f64 {
 }
 
 impl Interval {
-    fn new(joints: &mut Joints<'_>, [from, to]: [f64; 2]) -> Result<Self, TimingError> {
+    fn new(joints: &mut Joints<'_, '_>, [from, to]: [f64; 2]) -> Result<Self, TimingError> {
         let inset = INSET * (to - from);
         Ok(Self([joints.at(from + inset)?, joints.at(to - inset)?]))
-    }
-}
-
-/// The largest `x` for which some `y` is within all strips, with both between zero and their own largest values.
-///
-/// `y` is eliminated (Fourier and Motzkin): every upper limit of `y`, `y <= k - m x`, must be above every lower one.
-fn largest_start(strips: &[Strip], [most_x, most_y]: [f64; 2]) -> f64 {
-    let mut most = most_x;
-    for one in strips {
-        let Some([k, m]) = one.line() else {
-            most = most.min(one.c / one.a.abs());
-            continue;
-        };
-        // With the lower and the upper limit of `y` itself.
-        if m > 0.0 {
-            most = most.min(k / m);
-        } else if m < 0.0 {
-            most = most.min((most_y + k) / -m);
-        }
-        for other in strips {
-            if let Some([below, slope]) = other.line()
-                && m > slope
-            {
-                most = most.min((k + below) / (m - slope));
-            }
-        }
-    }
-    most
-}
-
-/// The largest `y` within all strips for this `x`.
-fn largest_end(strips: &[Strip], x: f64, most_y: f64) -> f64 {
-    let lines = strips.iter().filter_map(|strip| strip.line());
-    lines.fold(most_y, |most, [k, m]| most.min(k - m * x)).max(0.0)
-}
-
-impl Strip {
-    /// `k` and `m` for which the strip is `-k - m x <= y <= k - m x`; `None` if `y` does not matter.
-    fn line(self) -> Option<[f64; 2]> {
-        let Self { a, b, c } = self;
-        (b.abs() > f64::EPSILON * a.abs()).then(|| [c / b.abs(), a / b])
     }
 }
