@@ -11,8 +11,8 @@ use crate::load as mechanisms;
 use crate::unitless;
 use nalgebra::Vector3;
 use opm_analysis::{
-    Balance, Compliant, Efforts, Gravity, Index, Indices, Loads, NoTransmission, Setup, Statics,
-    Transmissions, Velocity,
+    Balance, Compliant, Dynamics, Efforts, Gravity, Index, Indices, Loads, NoTransmission, Setup,
+    Statics, Transmissions, Velocity,
 };
 use opm_core::manipulator::{Manipulator, Solution};
 use report::{Elastic, Report};
@@ -40,11 +40,16 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     let weightless = Gravity { acceleration: Vector3::zeros(), ..Gravity::default() };
     let gravity = setup.gravity.unwrap_or(weightless);
     let mut springs = springs.map(|springs| springs.with_gravity(&gravity));
-    let mut elastic = None;
+    let (mut elastic, mut moving) = (None, None);
     if reached {
         let verified = checks.verify(&manipulator, at.dependent(), loaded.file.units);
         verified.map_err(|error| Failure::flag("--pose", error))?;
         analyser.update(&at)?;
+        moving = setup.gravity.and_then(|_| {
+            let mut dynamics = Dynamics::new(&manipulator, &setup);
+            let regular = dynamics.update(&at).unwrap_or(false);
+            regular.then(|| Some((dynamics.mass_matrix()?, dynamics.gravity()?))).flatten()
+        });
         elastic = springs.as_mut().map(|compliant| {
             let stiffness = compliant.stiffness(&at)?;
             let load = setup.has_load().then(|| analyser.wrench(&at).unwrap_or_default());
@@ -55,7 +60,7 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
     }
     let units = loaded.file.units;
     let report =
-        Report { analyser: &analyser, at: &at, pose: &pose, mode, reached, elastic, units };
+        Report { analyser: &analyser, at: &at, pose: &pose, mode, reached, elastic, moving, units };
     output.print(&report.json(), report.text())
 }
 

@@ -105,7 +105,11 @@ fn motion(
     }
     let given_duration = motion.motion.duration;
     let mode = motion.motion.mode.unwrap_or_else(|| manipulator.home_mode());
-    motion.motion = motion.motion.time_optimal(manipulator, mode).map_err(|error| {
+    // What acts besides springs takes part of the largest efforts.
+    let acting = SetupOptions { springs: None, ..args.setup.options(None)? };
+    let timed =
+        opm_analysis::time_optimal(&motion.motion, manipulator, mode, &acting.check(manipulator)?);
+    motion.motion = timed.map_err(|error| {
         let of = match error {
             TimingError::NoLimits { .. } => &args.mechanism.file,
             _ => &args.motion,
@@ -143,8 +147,11 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
         // Motors carry the mechanism.
         setup.gravity = setup.gravity.or(Some(Gravity::default()));
     }
-    if setup != SetupOptions::default() && !args.indices && !args.efforts {
-        let problem = "nothing uses it; --indices and --efforts do";
+    let limited = |&c: &usize| manipulator.coordinates()[c].max_effort.is_some();
+    let pushed = args.time_optimal && manipulator.actuated().iter().any(limited);
+    let used = args.indices || args.efforts || pushed && setup.springs.is_none();
+    if setup != SetupOptions::default() && !used {
+        let problem = "nothing uses it; --indices and --efforts do, and --time-optimal uses loads where joints have a max_effort";
         return Err(Failure::flag(given_setup(&setup), problem));
     }
     let setup = setup.check(&manipulator)?;

@@ -12,6 +12,7 @@ use crate::interrupt;
 use crate::manipulator::Manipulator;
 use crate::parts::Pickled;
 use crate::pickle::{attribute, attributes, equal};
+use crate::velocity::characteristic_length;
 pub use events::{Contact, Violation};
 use numpy::{PyArray1, PyArray2};
 use opm_analysis::Setup;
@@ -134,6 +135,16 @@ struct Source {
     clearance: Option<f64>,
 }
 
+/// The motion with its fastest timing.
+fn timed(
+    motion: &PlatformMotion,
+    inner: &opm_core::Manipulator,
+    mode: Mode,
+) -> PyResult<PlatformMotion> {
+    let setup = Setup::new(characteristic_length(inner, None)?);
+    opm_analysis::time_optimal(motion, inner, mode, &setup).map_err(|error| failed(&error))
+}
+
 /// Follow a motion of the platform.
 ///
 /// Parameters
@@ -159,8 +170,9 @@ struct Source {
 /// relative_time : bool, optional
 ///     Count the times of a table of poses (``.csv``) from that of its first row, such as seconds since 1970.
 /// time_optimal : bool, optional
-///     The fastest timing along the same path, from rest to rest, within ``max_rate`` and ``max_acceleration`` of the
-///     joints in the mechanism file. Every actuated joint needs a ``max_acceleration``.
+///     The fastest timing along the same path, from rest to rest, within ``max_rate``, ``max_acceleration`` and
+///     ``max_effort`` of the joints in the mechanism file. Every actuated joint needs one of the last two. Efforts are those of
+///     :meth:`Manipulator.inverse_dynamics`, with 9.81 m/s² along -z.
 /// clearance : float, optional
 ///     Least distance of two bodies, metres: where it is less, they are in contact (:attr:`Trajectory.contacts`); 0 for
 ///     overlaps.
@@ -224,7 +236,7 @@ pub fn trajectory(
     let rate = rate.or(motion.rate).unwrap_or(DEFAULT_RATE);
     let inner = &*manipulator.inner;
     let motion = match time_optimal {
-        true => motion.time_optimal(inner, mode).map_err(|error| failed(&error))?,
+        true => timed(&motion, inner, mode)?,
         false => motion,
     };
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
@@ -313,9 +325,7 @@ impl Trajectory {
         let mode: String = attribute(attributes, "mode")?;
         let signs = manipulator.get().mode(&mode)?;
         let motion = match time_optimal {
-            true => motion
-                .time_optimal(&manipulator.get().inner, signs)
-                .map_err(|error| failed(&error))?,
+            true => timed(&motion, &manipulator.get().inner, signs)?,
             false => motion,
         };
         Ok(Self {

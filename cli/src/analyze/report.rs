@@ -4,7 +4,7 @@ use super::{Analyser, word};
 use crate::output::named;
 use crate::text::{self, Table, short};
 use crate::transform;
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, DVector, Dim, Matrix, RawStorage, Vector3};
 use opm_analysis::{
     Balance, Capacity, Efforts, Reactions, Stiffness, Transmission, Vibration, Wrench,
 };
@@ -24,6 +24,8 @@ pub struct Report<'a> {
     pub reached: bool,
     /// If stiffnesses are given: how the mechanism gives way, unless the pose is singular.
     pub elastic: Option<Option<Elastic>>,
+    /// With gravity: the mass matrix, and what the weight of all bodies needs, in task coordinates.
+    pub moving: Option<(DMatrix<f64>, DVector<f64>)>,
     pub units: FileUnits,
 }
 
@@ -40,10 +42,7 @@ impl Elastic {
     fn json(&self, report: &Report<'_>) -> Value {
         let manipulator = report.analyser.manipulator;
         let legs = &manipulator.mechanism().legs;
-        let rows = self.stiffness.platform.row_iter();
-        let mut json = json!({
-            "matrix": rows.map(|row| row.iter().copied().collect::<Vec<f64>>()).collect::<Vec<_>>(),
-        });
+        let mut json = json!({ "matrix": rows(&self.stiffness.platform) });
         let vibrations = self.vibrations.iter().flatten().map(|found| {
             json!({ "frequency": finite(found.frequency), "shape": found.shape.as_slice() })
         });
@@ -118,7 +117,13 @@ impl Report<'_> {
         let values = [
             json!(wrench.map(|wrench| wrench.components().map(|part| part + 0.0))),
             gravity.map_or(Value::Null, |(gravity, loads)| {
-                json!({ "acceleration": triple(&gravity.acceleration), "mass": loads.mass() })
+                let moving = self.moving.as_ref();
+                json!({
+                    "acceleration": triple(&gravity.acceleration),
+                    "mass": loads.mass(),
+                    "mass_matrix": moving.map(|(mass, _)| rows(mass)),
+                    "forces": moving.map(|(_, forces)| forces.as_slice()),
+                })
             }),
             efforts.map_or(Value::Null, |efforts| word(efforts.balance).into()),
             efforts.map_or(Value::Null, |efforts| self.actuated(&efforts.actuated)),
@@ -283,6 +288,18 @@ impl Report<'_> {
             return text;
         }
         self.efforts_text(&mut text);
+        if let Some((mass, _)) = &self.moving {
+            let names: Vec<_> = manipulator.task_coordinates().iter().map(|c| c.name).collect();
+            let heads = names.iter().map(|name| format!(">{name}"));
+            let heads: Vec<_> = std::iter::once("mass matrix".to_owned()).chain(heads).collect();
+            let mut table = Table::new(heads.iter().map(String::as_str));
+            let scale = mass.amax();
+            for (name, row) in names.iter().zip(mass.row_iter()) {
+                let cells = row.iter().map(|&entry| part(entry, scale));
+                table.row(std::iter::once((*name).to_owned()).chain(cells));
+            }
+            let _ = writeln!(text, "{table}");
+        }
         if let Some(found) = self.capacity() {
             let more = if self.efforts().is_some() { " on top of the load" } else { "" };
             let _ = writeln!(
@@ -452,6 +469,12 @@ fn triple(v: &Vector3<f64>) -> [f64; 3] {
 /// Numbers that JSON cannot hold are null.
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
+}
+
+/// The rows of a matrix.
+fn rows<R: Dim, C: Dim, S: RawStorage<f64, R, C>>(matrix: &Matrix<f64, R, C, S>) -> Value {
+    let rows = matrix.row_iter().map(|row| row.iter().copied().collect::<Vec<f64>>());
+    json!(rows.collect::<Vec<_>>())
 }
 
 fn shown(value: f64) -> String {

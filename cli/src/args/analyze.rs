@@ -24,10 +24,12 @@ use std::path::PathBuf;
 /// --limit, --color and --scalars. docs/analysis.md has the definitions.
 ///
 /// --gravity adds the weight of links and platform. Their masses are those of the mechanism file, or follow from the shapes
-/// and a density, as in models for simulators. The weight of a payload is a --wrench.
+/// and a density, as in models for simulators. The weight of a payload is a --wrench. It also gives the mass matrix in task
+/// coordinates (docs/dynamics.md).
 ///
 /// Statics do not tell what the legs of an overconstrained mechanism, or redundant actuators, carry: --link-stiffness
-/// and --joint-stiffness do, by the virtual joint method, for the load and for the weight of links and platform.
+/// and --joint-stiffness do, by the virtual joint method, for the load and for the weight of links and platform. They also give
+/// the natural frequencies.
 ///
 /// CSV in: as for `opm ik`. CSV out: the pose, `reachable`, `within_limits`, `mode`, `balance`, the efforts
 /// (`effort.NAME`), and the indices that the mechanism has; with --link-stiffness the least stiffness, too.

@@ -86,8 +86,8 @@ pub struct LinkageArgs {
 /// between samples too. The recording shows them red. The answer also names the nearest two of the whole motion.
 ///
 /// --time-optimal keeps the sequence of poses and replaces the times: the platform starts and ends at rest, and moves
-/// as fast as the limits of rates and accelerations in the mechanism file let it. Every actuated joint needs a
-/// max_acceleration.
+/// as fast as the limits of rates, accelerations and efforts (max_effort) in the mechanism file let it. Every actuated joint needs a
+/// max_acceleration or a max_effort. Efforts are those of --efforts, with the same gravity and --wrench.
 ///
 /// --indices needs -o. --wrench, --gravity and --link-stiffness are those of `opm analyze`, and need --indices or --efforts.
 ///
@@ -156,7 +156,7 @@ pub struct TrajectoryArgs {
     /// Working mode: `home`, or a sign for every two-valued choice, instead of that of the motion file
     #[arg(long, value_name = "MODE", allow_hyphen_values = true)]
     pub mode: Option<String>,
-    /// The fastest timing along the same path, from rest to rest, within the joints' max_rate and max_acceleration
+    /// The fastest timing along the same path, from rest to rest, within the joints' max_rate, max_acceleration and max_effort
     #[arg(long)]
     pub time_optimal: bool,
     /// Least distance of two bodies, for example 5mm: where it is less, they interfere; with --strict that is a failure,

@@ -95,6 +95,23 @@ fn an_effort_holds_up_a_weight() {
     assert!((number(&soft["stiffness"]["displacement"][2]) + 0.03).abs() < 1e-6);
     assert!((number(&soft["stiffness"]["matrix"][2][2]) - 1e3).abs() < 1e-3);
     assert!((number(&soft["stiffness"]["efforts"]["Z"]) - 30.0).abs() < 1e-6);
+    // What swings on that spring is what the mass matrix says.
+    let heavy = lift(&[
+        "--gravity",
+        "0,0,-9.81",
+        "--link-stiffness",
+        "1e9,1e9",
+        "--joint-stiffness",
+        "Z=1e3",
+    ]);
+    let of = |i: usize| number(&heavy["gravity"]["forces"][i]);
+    let up = usize::from(of(1).abs() > of(0).abs());
+    let mass = number(&heavy["gravity"]["mass_matrix"][up][up]);
+    assert!((of(up).abs() - 9.81 * mass).abs() < 1e-9 * mass && of(1 - up).abs() < 1e-9);
+    let lowest = &heavy["stiffness"]["vibrations"][0];
+    let expected = (1e3 / mass).sqrt() / std::f64::consts::TAU;
+    assert!((number(&lowest["frequency"]) - expected).abs() < 1e-3 * expected, "{lowest} {mass}");
+    assert_eq!(lowest["frequency"], heavy["indices"]["natural_frequency"]);
 }
 
 /// The joints on the base hold the weight of all bodies, and springs do not change efforts that statics determine.

@@ -112,3 +112,36 @@ fn wrong_drives_and_flags_are_told() {
         .fails_with_one_line(2, &["--gravity", "--efforts"]);
     assert_eq!(folder.names(), ["lift.toml", "up.toml", "wrong.toml"]);
 }
+
+/// The lift with a largest effort moves 7 kg against 29.43 N of weight and 11 N of dry friction.
+#[test]
+fn the_fastest_timing_keeps_the_largest_effort() {
+    let folder = Folder::new();
+    let motion = folder.write("up.toml", MOTION);
+    let lift = |effort: &str| {
+        let text =
+            LIFT.replace("gear = \"gear\"", &format!("gear = \"gear\", max_effort = {effort}"));
+        folder.write(&format!("lift{effort}.toml"), text)
+    };
+    let run = |effort: &str, more: &[&str]| {
+        let of = ["trajectory", &lift(effort), "--motion", &motion, "--time-optimal"];
+        opm(&[&of[..], more].concat())
+    };
+    let json = run("80", &["--efforts", "--format", "json"]).json();
+    let peak = json["efforts"]["S"]["peak"].as_f64().unwrap();
+    assert!(peak <= 80.0 * (1.0 + 1e-9) && peak > 79.0, "{peak}");
+    // Speeding up and slowing down; viscous friction is some half a newton.
+    let each = [80.0 - 40.43, 80.0 + 40.43].map(|force: f64| 7.0 / force);
+    let expected = (0.2 * (each[0] + each[1])).sqrt();
+    let duration = json["duration"].as_f64().unwrap();
+    assert!((duration / expected - 1.0).abs() < 0.02, "{duration} {expected}");
+    let heavy = run("40", &[]);
+    assert_eq!(heavy.code, Some(1));
+    let said =
+        "S needs 40.4300 N against weight, load and dry friction, more than its max_effort of 40 N";
+    assert!(heavy.stderr.contains(said), "{}", heavy.stderr);
+    assert_eq!(run("40", &["--gravity", "0,0,0"]).code, Some(0));
+    let unused = opm(&["trajectory", &lift("80"), "--motion", &motion, "--gravity", "0,0,0"]);
+    assert_eq!(unused.code, Some(2));
+    assert!(unused.stderr.contains("nothing uses it"), "{}", unused.stderr);
+}
