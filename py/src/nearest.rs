@@ -1,6 +1,7 @@
 //! The nearest poses in reach to poses that are not.
 
 use crate::arguments;
+use crate::columns::tabled;
 use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
@@ -19,9 +20,15 @@ pub struct NearestReachable {
     distance: Py<PyArrayDyn<f64>>,
     /// The characteristic length by which angles are multiplied, metres.
     length: f64,
+    /// Names along the last axis of `poses`.
+    pose_names: Vec<String>,
+    /// The labels of the rows of poses, if they were given as a data frame of pandas; None otherwise.
+    index: Option<Py<PyAny>>,
 }
 
-pickled!(NearestReachable { poses, distance, length });
+tabled!(NearestReachable);
+
+pickled!(NearestReachable { poses, distance, length, pose_names, index });
 
 #[pymethods]
 impl NearestReachable {
@@ -112,6 +119,8 @@ impl Manipulator {
             poses: poses.frozen(&tables.table(0), &[width])?,
             distance: poses.frozen(&tables.table(1), &[])?,
             length,
+            pose_names: self.pose_names().into_iter().map(str::to_owned).collect(),
+            index: poses.index(py),
         })
     }
 }

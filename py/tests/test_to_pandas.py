@@ -23,6 +23,7 @@ CALLS = {
     "accuracy": lambda m, p: m.accuracy(p, actuators=(2e-5, 2e-5), clearance=(2e-5, None)),
     "samples": lambda m, p: m.accuracy(p, actuators=(2e-5, 2e-5), samples=5).samples,
     "parameter_jacobian": lambda m, p: m.parameter_jacobian(p),
+    "nearest_reachable": lambda m, p: m.nearest_reachable(p),
 }
 
 
@@ -39,6 +40,8 @@ def test_rows_keep_their_labels_and_numbers_their_places(name, call):
     own = [n for n in vars(type(found)) if isinstance(getattr(found, n), np.ndarray) and n not in ("sizes", "pair")]
     for part in own:
         columns = [column for column in frame if column == part or column.startswith(f"{part}.")]
+        if type(found) is opm.NearestReachable and part == "poses":
+            columns = [c.name for c in m.task_coordinates]
         if type(found) is opm.Solutions:
             columns = {"joints": found.joint_names, "imaginary": found.imaginary_names}.get(part, [part])
         array = getattr(found, part)

@@ -62,6 +62,7 @@ _AXES: dict[str, dict[str, tuple[str | list[str], ...]]] = {
     },
     "AccuracySamples": {"deviations": ("pose_names",), "misfit_length": ("joints",), "misfit_angle": ("joints",)},
     "ParameterJacobian": {"joints": ("joint_names", "parameters"), "pose": ("pose_names", "parameters")},
+    "NearestReachable": {"poses": ("pose_names",)},
     "Nearest": {"poses": ("pose_names",), "rotation": (["x", "y", "z"],), "translation": (["x", "y", "z"],)},
 }
 
@@ -107,7 +108,7 @@ def _at_poses(found: Any, kind: str, own: list[str], pd: Any) -> Any:
         known = columns.pop("pair")
         for end, label in enumerate(("one", "other")):
             columns[label] = [None if pair < 0 else found.pairs[pair][end] for pair in known]
-    if kind == "Nearest":
+    if kind in ("Nearest", "NearestReachable"):
         columns = {name.removeprefix("poses."): column for name, column in columns.items()}
     return pd.DataFrame(columns, index=_rows(found, lead, pd))
 
