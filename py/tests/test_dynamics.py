@@ -65,7 +65,7 @@ def test_shapes_names_and_threads():
         (([0, 0, 0], [0, 0]), "rates has shape"),
         (([0, np.nan, 0], [0, 0, 0]), "NaN is among efforts"),
         (({"Q9": 1.0}, [0, 0, 0]), "efforts has a column 'Q9'"),
-        ((np.zeros((2, 3)), [0, 0, 0]), "2 rows of efforts, expected 1, or one"),
+        ((np.zeros((2, 3)), np.zeros((4, 3))), "2 rows of efforts, expected 4 as of poses, or one"),
     ],
 )
 def test_wrong_arguments_are_named(arguments, message):

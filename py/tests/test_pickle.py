@@ -32,6 +32,7 @@ def objects(manipulator):
         m.singularity(home),
         m.analyze(home, wrench=[1, 2, 3, 4, 5, 6]),
         m.nearest(m.transform(home)),
+        m.nearest_reachable(home),
         m.accuracy(home, actuators=(20e-6, 20e-6)),
         m.parameter_jacobian(home, parameters=["leg1.h"]),
         m.accuracy(home, actuators=(20e-6, 20e-6), samples=10, seed=1).samples,

@@ -186,7 +186,7 @@ def odd_calls():
     followed = opm_kinematics.trajectory(m, "plano-spherical-sinusoids", rate=5)
     swept = opm_kinematics.sweep(m, x=(-0.1, 0.1, 5), xi=(-0.1, 0.1, 3))
     whole = {
-        "poses": m.home, "rates": m.home, "joints": np.zeros(5), "transforms": np.eye(4), "values": [0.1], "legs": m.screws,
+        "poses": m.home, "rates": m.home, "accelerations": m.home, "efforts": np.zeros(5), "joints": np.zeros(5), "transforms": np.eye(4), "values": [0.1], "legs": m.screws,
         "path": "none.mcap", "text": m.text, "motion": "plano-spherical-sinusoids", "manipulator": m, "coordinates": "tilt-torsion",
         "measurements": {}, "over": {"x": (-0.1, 0.1)}, "shape": "disc", "start": m.home, "goal": m.home, "changes": {},
         "name": "a", "kind": "revolute", "actuated": [[True] * len(rows) for rows in m.screws.values()],

@@ -32,6 +32,8 @@ const STALLED: f64 = 0.99;
 /// A singular value that is zero at home, but not in general, grows with the distance from home.
 /// One of this size is neither rounding nor the zero at home itself.
 const CLEARLY_NONZERO: f64 = 3.0 * TOLERANCE;
+/// A singular value at home up to this is the rounding of numbers with all their digits.
+const EXACT: f64 = 1e-10;
 /// A singular value at home below this share of what it is nearby is zero. A home that is off a singular pose by an
 /// angle of 1e-4 has a share of some 3e-4, since poses nearby are off by some 0.3; what is rounded to nine digits has
 /// less than 1e-7.
@@ -208,13 +210,18 @@ fn largest<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
 impl Nearby {
     /// Poses near home, whose first-order kinematics are `home`.
     pub fn new(linkage: &Linkage, home: &FirstOrder) -> Self {
-        let first = first_motions(linkage, home);
-        let samples = if first.is_empty() { 0 } else { SAMPLES };
-        let found = (0..samples).filter_map(|sample| nearby(linkage, &first, sample));
         let (mut coordinates, mut poses) = (None, vec![]);
-        for (own, pose) in found {
-            coordinates.get_or_insert(own);
-            poses.push(linkage.first_order(&pose));
+        // A home that is nearly singular has motions to within the tolerance that lead nowhere: then those that are exact.
+        for tolerance in [TOLERANCE, EXACT] {
+            let first = first_motions(linkage, home, tolerance);
+            let samples = if first.is_empty() { 0 } else { SAMPLES };
+            for (own, pose) in (0..samples).filter_map(|sample| nearby(linkage, &first, sample)) {
+                coordinates.get_or_insert(own);
+                poses.push(linkage.first_order(&pose));
+            }
+            if !poses.is_empty() {
+                break;
+            }
         }
         Self { coordinates, generic: Generic::new(linkage, &poses) }
     }
@@ -241,9 +248,13 @@ impl Nearby {
     }
 }
 
-/// The motions of first order at home, rates of the coordinates and a twist.
-fn first_motions(linkage: &Linkage, home: &FirstOrder) -> DMatrix<f64> {
-    linkage.rates(&linkage.home(), AtHome::new(home, None).motions)
+/// The motions of first order at home, rates of the coordinates and a twist. Singular values up to `tolerance` are zero.
+fn first_motions(linkage: &Linkage, home: &FirstOrder, tolerance: f64) -> DMatrix<f64> {
+    let count = |values: &[f64]| values.iter().filter(|&&value| value > tolerance).count();
+    let ranks: Vec<usize> = home.legs().map(count).collect();
+    let ties = home.ties(&ranks);
+    let motions = home.motions(&ranks, &ties, count(ties.values()));
+    linkage.rates(&linkage.home(), motions)
 }
 
 /// The number of values that are clearly not zero.
@@ -296,7 +307,7 @@ pub(crate) fn assembled(mechanism: &Mechanism) -> Vec<Isometry3<f64>> {
     /// How large the first-order motions are: radians, and shares of the size.
     const SIZES: [f64; 12] = [0.3, 0.3, 0.3, 0.3, 0.2, 0.2, 0.2, 0.2, 0.1, 0.1, 0.1, 0.1];
     let Ok(linkage) = Linkage::new(mechanism) else { return Vec::new() };
-    let kernel = first_motions(&linkage, &linkage.first_order(&linkage.home()));
+    let kernel = first_motions(&linkage, &linkage.first_order(&linkage.home()), TOLERANCE);
     let frame = linkage.frame;
     let found = SIZES.iter().enumerate().filter_map(|(sample, size)| {
         let motion = random(&kernel, sample);
