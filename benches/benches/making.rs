@@ -12,7 +12,7 @@ fn main() {
     let mechanisms = NAMES.map(|name| (name, example(name).mechanism().clone()));
     let contender = |(name, mechanism): &(&'static str, Mechanism)| {
         let mechanism = mechanism.clone();
-        Contender::new(*name, 1, move || {
+        Contender::new(name, 1, move || {
             black_box(Manipulator::new(black_box(&mechanism).clone()))
                 .expect("a shipped mechanism");
         })

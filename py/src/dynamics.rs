@@ -9,9 +9,10 @@ use crate::setup;
 use crate::velocity::characteristic_length;
 use nalgebra::DVector;
 use numpy::PyArrayDyn;
-use opm_analysis::{Dynamics, Gravity, Setup, Springs};
+use opm_analysis::{Dynamics, Gravity, Setup, Springs, State};
 use opm_core::manipulator::Mode;
 use pyo3::prelude::*;
+use pyo3::types::{PyEllipsis, PySlice};
 use std::num::NonZeroUsize;
 
 /// Rows that belong to poses, and what they are called in messages.
@@ -70,7 +71,7 @@ impl Manipulator {
         let (mode, gravity) = (self.mode(mode)?, setup::gravity(None, density)?);
         let asked = Asked { poses, others: [], gravity, mode, threads };
         let count = self.pose_names().len();
-        self.each_pose(py, &asked, &[count, count], |dynamics, []| {
+        self.each_pose(py, &asked, &[count, count], |dynamics, _, []| {
             // Row by row, as NumPy has it.
             Some(dynamics.mass_matrix()?.transpose().as_slice().to_vec())
         })
@@ -110,7 +111,7 @@ impl Manipulator {
         let (mode, gravity) = (self.mode(mode)?, setup::gravity(None, density)?);
         let asked = Asked { poses, others: [(rates, "rates")], gravity, mode, threads };
         let count = self.pose_names().len();
-        self.each_pose(py, &asked, &[count], |dynamics, [rates]| {
+        self.each_pose(py, &asked, &[count], |dynamics, _, [rates]| {
             dynamics.bias(rates).map(|forces| forces.as_slice().to_vec())
         })
     }
@@ -149,7 +150,7 @@ impl Manipulator {
         let (mode, gravity) = (self.mode(mode)?, setup::gravity(gravity, density)?);
         let asked = Asked { poses, others: [], gravity, mode, threads };
         let count = self.pose_names().len();
-        self.each_pose(py, &asked, &[count], |dynamics, []| {
+        self.each_pose(py, &asked, &[count], |dynamics, _, []| {
             dynamics.gravity().map(|forces| forces.as_slice().to_vec())
         })
     }
@@ -184,7 +185,7 @@ impl Manipulator {
         let (mode, gravity) = (self.mode(mode)?, Gravity::default());
         let asked = Asked { poses, others: [(rates, "rates")], gravity, mode, threads };
         let count = self.pose_names().len();
-        self.each_pose(py, &asked, &[count], |dynamics, [rates]| {
+        self.each_pose(py, &asked, &[count], |dynamics, _, [rates]| {
             dynamics.friction(rates).map(|forces| forces.as_slice().to_vec())
         })
     }
@@ -232,7 +233,7 @@ impl Manipulator {
         let others = [(rates, "rates"), (accelerations, "accelerations")];
         let asked = Asked { poses, others, gravity, mode, threads };
         let count = self.inner.actuated().len();
-        self.each_pose(py, &asked, &[count], |dynamics, [rates, accelerations]| {
+        self.each_pose(py, &asked, &[count], |dynamics, _, [rates, accelerations]| {
             let found = dynamics.efforts(rates, accelerations).actuated;
             Some(found.into_iter().map(|effort| effort.unwrap_or(f64::NAN)).collect())
         })
@@ -290,9 +291,82 @@ impl Manipulator {
         let others = [(rates, "rates"), (efforts, EFFORTS)];
         let asked = Asked { poses, others, gravity, mode, threads };
         let count = self.pose_names().len();
-        self.each_pose(py, &asked, &[count], |dynamics, [rates, efforts]| {
+        self.each_pose(py, &asked, &[count], |dynamics, _, [rates, efforts]| {
             dynamics.forward(rates, efforts).map(|found| found.as_slice().to_vec())
         })
+    }
+
+    /// The linear model for controllers at a state: ``d/dt [δx, δx'] = A @ [δx, δx'] + B @ δefforts``.
+    ///
+    /// Dry friction is left out of it. `A` is found by differences, to some ten digits.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : (..., d) array_like, or mapping
+    ///     As for :meth:`inverse`.
+    /// rates : (..., d) array_like, or mapping
+    ///     As for :meth:`bias`.
+    /// efforts : (..., a) array_like, or mapping
+    ///     As for :meth:`forward_dynamics`; those of :meth:`inverse_dynamics` hold the state.
+    /// gravity : (3,) array_like, optional
+    ///     As for :meth:`gravity`.
+    /// density : float, optional
+    ///     As for :meth:`mass_matrix`.
+    /// mode : str
+    ///     ``"home"``, or a sign for every two-valued choice.
+    /// threads : int, optional
+    ///     1 to 1024; the result does not depend on it. One for each processor if not given.
+    ///
+    /// Returns
+    /// -------
+    /// A : (..., 2 d, 2 d) ndarray
+    ///     SI units and radians. NaN where :meth:`forward_dynamics` is.
+    /// B : (..., 2 d, a) ndarray
+    ///     Likewise.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np, opm_kinematics as opm
+    /// >>> m = opm.examples.load("delta")
+    /// >>> rest = np.zeros(3)
+    /// >>> A, B = m.linear_model(m.home, rest, m.inverse_dynamics(m.home, rest, rest))
+    /// >>> A.shape, B.shape
+    /// ((6, 6), (6, 3))
+    #[pyo3(signature = (
+        poses, rates, efforts, *, gravity = None, density = None, mode = "home", threads = None
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn linear_model<'py>(
+        &self,
+        py: Python<'py>,
+        poses: &Bound<'py, PyAny>,
+        rates: &Bound<'py, PyAny>,
+        efforts: &Bound<'py, PyAny>,
+        gravity: Option<&Bound<'py, PyAny>>,
+        density: Option<f64>,
+        mode: &str,
+        #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let (mode, gravity) = (self.mode(mode)?, setup::gravity(gravity, density)?);
+        let others = [(rates, "rates"), (efforts, EFFORTS)];
+        let asked = Asked { poses, others, gravity, mode, threads };
+        let (states, inputs) = (2 * self.pose_names().len(), self.inner.actuated().len());
+        let both =
+            self.each_pose(py, &asked, &[states, states + inputs], |dynamics, pose, given| {
+                let [rates, efforts] = given.map(DVector::clone);
+                let state = State { pose: DVector::from_column_slice(pose), rates };
+                let model = dynamics.linear_model(&state, mode, &efforts).ok()??;
+                // Row by row: A, then B.
+                let row = |i: usize| {
+                    model.a.row(i).iter().chain(model.b.row(i).iter()).copied().collect()
+                };
+                Some((0..states).flat_map(|i| -> Vec<f64> { row(i) }).collect())
+            })?;
+        let both = both.into_any();
+        let columns = |from: usize, to: usize| {
+            both.get_item((PyEllipsis::get(py), PySlice::new(py, from as isize, to as isize, 1)))
+        };
+        Ok((columns(0, states)?, columns(states, states + inputs)?))
     }
 }
 
@@ -306,7 +380,7 @@ impl Manipulator {
         py: Python<'py>,
         asked: &Asked<'_, 'py, N>,
         shape: &[usize],
-        found: impl Fn(&mut Dynamics<'_>, [&DVector<f64>; N]) -> Option<Vec<f64>> + Sync,
+        found: impl Fn(&mut Dynamics<'_>, &[f64], [&DVector<f64>; N]) -> Option<Vec<f64>> + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let mut poses = self.poses(asked.poses)?;
         let others = asked.others.iter().map(|(given, what)| self.numbers(given, what));
@@ -346,7 +420,7 @@ impl Manipulator {
                     let row = others[i].row(row.min(others[i].count - 1));
                     DVector::from_column_slice(row)
                 });
-                if let Some(found) = found(dynamics, own.each_ref()) {
+                if let Some(found) = found(dynamics, poses.row(row), own.each_ref()) {
                     out.copy_from_slice(&found);
                 }
                 Ok([true; 2])

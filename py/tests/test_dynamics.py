@@ -45,6 +45,29 @@ def test_the_bias_is_what_changes_of_the_mass_matrix_need(name):
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_the_linear_model_is_what_small_changes_do(name):
+    m, poses, rates, _ = drawn(name)
+    efforts = m.inverse_dynamics(poses, rates, np.zeros_like(rates))
+    A, B = m.linear_model(poses, rates, efforts)
+    d, step = poses.shape[1], 1e-6
+    assert A.shape == (len(poses), 2 * d, 2 * d) and B.shape == (len(poses), 2 * d, efforts.shape[1])
+    expected = np.zeros((len(poses), 2 * d, 2 * d + efforts.shape[1]))
+    expected[:, :d, d : 2 * d] = np.eye(d)
+    for j in range(expected.shape[2]):
+        change = step * np.eye(expected.shape[2])[j]
+        ends = [
+            m.forward_dynamics(poses + s * change[:d], rates + s * change[d : 2 * d], efforts + s * change[2 * d :])
+            for s in (1, -1)
+        ]
+        expected[:, d:, j] = (ends[0] - ends[1]) / (2 * step)
+    size = np.abs(expected).max(axis=(1, 2), keepdims=True)
+    assert (np.abs(np.concatenate([A, B], axis=2) - expected) < 1e-5 * size).all()
+    np.testing.assert_array_equal(m.linear_model(poses[0], rates[0], efforts[0])[0], A[0])
+    A, B = m.linear_model(poses * np.nan, rates, efforts)
+    assert np.isnan(A).all() and np.isnan(B).all()
+
+
 def test_shapes_names_and_threads():
     m, poses, rates, _ = drawn("plano-spherical-5dof")
     one = m.forward_dynamics(poses[0], rates[0], np.zeros(5))

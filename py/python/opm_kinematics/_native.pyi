@@ -448,6 +448,17 @@ class Manipulator:
         mode: str = "home",
         threads: int | None = None,
     ) -> NDArray[np.float64]: ...
+    def linear_model(
+        self,
+        poses: _Rows,
+        rates: _Rows,
+        efforts: _Rows,
+        *,
+        gravity: ArrayLike | None = None,
+        density: float | None = None,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     def singularity(
         self, poses: _Rows, *, mode: str = "home", length: float | None = None, threads: int | None = None
     ) -> Singularity: ...
