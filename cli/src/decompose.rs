@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 use opm_core::Quantity;
 use opm_core::decomposition::mobility::Mobility;
 use opm_core::decomposition::{
-    Applies, Decomposition, Freedom, JointMiss, check_actuators, slightly_off, survey,
+    Applies, Decomposition, Freedom, JointMiss, check_actuators, doubts, slightly_off, survey,
 };
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::manipulator::{CompileError, Manipulator};
@@ -146,7 +146,7 @@ fn warn(output: &Output, loaded: &Loaded, warnings: &[String]) {
 
 /// What is wrong with the actuators, and what is probably a mistake in the file.
 fn warnings_of(loaded: &Loaded, report: &Mobility) -> Vec<String> {
-    let doubts = load::other_doubts(&loaded.file.mechanism, report);
+    let doubts = doubts(&loaded.file.mechanism);
     actuator_warnings(loaded, report).into_iter().chain(doubts).collect()
 }
 

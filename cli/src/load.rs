@@ -9,9 +9,10 @@ use crate::target::refuse_inputs;
 use crate::text::chain;
 use crate::unitless;
 use opm_core::Quantity;
-use opm_core::decomposition::mobility::{Mobility, mobility};
+use opm_core::decomposition::mobility::mobility;
 use opm_core::decomposition::{
-    DecomposeError, JointMiss, NearMiss, Snapped, doubts, nearly, slightly_off, snap,
+    DecomposeError, JointMiss, NearMiss, Snapped, doubts, missing_motors, nearly, slightly_off,
+    snap,
 };
 use opm_core::group::subspace::SubspaceClass;
 use opm_core::linkage::Linkage;
@@ -27,9 +28,6 @@ use std::path::{Path, PathBuf};
 
 /// The tolerance that messages offer, over the one that just accepts a mechanism.
 const MARGIN: f64 = 1.01;
-
-/// What the doubt about missing motors begins with: errors about actuators have it at their end.
-const MOTORS: &str = "too few motors";
 
 /// A mechanism file that was read.
 #[derive(Clone)]
@@ -214,8 +212,7 @@ impl Loaded {
             return;
         }
         let Ok(report) = mobility(&self.file.mechanism) else { return };
-        let doubts = other_doubts(&self.file.mechanism, &report);
-        for text in report.parallel_home().into_iter().chain(doubts) {
+        for text in report.parallel_home().into_iter().chain(doubts(&self.file.mechanism)) {
             output.warn(format_args!("{}: {text}", self.label));
         }
     }
@@ -256,8 +253,8 @@ impl Loaded {
     /// Which motors are missing, for the end of an error about actuators.
     pub fn motors_hint(&self) -> String {
         let mechanism = &self.file.mechanism;
-        let doubts = mobility(mechanism).map(|report| doubts(mechanism, &report));
-        let missing = doubts.into_iter().flatten().find(|text| text.starts_with(MOTORS));
+        let missing =
+            mobility(mechanism).ok().and_then(|report| missing_motors(mechanism, &report));
         missing.map_or_else(String::new, |text| format!("; {text}"))
     }
 
@@ -324,14 +321,6 @@ impl Loaded {
         let inputs = self.path.as_deref().into_iter().chain(others.iter().copied());
         refuse_inputs("--output", output, inputs)
     }
-}
-
-/// What is probably a mistake in a file, but for missing motors: these are part of the error about them.
-pub fn other_doubts(
-    mechanism: &Mechanism,
-    report: &Mobility,
-) -> impl Iterator<Item = String> + use<> {
-    doubts(mechanism, report).into_iter().filter(|text| !text.starts_with(MOTORS))
 }
 
 /// A loop with another link as the platform, if only so it has a closed form, and the joint that carries that link.

@@ -67,29 +67,26 @@ struct Rows<R> {
 
 impl<R: Read> Read for Rows<R> {
     fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
-        let read = self.row.read(out)?;
-        if read > 0 || out.is_empty() {
-            return Ok(read);
+        loop {
+            let read = self.row.read(out)?;
+            if read > 0 || out.is_empty() {
+                return Ok(read);
+            }
+            let mut line = Vec::new();
+            // A line that is too long is refused by who reads the rows.
+            if self.lines.by_ref().take(2 * LOOKED_AT).read_until(b'\n', &mut line)? == 0 {
+                return Ok(0);
+            }
+            let mut row = Vec::new();
+            if !is_passed_over(&line) {
+                let words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+                row = words.collect::<Vec<_>>().join(&b',');
+            }
+            if line.last() == Some(&b'\n') {
+                row.push(b'\n');
+            }
+            self.row = Cursor::new(row);
         }
-        let mut line = Vec::new();
-        // A line that is too long is refused by who reads the rows.
-        if self.lines.by_ref().take(2 * LOOKED_AT).read_until(b'\n', &mut line)? == 0 {
-            return Ok(0);
-        }
-        let ended = line.last() == Some(&b'\n');
-        let mut row = Vec::new();
-        if !is_passed_over(&line) {
-            let words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-            row = words.collect::<Vec<_>>().join(&b',');
-        }
-        if ended {
-            row.push(b'\n');
-        }
-        if row.is_empty() {
-            return self.read(out);
-        }
-        self.row = Cursor::new(row);
-        self.row.read(out)
     }
 }
 
@@ -110,6 +107,15 @@ mod tests {
         assert_eq!(csv, "t,x,y,z,qx,qy,qz,qw\n\n0,1,2,3,0,0,0,1\n\n\n1.5,1,2,3,0,0,0,1\n");
         assert_eq!(before, 1);
         assert_eq!(read("0 1 2 3 0 0 0 1").0, "t,x,y,z,qx,qy,qz,qw\n0,1,2,3,0,0,0,1");
+    }
+
+    #[test]
+    fn a_blank_line_of_megabytes_is_passed_over() {
+        let rows = format!("0 1 2 3 0 0 0 1\n{}\n1 1 2 3 0 0 0 1\n", " ".repeat(1 << 26));
+        let (mut table, _) = as_csv(Box::new(std::io::Cursor::new(rows))).unwrap();
+        let mut csv = String::new();
+        table.read_to_string(&mut csv).unwrap();
+        assert_eq!(csv, "t,x,y,z,qx,qy,qz,qw\n0,1,2,3,0,0,0,1\n\n1,1,2,3,0,0,0,1\n");
     }
 
     #[test]

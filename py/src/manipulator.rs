@@ -662,8 +662,7 @@ impl Manipulator {
     /// The same, after warnings where home is a parallel singularity, and of what is probably a mistake in the file.
     pub fn warned(self, py: Python<'_>) -> PyResult<Self> {
         let Ok(report) = mobility(self.inner.mechanism()) else { return Ok(self) };
-        let doubts = doubts(self.inner.mechanism(), &report);
-        for text in report.parallel_home().into_iter().chain(doubts) {
+        for text in report.parallel_home().into_iter().chain(doubts(self.inner.mechanism())) {
             let message = CString::new(format!("{}: {text}", self.label))?;
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
         }

@@ -5,7 +5,7 @@ use crate::error::wrong;
 use crate::given::Given;
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyEllipsis, PySlice, PyTuple};
 
 /// Displacements as rows of 16: `(..., 4, 4)` homogeneous matrices; what has them as `as_matrix()`, such as a `RigidTransform` of
 /// SciPy; or a pair of positions and rotations.
@@ -73,8 +73,8 @@ fn pair<'py>(
         })?
         .extract()?;
     let matrices = numpy.call_method1("zeros", ([&lead[..], &[4, 4]].concat(),))?;
-    let all = pyo3::types::PyEllipsis::get(given.py());
-    let three = pyo3::types::PySlice::new(given.py(), 0, 3, 1);
+    let all = PyEllipsis::get(given.py());
+    let three = PySlice::new(given.py(), 0, 3, 1);
     matrices.set_item((all, &three, &three), turns)?;
     matrices.set_item((all, &three, 3), places)?;
     matrices.set_item((all, 3, 3), 1.0)?;

@@ -2,10 +2,10 @@
 
 use crate::arguments;
 use crate::columns::tabled;
-use crate::error::wrong;
 use crate::manipulator::Manipulator;
 use crate::pickle::pickled;
 use crate::rows::{Rows, Tables};
+use crate::velocity::characteristic_length;
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -92,12 +92,7 @@ impl Manipulator {
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<NearestReachable> {
         let mode = if mode == "any" { None } else { Some(self.mode(mode)?) };
-        let length = length.unwrap_or(self.inner.characteristic_length());
-        if !(length > 0.0 && length.is_finite()) {
-            return Err(wrong(format!(
-                "length is {length:?}, expected a positive length in metres"
-            )));
-        }
+        let length = characteristic_length(&self.inner, length)?;
         let poses = self.poses(poses)?;
         let poses = Rows::new(&poses)?;
         let (width, none) = (self.pose_names().len(), || ());

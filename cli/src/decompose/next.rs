@@ -76,7 +76,7 @@ fn changes(given: &MechanismArgs) -> String {
 
 /// A pose a little away from home in one coordinate, if it is in reach there; else home.
 fn near_home(manipulator: &Manipulator, loaded: &Loaded) -> String {
-    /// Steps that are tried, in units of the file's angle or length that are left round by them.
+    /// Steps that are tried, shares of the mechanism's size or radians.
     const SHARES: [f64; 3] = [0.05, -0.05, 0.01];
     let Some(first) = manipulator.task_coordinates().first() else { return "--pose ''".to_owned() };
     let units = loaded.file.units;

@@ -9,6 +9,7 @@ use crate::pose::Number;
 use opm_core::Quantity;
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::reach::NearestPose;
+use opm_study::characteristic_length;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -25,13 +26,7 @@ pub(super) enum Nearest<'a> {
 /// The characteristic length by which angles are multiplied, metres.
 pub fn length(args: &IkArgs, manipulator: &Manipulator) -> Result<f64, Failure> {
     let given = args.length.map(Number::characteristic_length).transpose()?;
-    let length = given.unwrap_or(manipulator.characteristic_length());
-    match length > 0.0 && length.is_finite() {
-        true => Ok(length),
-        false => {
-            Err(Failure::flag("--length", format!("{length:?} m, expected a positive length")))
-        }
-    }
+    Ok(characteristic_length(given, manipulator)?)
 }
 
 /// The nearest pose to one in these modes: itself, if it is in reach.

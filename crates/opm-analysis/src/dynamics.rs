@@ -11,7 +11,7 @@
 //! and Control 104, 1982, method 1). The virtual work of the inverse dynamics is that for independent velocities of the
 //! platform; `E` gives these for rates of the task coordinates, so that the forces are `Eᵀ` times the work.
 
-use crate::efforts::{Balance, Efforts};
+use crate::efforts::Efforts;
 use crate::setup::{Loads, Setup};
 use crate::statics::{Statics, Velocity};
 use crate::weights::{JointMotion, Part};
@@ -66,7 +66,7 @@ pub struct Dynamics<'a> {
 impl<'a> Dynamics<'a> {
     /// The dynamics of a manipulator with the gravity of a setup ([`Gravity::default`](crate::Gravity) if it has none) and its load.
     pub fn new(manipulator: &'a Manipulator, setup: &Setup) -> Self {
-        let setup = Setup { gravity: Some(setup.gravity.unwrap_or_default()), ..setup.clone() };
+        let setup = setup.heavy();
         let (count, actuated) =
             (manipulator.task_coordinates().len(), manipulator.actuated().len());
         Self {
@@ -166,11 +166,7 @@ impl<'a> Dynamics<'a> {
     pub fn efforts(&mut self, rates: &DVector<f64>, accelerations: &DVector<f64>) -> Efforts {
         match self.work(rates, accelerations, Part::All) {
             Some(work) => self.statics.efforts_for(&work),
-            None => Efforts {
-                balance: Balance::Singular,
-                actuated: vec![None; self.manipulator.actuated().len()],
-                imaginary: vec![None; self.manipulator.imaginary().len()],
-            },
+            None => Efforts::singular(self.manipulator),
         }
     }
 

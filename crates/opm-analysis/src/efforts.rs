@@ -13,6 +13,7 @@
 use crate::statics::{Statics, Velocity};
 use crate::wrench::Wrench;
 use nalgebra::{Vector3, Vector6};
+use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::leg::Section;
 
 /// Less than this share of a load's work for a motion that nothing holds is rounding.
@@ -48,6 +49,17 @@ pub struct Efforts {
     /// [`Manipulator::imaginary`](opm_core::Manipulator::imaginary); N and N m. `None` where an effort that it follows
     /// from is not known, and in a leg whose lower section constrains the platform.
     pub imaginary: Vec<Option<f64>>,
+}
+
+impl Efforts {
+    /// Those at a serial singularity: none is known.
+    pub(crate) fn singular(manipulator: &Manipulator) -> Self {
+        Self {
+            balance: Balance::Singular,
+            actuated: vec![None; manipulator.actuated().len()],
+            imaginary: vec![None; manipulator.imaginary().len()],
+        }
+    }
 }
 
 /// The efforts of one actuated coordinate for unit loads, and where they are largest.

@@ -61,7 +61,7 @@ impl<'a> Limited<'a> {
         let each = manipulator.actuated().iter().enumerate();
         let each = each.filter_map(|(i, &c)| Some((i, (c, coordinates[c].max_effort?))));
         let (actuated, limits): (Vec<_>, Vec<_>) = each.unzip();
-        let setup = Setup { gravity: Some(setup.gravity.unwrap_or_default()), ..setup.clone() };
+        let setup = setup.heavy();
         (!limits.is_empty()).then(|| Self {
             loads: Loads::of(manipulator, &setup),
             statics: Statics::new(manipulator, setup.length),

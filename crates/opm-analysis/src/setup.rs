@@ -1,6 +1,6 @@
 //! What a pose is judged by besides the pose itself: a load, springs, a length.
 
-use crate::efforts::{Balance, Efforts};
+use crate::efforts::Efforts;
 use crate::springs::Springs;
 use crate::statics::{Statics, Velocity};
 use crate::weights::{Gravity, JointMotion, Part, Weights};
@@ -24,6 +24,11 @@ impl Setup {
     /// No load and no springs, with a characteristic length, metres.
     pub fn new(length: f64) -> Self {
         Self { length, load: None, gravity: None, springs: None }
+    }
+
+    /// The same with weights: [`Gravity::default`](crate::Gravity) if there is none.
+    pub(crate) fn heavy(&self) -> Self {
+        Self { gravity: Some(self.gravity.unwrap_or_default()), ..self.clone() }
     }
 
     /// Whether anything acts on the mechanism.
@@ -165,11 +170,7 @@ impl<'a> Loads<'a> {
         let regular = statics.is_regular();
         match regular.then(|| self.work_in(statics, at, motion)).flatten() {
             Some(work) => statics.efforts_for(&work),
-            None => Efforts {
-                balance: Balance::Singular,
-                actuated: vec![None; self.manipulator.actuated().len()],
-                imaginary: vec![None; self.manipulator.imaginary().len()],
-            },
+            None => Efforts::singular(self.manipulator),
         }
     }
 }

@@ -116,19 +116,7 @@ fn efforts_are_those_of_lagranges_equations() {
 /// A mass that hangs from a slider needs m (g + a), and one that a crank turns about its centre needs I α.
 #[test]
 fn a_weight_on_a_slider_needs_newtons_second_law() {
-    let text = r#"
-format = 1
-name = "lift"
-units = { length = "m", angle = "rad" }
-[platform]
-point = [0, 0, 0]
-[bodies]
-masses = { platform = 3 }
-[[leg]]
-name = "leg{i}"
-pattern = { count = 2 }
-joints = [{ name = "s{i}", type = "prismatic", axis = [0, 0, 1], point = [1, 0, 0], actuated = true }]
-"#;
+    let text = include_str!("lift.toml");
     let m = Manipulator::read(text).unwrap();
     let gravity = Gravity { acceleration: -9.81 * Vector3::z(), density: Density::default() };
     let setup = Setup { gravity: Some(gravity), ..Setup::new(1.0) };

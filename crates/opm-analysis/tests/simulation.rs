@@ -56,20 +56,9 @@ fn energy_is_kept() {
 /// A slider with viscous friction: its speed decays by `exp(-d t / m)`.
 #[test]
 fn friction_brakes() {
-    let text = r#"
-format = 1
-name = "lift"
-units = { length = "m", angle = "rad" }
-[platform]
-point = [0, 0, 0]
-[bodies]
-masses = { platform = 3 }
-[[leg]]
-name = "leg{i}"
-pattern = { count = 2 }
-joints = [{ name = "s{i}", type = "prismatic", axis = [0, 0, 1], point = [1, 0, 0], actuated = true, viscous_friction = 3 }]
-"#;
-    let m = Manipulator::read(text).unwrap();
+    let drive = "actuated = true, viscous_friction = 3";
+    let text = include_str!("lift.toml").replace("actuated = true", drive);
+    let m = Manipulator::read(&text).unwrap();
     let weightless = Gravity { acceleration: Vector3::zeros(), ..Gravity::default() };
     let mut dynamics = Dynamics::new(&m, &Setup { gravity: Some(weightless), ..setup(&m) });
     let state = State { pose: numbers(1, |_| 0.0), rates: numbers(1, |_| 2.0) };

@@ -33,7 +33,7 @@ pub(crate) mod whole;
 #[cfg(test)]
 pub(crate) mod samples;
 
-pub use doubts::doubts;
+pub use doubts::{doubts, missing_motors};
 pub use height::{HeightMiss, HeightReason};
 pub use near::{JointMiss, NearMiss, Snapped, nearly, slightly_off, snap};
 pub use reorder::{OrderChange, Reordered};

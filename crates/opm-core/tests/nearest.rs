@@ -103,7 +103,8 @@ fn a_planar_3rrr_far_away_in_one_orientation() {
             }
         }
         let found = m.reach().nearest(&[wanted[0], wanted[1], 0.0], None, 1e3).unwrap().unwrap();
-        // The step is 48 µm long; a turn of the platform by what the length lets it gain less.
+        // The circles are compared at points that are 48 µm apart. A turn of the platform costs so much with this length that
+        // it gains less than that.
         assert!((found.distance - expected).abs() < 5e-5, "{angle}: {found:?}, {expected}");
         assert!(found.pose[2].abs() < 1e-5, "{found:?}");
     }

@@ -15,18 +15,16 @@ const IN_LINE: f64 = 0.05;
 /// Joints that are nearer than this share of the mechanism's size are in one place.
 const SAME: f64 = 1e-6;
 
-/// What is probably a mistake in a mechanism, in a sentence each; nothing in most. `report` is its mobility.
+/// What is probably a mistake in a mechanism, in a sentence each; nothing in most.
 ///
 /// * In a file in degrees, the limits of some angles, or cones, are at most 2: radians.
 /// * In a file in millimetres, centimetres or inches, the whole mechanism is smaller than a few of them: metres.
 /// * Two links are nearly in line at home, stretched or folded: home is next to a serial singularity.
-/// * The actuators do not control the platform, and other joints with motors would complete the set.
-pub fn doubts(mechanism: &Mechanism, report: &Mobility) -> Vec<String> {
+pub fn doubts(mechanism: &Mechanism) -> Vec<String> {
     let mut found = Vec::new();
     found.extend(narrow_limits(mechanism));
     found.extend(small_sizes(mechanism));
     found.extend(mechanism.legs.iter().filter_map(|leg| in_line(mechanism, leg)));
-    found.extend(missing_motors(mechanism, report));
     found
 }
 
@@ -156,8 +154,9 @@ fn in_line(mechanism: &Mechanism, leg: &Leg) -> Option<String> {
     None
 }
 
-/// The joints whose motors would complete the set, where the actuators do not control the platform.
-fn missing_motors(mechanism: &Mechanism, report: &Mobility) -> Option<String> {
+/// The joints whose motors would complete the set, in a sentence, where the actuators do not control the platform. `report` is the
+/// mechanism's mobility.
+pub fn missing_motors(mechanism: &Mechanism, report: &Mobility) -> Option<String> {
     check_actuators(report).err()?;
     // A single loop with one freedom needs no motor: it is a linkage, with any joint as its input.
     if mechanism.legs.len() == 2 && report.mobility == 1 {

@@ -33,7 +33,7 @@ impl Sense {
         let [rates, accelerations] = &mut self.largest;
         *rates = rates.max(rate.abs());
         *accelerations = accelerations.max(acceleration.abs());
-        // Within a second.
+        // A joint that has this acceleration for a second has a rate of the same number.
         let moves = rate.abs() > STILL * rates.max(*accelerations);
         let speeds = acceleration.abs() > STILL * *accelerations;
         let (rate, before) = match (moves, speeds, self.before) {
