@@ -33,6 +33,8 @@ pub struct Joint {
     pitch: Option<f64>,
     /// Whether a motor drives it.
     actuated: bool,
+    /// Whether it turns back what the joint before it turned: the two are the hinges of a parallelogram.
+    turns_back: bool,
     /// Names of its coordinates, as in `joints`.
     coordinates: Vec<String>,
     /// ``"m"`` or ``"rad"``.
@@ -67,6 +69,7 @@ pickled!(Joint {
     point,
     pitch,
     actuated,
+    turns_back,
     coordinates,
     units,
     home,
@@ -98,6 +101,7 @@ impl Joint {
             point: place(&joint.point),
             pitch,
             actuated: joint.actuated,
+            turns_back: joint.turns_back,
             coordinates: each().map(|c| c.name.clone()).collect(),
             units: each().map(|c| c.quantity.unit().to_owned()).collect(),
             home: each().map(|c| c.home).collect(),
@@ -148,6 +152,7 @@ impl Joint {
         let (x, y, z) = self.point;
         let mut joint = core::Joint::new(self.name.clone(), kind, axis, Point3::new(x, y, z));
         joint.actuated = self.actuated;
+        joint.turns_back = self.turns_back;
         let count = joint.coordinates.len();
         let lengths = [
             ("home", self.home.len()),
@@ -196,12 +201,13 @@ impl Joint {
 
     /// Sets one attribute.
     fn set(&mut self, key: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        const KEYS: [&str; 15] = [
+        const KEYS: [&str; 16] = [
             "axis",
             "axis2",
             "point",
             "pitch",
             "actuated",
+            "turns_back",
             "home",
             "limits",
             "max_rate",
@@ -223,6 +229,9 @@ impl Joint {
             "point" => self.point = given.vector()?.unwrap_or_default(),
             "pitch" => self.pitch = given.read("a number, or None", |value| value.extract())?,
             "actuated" => self.actuated = given.read("True or False", |value| value.extract())?,
+            "turns_back" => {
+                self.turns_back = given.read("True or False", |value| value.extract())?
+            }
             "home" => self.home = number_or(0.0)?,
             "limits" => {
                 let pair = |one: &Bound<'_, PyAny>| Ok(Some(one.extract::<[f64; 2]>()?.into()));
@@ -336,6 +345,8 @@ impl Joint {
     ///     Advance of a helical joint, metres per radian.
     /// actuated : bool
     ///     Whether a motor drives it.
+    /// turns_back : bool
+    ///     Whether it turns back what the joint before it turned: the two are the hinges of a parallelogram.
     /// home : float or sequence of float, optional
     ///     The value at home, metres or radians; one for each coordinate. Zero if not given.
     /// limits : (float, float) or sequence of them, optional
@@ -356,8 +367,8 @@ impl Joint {
     ///     The kind is unknown, or lacks an axis or a pitch.
     #[new]
     #[pyo3(signature = (
-        name, kind, *, axis = None, point = None, axis2 = None, pitch = None, actuated = false, home = None,
-        limits = None, max_rate = None, max_acceleration = None, max_effort = None, cone = None,
+        name, kind, *, axis = None, point = None, axis2 = None, pitch = None, actuated = false, turns_back = false,
+        home = None, limits = None, max_rate = None, max_acceleration = None, max_effort = None, cone = None,
         rotor_inertia = None, gear = None, viscous_friction = None, coulomb_friction = None
     ))]
     #[allow(clippy::too_many_arguments)]
@@ -369,6 +380,7 @@ impl Joint {
         axis2: Option<&Bound<'_, PyAny>>,
         pitch: Option<&Bound<'_, PyAny>>,
         actuated: bool,
+        turns_back: bool,
         home: Option<&Bound<'_, PyAny>>,
         limits: Option<&Bound<'_, PyAny>>,
         max_rate: Option<&Bound<'_, PyAny>>,
@@ -393,6 +405,7 @@ impl Joint {
             point: Vector::default(),
             pitch: None,
             actuated,
+            turns_back,
             coordinates: Vec::new(),
             units: Vec::new(),
             home: vec![0.0; count],

@@ -25,6 +25,7 @@ mod measure;
 mod mirrors;
 mod one_subspace;
 mod paper;
+mod parallelograms;
 mod paths;
 mod rejections;
 mod roll_pitch_yaw;

@@ -49,6 +49,7 @@ fn joint_json(leg: &str, joint: &Joint) -> Value {
         "point": triple_json(&joint.point.coords),
         "pitch": pitch,
         "actuated": joint.actuated,
+        "turns_back": joint.turns_back,
         "coordinates": joint.coordinates.iter().map(|c| &*c.name).collect::<Vec<_>>(),
         "unit": each(|c| c.quantity.unit().into()),
         "home": each(|c| c.home.into()),

@@ -78,8 +78,8 @@ impl Way<'_> {
 /// The steps by which a whole leg is solved.
 pub(super) fn kernels(leg: &Leg, split: &LegSplit) -> Vec<Value> {
     let Some(whole) = &split.whole else { return Vec::new() };
-    // Universal and cylindrical joints are two of the joints of a whole leg.
-    let names: Vec<&str> = (leg.joints.iter())
+    // Universal and cylindrical joints are two of the joints of a whole leg, and the two hinges of a parallelogram are one.
+    let names: Vec<&str> = (leg.joints.iter().filter(|joint| !joint.turns_back))
         .flat_map(|joint| match joint.kind {
             JointKind::Spherical => vec![&*joint.name],
             JointKind::Revolute

@@ -31,6 +31,15 @@ pub enum SpringError {
     /// A stiffness is not a positive number.
     #[error("a stiffness is {0}, expected a positive number")]
     NotPositive(f64),
+    /// A leg has a parallelogram, whose bars are stretched where it bears a moment.
+    #[error(
+        "{joint:?} is a parallelogram, whose two bars bear moments by forces along them: its stiffness is not modelled; \
+         a single bar between two universal joints has one"
+    )]
+    Parallelogram {
+        /// The name of its first hinge.
+        joint: String,
+    },
     /// A name is not that of an actuated joint.
     #[error("no actuated joint {name:?}, expected one of {}", known.join(", "))]
     Unknown {
@@ -79,6 +88,12 @@ impl Springs {
         let (given, expected) = (self.actuators.len(), manipulator.actuated().len());
         if given != expected {
             return Err(SpringError::Count { given, expected });
+        }
+        for leg in &manipulator.mechanism().legs {
+            if let Some(end) = leg.joints.iter().position(|joint| joint.turns_back) {
+                let joint = leg.joints[end - 1].name.clone();
+                return Err(SpringError::Parallelogram { joint });
+            }
         }
         let links = [self.translation, self.rotation];
         match self.actuators.iter().chain(&links).find(|k| k.is_nan() || **k <= 0.0) {

@@ -41,10 +41,20 @@ impl Closure<'_> {
                 let size = if *quantity == Quantity::Angle { PI } else { FAR * self.size };
                 size * (rng.f64() * 2.0 - 1.0)
             });
-            let start = DVector::from_iterator(quantities.len(), start);
+            let mut start = DVector::from_iterator(quantities.len(), start);
+            self.turn_back(&mut start);
             found.extend(self.solve(start));
         }
         found
+    }
+
+    /// Makes the second hinge of each parallelogram turn back what the first one turns.
+    fn turn_back(&self, values: &mut DVector<f64>) {
+        for (number, back) in self.leg.turn_back().into_iter().enumerate() {
+            if back {
+                values[number] = -values[number - 1];
+            }
+        }
     }
 
     fn solve(&self, q: DVector<f64>) -> Option<DVector<f64>> {
@@ -67,6 +77,7 @@ impl Closure<'_> {
                     *step *= self.size;
                 }
             }
+            self.turn_back(&mut step);
             let tried = &q + step;
             let (after, derivative) = self.linear(&tried, rates);
             if after.norm() < miss.norm() {
@@ -86,6 +97,9 @@ impl Closure<'_> {
     /// spherical joint contributes its angular velocity.
     pub fn sharpness(&self, q: &DVector<f64>) -> f64 {
         let (_, jacobian) = self.linear(q, |_| Matrix3::identity());
+        let back = self.leg.turn_back();
+        let led: Vec<usize> = (0..back.len()).filter(|&number| back[number]).collect();
+        let jacobian = jacobian.remove_columns_at(&led);
         let squares = jacobian.tr_mul(&jacobian).symmetric_eigenvalues();
         squares.min().max(0.0).sqrt()
     }
@@ -126,6 +140,7 @@ impl Closure<'_> {
             g *= displacement(joint, own);
         }
         let end = g * self.point;
+        let back = self.leg.turn_back();
         let mut jacobian = Matrix6xX::zeros(lines.len());
         for (i, (axis, at, pitch, turns)) in lines.into_iter().enumerate() {
             let (turn, way) = if turns {
@@ -135,6 +150,13 @@ impl Closure<'_> {
             };
             jacobian.fixed_view_mut::<3, 1>(0, i).copy_from(&turn);
             jacobian.fixed_view_mut::<3, 1>(3, i).copy_from(&way);
+        }
+        // A rate of the first hinge of a parallelogram is one of both; the second has none of its own.
+        for number in (1..jacobian.ncols()).filter(|&number| back[number]) {
+            let led = jacobian.column(number).into_owned();
+            jacobian.column_mut(number).fill(0.0);
+            let mut first = jacobian.column_mut(number - 1);
+            first -= led;
         }
         let turn = (self.target.rotation * g.rotation.inverse()).scaled_axis();
         let way = (self.target * self.point - end) / self.size;

@@ -358,26 +358,30 @@ pub fn check_actuators(report: &Mobility) -> Result<(), DecomposeError> {
 
 /// The decompositions of a mechanism that moves, the preferred one first.
 fn ranked(mechanism: &Mechanism, report: &Mobility) -> Result<Vec<Decomposition>, DecomposeError> {
-    let (lambda, mobility) = (report.lambda, report.mobility);
     let mut found = order::listed(mechanism, report);
     if found.is_empty() {
-        let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
-        let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);
-        let height = subspace.as_deref().and_then(|group| height_miss(mechanism, group));
-        return Err(DecomposeError::NoPartialSubspaces {
-            lambda,
-            mobility,
-            order: None,
-            near: None,
-            odd: None,
-            height: height.map(Box::new),
-            whole: None,
-            subspace,
-            units: mechanism.units,
-        });
+        return Err(unsplit(mechanism, report));
     }
     found.sort_by_cached_key(|decomposition| preference(decomposition, mechanism));
     Ok(found)
+}
+
+/// That no two subgroups are shared by all legs.
+fn unsplit(mechanism: &Mechanism, report: &Mobility) -> DecomposeError {
+    let screws: Vec<_> = mechanism.legs.iter().flat_map(Leg::screws).collect();
+    let subspace = MotionSubspace::span(frame(mechanism), &screws).class().map(Box::new);
+    let height = subspace.as_deref().and_then(|group| height_miss(mechanism, group));
+    DecomposeError::NoPartialSubspaces {
+        lambda: report.lambda,
+        mobility: report.mobility,
+        order: None,
+        near: None,
+        odd: None,
+        height: height.map(Box::new),
+        whole: None,
+        subspace,
+        units: mechanism.units,
+    }
 }
 
 /// Adds to an error an order of the joints in which the mechanism decomposes, or what it misses, if it nearly does.

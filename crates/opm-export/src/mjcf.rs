@@ -21,6 +21,7 @@ use crate::xml::{Element, number};
 use joints::{Names, joint_values, joints};
 use mass_unit::MassUnit;
 use opm_core::mechanism::Mechanism;
+use opm_core::mechanism::joint::Joint;
 use opm_core::mechanism::leg::Leg;
 use opm_core::skeleton::{Body, Density, Mass, OutOfRange, Skeleton};
 use servo::{FREQUENCY, Servos};
@@ -200,6 +201,10 @@ impl Model<'_> {
                     equality.push(self.stiff(coupling));
                 }
             }
+            if joint.turns_back && i > 0 {
+                let turned = &chain.leg.joints[i - 1];
+                equality.push(self.stiff(turning_back(joint, turned)));
+            }
             let share = if end { 1.0 / self.mechanism.legs.len() as f64 } else { 1.0 };
             if self.floats {
                 element = element.with("gravcomp", "1");
@@ -267,6 +272,14 @@ impl Model<'_> {
         }
         list
     }
+}
+
+/// Holds the second hinge of a parallelogram at the opposite of what the first one turns from home.
+fn turning_back(joint: &Joint, turned: &Joint) -> Element {
+    Element::new("joint")
+        .with("joint1", &*joint.name)
+        .with("joint2", &*turned.name)
+        .numbers("polycoef", &[0.0, -1.0, 0.0, 0.0, 0.0])
 }
 
 /// A leg as it is written.

@@ -114,7 +114,8 @@ impl Tree<'_> {
             let body = &self.bodies[if last { platform } else { links.start + i }];
             let seat = body.seats.iter().find(|seat| seat.joint == joint.name);
             let place = seat.map_or(joint.point, |seat| body.origin + seat.centre.coords);
-            let parts = joints::parts(joint, &mut self.names);
+            let parts =
+                joints::parts(joint, i.checked_sub(1).map(|i| &leg.joints[i]), &mut self.names);
             let count = parts.len();
             for (number, part) in parts.into_iter().enumerate() {
                 let inner = number + 1 < count;

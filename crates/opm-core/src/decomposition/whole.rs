@@ -9,7 +9,7 @@ use super::architecture::chain;
 use super::mobility::{Mobility, assembled, frame, share};
 use super::near::JointMiss;
 use super::reorder::{self, Exchanges};
-use super::{DecomposeError, Decomposition, Freedom, LegSplit, near, odd, ranked};
+use super::{DecomposeError, Decomposition, Freedom, LegSplit, near, odd, ranked, unsplit};
 use crate::chain::whole::{LegJoint, NoOrder, WholeLeg};
 use crate::group::SubspaceKind;
 use crate::group::screw::Screw;
@@ -189,7 +189,9 @@ pub(super) fn split_or_whole(
     mechanism: &Mechanism,
     report: &Mobility,
 ) -> Result<Vec<Decomposition>, DecomposeError> {
-    let mut error = match ranked(mechanism, report) {
+    let linked = mechanism.joints().any(|joint| joint.turns_back);
+    let split = if linked { Err(unsplit(mechanism, report)) } else { ranked(mechanism, report) };
+    let mut error = match split {
         Ok(found) => {
             let reflected =
                 is_held(mechanism, report, &found[0]) && mirrored(&assembled(mechanism)).is_some();
@@ -249,7 +251,8 @@ pub(crate) fn mirrored(motions: &[Isometry3<f64>]) -> Option<(Unit<Vector3<f64>>
 /// The decomposition of a mechanism whose legs are solved whole.
 fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, WholeMiss> {
     let frame = frame(mechanism);
-    let spans = mechanism.legs.iter().map(|leg| MotionSubspace::span(frame, &leg.screws()));
+    let spans =
+        mechanism.legs.iter().map(|leg| MotionSubspace::span(frame, &leg.independent_screws()));
     let common = spans.reduce(|a, b| a.intersection(&b));
     let dimension = report.mobility.saturating_sub(report.idle);
     let no_group = WholeMiss::NoGroup { dimension };
@@ -284,6 +287,9 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
         Some(subspace) => WholeMiss::NoCoordinates { subspace },
         None => no_group.clone(),
     };
+    if mechanism.joints().any(|joint| joint.turns_back) {
+        return Err(miss);
+    }
     let is_stem = |leg: &Leg| Freedom::of_leg(leg).len() == dimension;
     match mechanism.legs.iter().position(is_stem) {
         Some(stem) => Found::of_stem(mechanism, stem, frame.length).solved(mechanism, report),
@@ -356,7 +362,7 @@ impl Found {
         let Self { lower, upper, constrained, twists, motions } = self;
         let frame = frame(mechanism);
         let deviation = |leg: &Leg| {
-            let span = MotionSubspace::span(frame, &leg.screws());
+            let span = MotionSubspace::span(frame, &leg.independent_screws());
             twists.iter().map(|screw| span.distance(screw)).fold(0.0, f64::max)
         };
         for leg in &mechanism.legs {
@@ -473,11 +479,21 @@ impl Decomposition {
     }
 }
 
-/// The joints of a leg, each with one freedom or a ball's three, and whether they are actuated.
+/// The joints of a leg, each with one freedom, a ball's three, or a parallelogram's two, and whether they are actuated.
 pub(crate) fn joints(leg: &Leg) -> impl Iterator<Item = (LegJoint, bool)> {
-    leg.joints.iter().flat_map(|joint| {
+    leg.joints.iter().enumerate().flat_map(|(number, joint)| {
+        let back = leg.joints.get(number + 1).filter(|next| next.turns_back);
+        let all = match back {
+            _ if joint.turns_back => [None, None],
+            Some(back) => {
+                let (axis, point) = (joint.axis, joint.point);
+                let arm = back.point - point;
+                [Some(LegJoint::Parallelogram { axis, point, arm }), None]
+            }
+            None => elementary(joint),
+        };
         let actuated = joint.actuated;
-        elementary(joint).into_iter().flatten().map(move |joint| (joint, actuated))
+        all.into_iter().flatten().map(move |joint| (joint, actuated))
     })
 }
 

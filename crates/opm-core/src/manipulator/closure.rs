@@ -41,6 +41,7 @@ enum LegJoint {
         exponent: Exponents<1>,
         home: f64,
         actuated: bool,
+        turns_back: bool,
     },
     /// A rotation vector about a point.
     Ball {
@@ -88,6 +89,7 @@ impl Closure {
             .iter()
             .map(|leg| {
                 let mut joints = Vec::new();
+                let mut held = false;
                 for joint in &leg.joints {
                     let (actuated, c) = (joint.actuated, &joint.coordinates);
                     if joint.kind == JointKind::Spherical {
@@ -99,10 +101,13 @@ impl Closure {
                                 screw,
                                 exponent: Exponents::of_screw(&screw),
                                 home: c.home,
-                                actuated,
+                                // Where the first hinge of a parallelogram has a motor, neither is passive.
+                                actuated: actuated || joint.turns_back && held,
+                                turns_back: joint.turns_back,
                             }
                         }));
                     }
+                    held = actuated;
                 }
                 joints
             })
@@ -212,26 +217,36 @@ impl Closure {
         const DAMPING: f64 = 1e-12;
         // A leg has at most six freedoms. The columns after those of its passive joints are zeros.
         let mut jacobian = Matrix6::zeros();
-        let mut columns = jacobian.column_iter_mut();
+        let mut count = 0;
         let mut before = [UnitQuaternion::identity(); 6];
         let mut g = Isometry3::identity();
         let mut at = 0;
         // Lengths are divided by the size; screws are taken about the platform's point.
         let about = Translation3::from(-(target * self.platform).coords);
-        let mut add = |screw: Screw| {
+        let column = |screw: Screw| {
             let moved =
                 screw.transformed(&Isometry3::from_parts(about, UnitQuaternion::identity()));
-            let unit = Screw { linear: moved.linear / self.size, ..moved }.to_vector();
-            columns.next().into_iter().for_each(|mut column| column.copy_from(&unit));
+            Screw { linear: moved.linear / self.size, ..moved }.to_vector()
+        };
+        let mut add = |screw: Screw, turns_back: bool| {
+            if turns_back {
+                let mut first = jacobian.column_mut(count - 1);
+                first -= column(screw);
+            } else if count < 6 {
+                jacobian.set_column(count, &column(screw));
+                count += 1;
+            }
         };
         for (joint, before) in leg.iter().zip(&mut before) {
             *before = g.rotation;
             match joint {
-                LegJoint::Screw { screw, actuated: false, .. } => add(screw.transformed(&g)),
+                LegJoint::Screw { screw, actuated: false, turns_back, .. } => {
+                    add(screw.transformed(&g), *turns_back);
+                }
                 LegJoint::Ball { point, actuated: false, .. } => {
                     let point = g * Point3::from(*point);
                     let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
-                    axes.into_iter().for_each(|axis| add(Screw::rotation(axis, point)));
+                    axes.into_iter().for_each(|axis| add(Screw::rotation(axis, point), false));
                 }
                 LegJoint::Screw { .. } | LegJoint::Ball { .. } => {}
             }
@@ -247,10 +262,13 @@ impl Closure {
         let step = cholesky.solve(&jacobian.tr_mul(&error));
         let mut step = step.iter();
         let mut next = || step.next().copied().unwrap_or(0.0);
-        let mut at = 0;
+        let (mut at, mut last) = (0, 0.0);
         for (joint, before) in leg.iter().zip(&before) {
             match joint {
-                LegJoint::Screw { actuated: false, .. } => joints[at] += next(),
+                LegJoint::Screw { actuated: false, turns_back, .. } => {
+                    last = if *turns_back { -last } else { next() };
+                    joints[at] += last;
+                }
                 LegJoint::Ball { home, actuated: false, .. } => {
                     let rotation = Vector3::from_fn(|_, _| next());
                     let rotation = UnitQuaternion::from_scaled_axis(before.inverse() * rotation);

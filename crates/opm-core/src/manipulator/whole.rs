@@ -42,6 +42,8 @@ pub(crate) struct Whole {
 pub(crate) enum WholeJoint {
     /// One freedom.
     Screw(Screw),
+    /// The second hinge of a parallelogram, which turns back what the one before it turns.
+    Back(Screw),
     /// A spherical joint: its centre, and its rotation vector at home.
     Ball(Point3<f64>, Vector3<f64>),
 }
@@ -216,7 +218,8 @@ fn joints(leg: &Leg) -> Vec<WholeJoint> {
         | JointKind::Helical { .. }
         | JointKind::Cylindrical
         | JointKind::Universal { .. } => {
-            joint.screws().into_iter().map(WholeJoint::Screw).collect()
+            let kind = if joint.turns_back { WholeJoint::Back } else { WholeJoint::Screw };
+            joint.screws().into_iter().map(kind).collect()
         }
     });
     each.collect()

@@ -2,7 +2,8 @@
 //!
 //! All joints of a leg together move the platform: `V = J q̇`, with a displaced screw for each freedom. The columns of a leg
 //! that has fewer than six freedoms span what it can do, and the platform's twist is among it. A strut that spins between two
-//! balls has one freedom more: its first ball does not turn about the strut, which is one more row. Rates follow from the rows
+//! balls has one freedom more: its first ball does not turn about the strut, which is one more row. So is that the hinges of a
+//! parallelogram turn by opposite angles. Rates follow from the rows
 //! of the inverse, each reciprocal to all columns but one. Nothing is decided by a tolerance but whether the leg is singular.
 //!
 //! With the actuated joints locked, each of them holds the platform by a wrench that no other joint of its leg feels: the part
@@ -13,7 +14,7 @@ use super::{
     Jacobians, JointMotion, Rows, SINGULAR, SectionTwists, SingularCause, SingularLeg,
     VelocityError,
 };
-use crate::chain::whole::MOST_FREEDOMS as MOST;
+use crate::chain::whole::{MOST_FREEDOMS as MOST, MOST_PARALLELOGRAMS};
 use crate::group::screw::Screw;
 use crate::group::{LocalTwist, Subspace, SubspaceKind};
 use crate::manipulator::dependent::Whole as Constraining;
@@ -23,8 +24,11 @@ use nalgebra::{
     DMatrix, Isometry3, Matrix3, Matrix6, SVector, Translation3, UnitQuaternion, Vector3, Vector6,
 };
 
-/// A twist about the platform's reference point, lengths over the size, and the rate of what is idle.
-type Row = SVector<f64, MOST>;
+/// How many relations may hold between the joints of a leg alone: a strut does not spin, or hinges turn back.
+const RELATIONS: usize = MOST_PARALLELOGRAMS;
+
+/// A twist about the platform's reference point, lengths over the size, and the rates of what the joints of the leg hold at zero.
+type Row = SVector<f64, { 6 + RELATIONS }>;
 
 /// The differential of a whole leg at one configuration.
 #[derive(Clone, Debug)]
@@ -104,7 +108,10 @@ impl WholeDifferential {
             volume *= length / own.norm();
             basis[joint] = if length > 0.0 { rest / length } else { rest };
         }
-        if count == 6 {
+        let related = self.columns[..count]
+            .iter()
+            .any(|column| column.fixed_rows::<RELATIONS>(6).amax() > 0.0);
+        if count == 6 && !related {
             let columns: [Vector6<f64>; 6] =
                 std::array::from_fn(|i| self.columns[i].fixed_rows::<6>(0).normalize());
             volume = Matrix6::from_columns(&columns).determinant();
@@ -167,19 +174,24 @@ impl Ball {
 struct DisplacedLeg {
     count: usize,
     screws: [Screw; MOST],
-    /// The rate of what is idle for a unit rate of each freedom.
-    idle: [f64; MOST],
+    /// The rates of what the joints hold at zero for a unit rate of each freedom.
+    relations: [[f64; RELATIONS]; MOST],
     balls: [Option<Ball>; 2],
 }
 
 impl DisplacedLeg {
     fn new(manipulator: &Manipulator, at: &Solution, number: usize, rows: Rows) -> Self {
-        let mut found =
-            Self { count: 0, screws: [STILL; MOST], idle: [0.0; MOST], balls: [None; 2] };
+        let mut found = Self {
+            count: 0,
+            screws: [STILL; MOST],
+            relations: Default::default(),
+            balls: [None; 2],
+        };
         let Some(whole) = &manipulator.legs[number].whole else { return found };
         let (idle, solution) = (whole.leg.idle(), &at.legs[number]);
         let first = manipulator.coordinates_of(number).start;
         let mut g = Isometry3::identity();
+        let mut parallelograms = 0;
         for joint in &whole.joints {
             let start = found.count;
             let displacement = |i: usize| whole.displacement(solution, start + i);
@@ -203,7 +215,7 @@ impl DisplacedLeg {
                     for i in 0..3 {
                         found.push(
                             ball.screw(ball.angular.column(i).into()),
-                            line.map_or(0.0, |(_, direction)| direction[i]),
+                            [line.map_or(0.0, |(_, direction)| direction[i]), 0.0],
                         );
                     }
                     if let Some(free) = found.balls.iter_mut().find(|ball| ball.is_none()) {
@@ -214,7 +226,15 @@ impl DisplacedLeg {
                     g *= Isometry3::from_parts(Translation3::from(place - turned * place), turned);
                 }
                 WholeJoint::Screw(screw) => {
-                    found.push(screw.transformed(&g), 0.0);
+                    found.push(screw.transformed(&g), [0.0; RELATIONS]);
+                    g *= screw.exp(displacement(0).value());
+                }
+                WholeJoint::Back(screw) => {
+                    let mut opposite = [0.0; RELATIONS];
+                    opposite[parallelograms] = 1.0;
+                    parallelograms += 1;
+                    found.relations[start - 1] = opposite;
+                    found.push(screw.transformed(&g), opposite);
                     g *= screw.exp(displacement(0).value());
                 }
             }
@@ -222,10 +242,10 @@ impl DisplacedLeg {
         found
     }
 
-    fn push(&mut self, screw: Screw, idle: f64) {
+    fn push(&mut self, screw: Screw, relations: [f64; RELATIONS]) {
         // A leg with more freedoms has no closed form.
         if self.count < MOST {
-            (self.screws[self.count], self.idle[self.count]) = (screw, idle);
+            (self.screws[self.count], self.relations[self.count]) = (screw, relations);
             self.count += 1;
         }
     }
@@ -282,7 +302,7 @@ impl Manipulator {
         let mut found = WholeDifferential { count: leg.count, ..WholeDifferential::unknown() };
         for (i, column) in found.columns[..leg.count].iter_mut().enumerate() {
             column.fixed_rows_mut::<6>(0).copy_from(&about(&leg.screws[i], point, size));
-            column[6] = leg.idle[i];
+            column.fixed_rows_mut::<RELATIONS>(6).copy_from_slice(&leg.relations[i]);
         }
         found.revolved = leg.balls.iter().flatten().any(|ball| ball.vector.is_singular());
         found.complete();

@@ -43,9 +43,18 @@ pub fn names(mechanism: &Mechanism) -> BTreeSet<String> {
     mechanism.joints().flat_map(of_joint).collect()
 }
 
-/// The joints of which a joint consists, the one nearest to the base first.
-pub fn parts(joint: &Joint, names: &mut BTreeSet<String>) -> Vec<UrdfJoint> {
+/// The joints of which a joint consists, the one nearest to the base first. `before` is the joint before it in its leg.
+pub fn parts(
+    joint: &Joint,
+    before: Option<&Joint>,
+    names: &mut BTreeSet<String>,
+) -> Vec<UrdfJoint> {
     let own = |number: usize, axis| UrdfJoint::own(&joint.coordinates[number], axis);
+    if let Some(turned) = before.filter(|_| joint.turns_back) {
+        let from = joint.coordinates[0].home + turned.coordinates[0].home;
+        let follows = Some(Follows { joint: turned.name.clone(), ratio: -1.0, from });
+        return vec![UrdfJoint { follows, ..own(0, joint.axis) }];
+    }
     match joint.kind {
         JointKind::Revolute | JointKind::Prismatic => vec![own(0, joint.axis)],
         JointKind::Cylindrical => vec![own(0, joint.axis), own(1, joint.axis)],

@@ -32,6 +32,7 @@ fn freedoms(joint: &LegJoint) -> (usize, Given) {
         LegJoint::Screw { pitch, .. } if *pitch == 0.0 => (1, Given::Direction),
         LegJoint::Screw { .. } | LegJoint::Slide { .. } => (1, Given::Value),
         LegJoint::Ball { .. } => (3, Given::Value),
+        LegJoint::Parallelogram { .. } => (2, Given::Direction),
     }
 }
 
@@ -58,7 +59,7 @@ pub fn balls(
             let turn = conjugate(run.turn(number).named("turn"));
             Some(rotation_about(constant(&axis), turn))
         }
-        LegJoint::Slide { .. } | LegJoint::Ball { .. } => None,
+        LegJoint::Slide { .. } | LegJoint::Ball { .. } | LegJoint::Parallelogram { .. } => None,
     };
     note("What is left of the rotation for spherical joints.");
     let rest = Rotation::empty("rest");
@@ -146,10 +147,11 @@ impl Writer<'_> {
         let field = |freedom: usize| &*self.fields[form.first + freedom];
         let joints = numbered(&form.leg);
         for (first, joint) in &joints {
-            if !matches!(joint, LegJoint::Ball { .. }) {
-                match run.displacement(*first) {
-                    Displaced::Direction(z) => at.member::<Complex>(field(*first)).set(z),
-                    Displaced::Value(value) => at.member::<Real>(field(*first)).set(value),
+            let count = if matches!(joint, LegJoint::Ball { .. }) { 0 } else { freedoms(joint).0 };
+            for freedom in *first..first + count {
+                match run.displacement(freedom) {
+                    Displaced::Direction(z) => at.member::<Complex>(field(freedom)).set(z),
+                    Displaced::Value(value) => at.member::<Real>(field(freedom)).set(value),
                 }
             }
         }
@@ -232,7 +234,12 @@ impl Writer<'_> {
         let unknowns = form.leg.freedoms();
         let sides = self.task.coordinates.len();
         let idle = form.leg.idle();
-        let (rows, width) = (6 + usize::from(idle.is_some()), unknowns + sides);
+        let hinges: Vec<usize> = (joints.iter())
+            .filter(|(_, joint)| matches!(joint, LegJoint::Parallelogram { .. }))
+            .map(|(first, _)| *first)
+            .collect();
+        let relations = usize::from(idle.is_some()) + hinges.len();
+        let (rows, width) = (6 + relations, unknowns + sides);
         let a = Array::<Real>::empty("a", rows * width);
         let x = Array::<Real>::empty("x", unknowns * sides);
         name!(turned = identity(), moved = vector_of(0.0, 0.0, 0.0));
@@ -298,6 +305,20 @@ impl Writer<'_> {
                         follows(by, &about.coords, places);
                     }
                 }
+                // Between its hinges, the bar turns.
+                LegJoint::Parallelogram { axis, point: about, arm } => {
+                    rotates(*first, constant(axis), &about.coords, 0.0);
+                    let turn = normal(at.member::<Complex>(field(*first)));
+                    let by =
+                        crate::trace::named(&fresh("by"), rotation_about(constant(axis), turn));
+                    let bar = constant(arm);
+                    let swung = crate::trace::named(
+                        &fresh("swung"),
+                        rotated(turned, add(rotated(by, bar), -1.0, bar)),
+                    );
+                    moved.set(add(moved, 1.0, swung));
+                    rotates(first + 1, constant(axis), &(about.coords + arm), 0.0);
+                }
                 LegJoint::Ball { point: centre } => {
                     for i in 0..3 {
                         rotates(first + i, axis(i), &centre.coords, 0.0);
@@ -330,6 +351,15 @@ impl Writer<'_> {
                 a.at(number(6 * width + first + i)).set(part);
             }
         }
+        for (row, first) in (6 + usize::from(idle.is_some())..).zip(&hinges) {
+            note("The second hinge of a parallelogram turns back.");
+            for column in 0..width {
+                a.at(number(row * width + column)).set(0.0);
+            }
+            for hinge in [*first, first + 1] {
+                a.at(number(row * width + hinge)).set(1.0);
+            }
+        }
         count("i", 0, number(sides), |i| {
             let Motion { turn, velocity, .. } = motions.at(i);
             let parts = [turn.x, turn.y, turn.z];
@@ -351,6 +381,11 @@ impl Writer<'_> {
                 match joint {
                     LegJoint::Slide { .. } => write(*first, rate(*first) * size),
                     LegJoint::Screw { .. } => write(*first, rate(*first)),
+                    LegJoint::Parallelogram { .. } => {
+                        for hinge in [*first, first + 1] {
+                            write(hinge, rate(hinge));
+                        }
+                    }
                     LegJoint::Ball { .. } => {
                         let Some((_, rows)) = ball_rows.iter().find(|(of, _)| of == first) else {
                             continue;

@@ -49,6 +49,8 @@ use step::Candidate;
 
 /// The most freedoms that a leg can have.
 pub const MOST_FREEDOMS: usize = 7;
+/// A leg has at most so many parallelograms.
+pub const MOST_PARALLELOGRAMS: usize = 2;
 
 /// The most choices of a leg.
 const MOST_CHOICES: usize = 2;
@@ -90,6 +92,16 @@ pub enum LegJoint {
         /// The centre, metres.
         point: Point3<f64>,
     },
+    /// A parallelogram: a bar turns, and what it carries does not. Its two freedoms are the hinges at the ends of the bar, the
+    /// second of which turns back what the first one turns.
+    Parallelogram {
+        /// The direction of the axes of its hinges.
+        axis: Unit<Vector3<f64>>,
+        /// A point of the first one's, metres.
+        point: Point3<f64>,
+        /// The bar, from one hinge to the other, metres.
+        arm: Vector3<f64>,
+    },
 }
 
 impl LegJoint {
@@ -97,11 +109,13 @@ impl LegJoint {
     pub fn freedoms(&self) -> usize {
         match self {
             Self::Screw { .. } | Self::Slide { .. } => 1,
+            Self::Parallelogram { .. } => 2,
             Self::Ball { .. } => 3,
         }
     }
 
-    /// Its displacement by the values of its freedoms, radians and metres; a ball's are its rotation vector.
+    /// Its displacement by the values of its freedoms, radians and metres; a ball's are its rotation vector. The first one
+    /// of a parallelogram tells the second.
     pub fn exp(&self, values: &[f64]) -> Isometry3<f64> {
         let (elements, _) = Element::of(&[*self], &[]);
         elements.iter().fold(Isometry3::identity(), |_, element| element.exp(values))
@@ -159,6 +173,12 @@ pub enum NoOrder {
     #[error("{found} freedoms, expected at most {MOST_FREEDOMS} with at most two spherical joints")]
     Freedoms {
         /// The number of freedoms.
+        found: usize,
+    },
+    /// More parallelograms than are supported.
+    #[error("{found} parallelograms, expected at most {MOST_PARALLELOGRAMS}")]
+    Parallelograms {
+        /// The number of them.
         found: usize,
     },
     /// No sampled motion but home is in reach.
@@ -275,8 +295,12 @@ impl WholeLeg {
         if freedoms > MOST_FREEDOMS || balls > 2 || full {
             return Err(NoOrder::Freedoms { found: freedoms });
         }
+        let found = elements.iter().filter(|one| matches!(one.kind, Kind::Circle(_))).count();
+        if found > MOST_PARALLELOGRAMS {
+            return Err(NoOrder::Parallelograms { found });
+        }
         let placed: Vec<Vector3<f64>> =
-            elements.iter().filter(|one| one.kind != Kind::Slide).map(|one| one.point).collect();
+            elements.iter().filter(|one| one.has_place()).map(|one| one.point).collect();
         let count = placed.len().max(1);
         let centre = placed.iter().sum::<Vector3<f64>>() * (1.0 / count as f64);
         let mut samples = vec![Sample::home(elements)];
@@ -345,7 +369,7 @@ impl WholeLeg {
                         let (value, found) = (sample.values[element.slot], out[element.slot]);
                         match element.kind {
                             Kind::Slide => (found.value() - value).abs() <= SAME * self.size,
-                            Kind::Turn | Kind::Helix(_) => {
+                            Kind::Turn | Kind::Helix(_) | Kind::Circle(_) => {
                                 (found.nearest(value) - value).abs() <= SAME
                             }
                             Kind::Ball => true,

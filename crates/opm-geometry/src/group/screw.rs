@@ -4,6 +4,7 @@
 //! that is at the origin. A joint's screw is the twist of its outer link at unit joint rate.
 
 use nalgebra::{Isometry3, Point3, Quaternion, Unit, UnitQuaternion, Vector3, Vector6};
+use std::ops::Sub;
 
 /// A twist `(ω; v)` in base coordinates: radians and metres per unit of the joint's coordinate
 /// (a radian or a metre).
@@ -29,6 +30,14 @@ pub struct Screw {
     pub angular: Vector3<f64>,
     /// The linear part `v`: the velocity of the body's point at the origin.
     pub linear: Vector3<f64>,
+}
+
+impl Sub for Screw {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { angular: self.angular - other.angular, linear: self.linear - other.linear }
+    }
 }
 
 impl Screw {

@@ -308,6 +308,9 @@ pub struct Joint {
     pub coordinates: Vec<JointCoordinate>,
     /// How far a spherical or a universal joint may tilt; `None` where it may as far as it wants.
     pub cone: Option<Cone>,
+    /// Whether it turns back what the joint before it turned: the two are the hinges of a
+    /// [parallelogram](Joint::parallelogram).
+    pub turns_back: bool,
 }
 
 /// The number of values differs from the number of coordinates of a joint, a leg or a mechanism.
@@ -365,7 +368,47 @@ impl Joint {
                 drive: Drive::default(),
             })
             .collect();
-        Self { name, kind, axis, point, actuated: false, coordinates, cone: None }
+        Self {
+            name,
+            kind,
+            axis,
+            point,
+            actuated: false,
+            coordinates,
+            cone: None,
+            turns_back: false,
+        }
+    }
+
+    /// A parallelogram: its outer link moves on a circle and does not turn. It is two hinges in series about parallel axes,
+    /// at either end of a bar, of which the second one, `NAME.end`, turns back what the first one turns.
+    ///
+    /// ```
+    /// use nalgebra::{Point3, Vector3};
+    /// use opm_core::mechanism::joint::Joint;
+    /// use opm_core::Leg;
+    ///
+    /// // A bar from the origin to (0.2, 0, 0), in the plane across z.
+    /// let ends = [Point3::origin(), Point3::new(0.2, 0.0, 0.0)];
+    /// let leg = Leg::new("leg1", Joint::parallelogram("p1", Vector3::z_axis(), ends).to_vec());
+    /// let quarter = std::f64::consts::FRAC_PI_2;
+    /// let moved = leg.displacement(&[quarter, -quarter])?;
+    /// assert!(moved.rotation.angle() < 1e-12);
+    /// assert!((moved.translation.vector - Vector3::new(-0.2, 0.2, 0.0)).norm() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn parallelogram(
+        name: &str,
+        axis: Unit<Vector3<f64>>,
+        [point, end]: [Point3<f64>; 2],
+    ) -> [Self; 2] {
+        let back = Self::new(Self::end_name(name), JointKind::Revolute, axis, end);
+        [Self::new(name, JointKind::Revolute, axis, point), Self { turns_back: true, ..back }]
+    }
+
+    /// The name of the second hinge of a parallelogram.
+    pub fn end_name(name: &str) -> String {
+        format!("{name}.end")
     }
 
     /// Marks the joint as driven by a motor.

@@ -79,6 +79,26 @@ impl Leg {
         self.joints.iter().flat_map(Joint::screws).collect()
     }
 
+    /// The screws of the leg at home that can move independently of each other, from base to platform: as [`Leg::screws`], but
+    /// one for the two hinges of a parallelogram, a translation.
+    pub fn independent_screws(&self) -> Vec<Screw> {
+        let mut screws: Vec<Screw> = Vec::new();
+        for joint in &self.joints {
+            let own = joint.screws();
+            match (joint.turns_back, screws.last_mut(), &own[..]) {
+                (true, Some(first), [back]) => *first = *first - *back,
+                _ => screws.extend(own),
+            }
+        }
+        screws
+    }
+
+    /// Of each freedom, whether it turns back what the one before it turned.
+    pub fn turn_back(&self) -> Vec<bool> {
+        let of = |joint: &Joint| std::iter::repeat_n(joint.turns_back, joint.freedoms());
+        self.joints.iter().flat_map(of).collect()
+    }
+
     /// Every coordinate of every joint, from base to platform. [`Leg::displacement`] takes its
     /// values in this order.
     pub fn coordinates(&self) -> impl Iterator<Item = &JointCoordinate> {

@@ -5,6 +5,7 @@ use super::{MAX_FREEDOMS, MobilityError, absolute_values, frame};
 use crate::group::screw::Screw;
 use crate::group::subspace::Frame;
 use crate::mechanism::Mechanism;
+use crate::mechanism::leg::Leg;
 use crate::numeric::svd::{self, Svd};
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Vector6};
 
@@ -15,12 +16,47 @@ pub(super) struct Linkage {
     pub actuated: Vec<bool>,
     /// The normalised screws at home.
     legs: Vec<Vec<Screw>>,
+    /// Of every freedom, whether it turns back what the one before it turned.
+    backs: Vec<Vec<bool>>,
 }
 
 /// The screws of every leg in a pose, and the displacement of the platform that each leg gives.
 pub(super) struct Pose {
     screws: Vec<Vec<Screw>>,
+    /// The screw of every freedom that moves by itself: one for the two hinges of a parallelogram.
+    moving: Vec<Vec<Moving>>,
     tips: Vec<Isometry3<f64>>,
+}
+
+/// A freedom that moves by itself, with the one that turns it back, if there is one.
+#[derive(Clone, Copy)]
+struct Moving {
+    screw: Screw,
+    /// Its number in the leg; that of the one that turns it back is the next.
+    freedom: usize,
+    is_turned_back: bool,
+}
+
+impl Moving {
+    /// The freedoms of a leg that move by themselves, where these are all its screws in a pose.
+    fn of(screws: &[Screw], backs: &[bool]) -> Vec<Self> {
+        let mut moving: Vec<Self> = Vec::new();
+        for (freedom, (screw, back)) in screws.iter().zip(backs).enumerate() {
+            match moving.last_mut().filter(|_| *back) {
+                Some(first) => {
+                    *first = Self { screw: first.screw - *screw, is_turned_back: true, ..*first };
+                }
+                None => moving.push(Self { screw: *screw, freedom, is_turned_back: false }),
+            }
+        }
+        moving
+    }
+
+    /// The rates of its freedoms for a rate of one, with their numbers in the leg.
+    fn rates(&self) -> impl Iterator<Item = (usize, f64)> {
+        let back = self.is_turned_back.then_some((self.freedom + 1, -1.0));
+        [(self.freedom, 1.0)].into_iter().chain(back)
+    }
 }
 
 /// The first-order kinematics in a pose, leg by leg.
@@ -35,6 +71,43 @@ struct LegOrder {
     svd: Svd,
     /// The singular values, divided by the largest.
     values: Vec<f64>,
+    /// The rates of all unit screws of the leg for those of the ones that move by themselves; `None` where all of them do.
+    spread: Option<DMatrix<f64>>,
+}
+
+impl LegOrder {
+    fn new(screws: &[Screw], moving: &[Moving]) -> Self {
+        let unit = |moving: &Moving| moving.screw.to_vector().normalize();
+        let svd = Svd::new(rows(&moving.iter().map(unit).collect::<Vec<_>>()));
+        let spread = (moving.len() < screws.len()).then(|| {
+            let mut spread = DMatrix::zeros(screws.len(), moving.len());
+            for (column, moving) in moving.iter().enumerate() {
+                let size = moving.screw.to_vector().norm();
+                for (row, rate) in moving.rates() {
+                    spread[(row, column)] = rate * screws[row].to_vector().norm() / size;
+                }
+            }
+            spread
+        });
+        Self { values: relative(&svd.values[..moving.len().min(6)]), svd, spread }
+    }
+
+    /// The number of freedoms of its joints.
+    fn freedoms(&self) -> usize {
+        self.spread.as_ref().map_or(self.svd.image.nrows(), DMatrix::nrows)
+    }
+
+    /// Rates of all unit screws by those of the ones that move by themselves.
+    fn spread(&self, rates: DMatrix<f64>) -> DMatrix<f64> {
+        match &self.spread {
+            Some(spread) => spread * rates,
+            None => rates,
+        }
+    }
+}
+
+fn rows(vectors: &[Vector6<f64>]) -> DMatrix<f64> {
+    DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j])
 }
 
 /// The constraints of all legs on the platform's twist: orthonormal rows for each leg.
@@ -50,7 +123,7 @@ impl FirstOrder {
 
     /// The number of freedoms of all joints.
     pub fn freedoms(&self) -> usize {
-        self.legs.iter().map(|leg| leg.svd.image.nrows()).sum()
+        self.legs.iter().map(LegOrder::freedoms).sum()
     }
 
     /// The constraints of all legs, whose screws have these ranks.
@@ -76,18 +149,19 @@ impl FirstOrder {
         let mut moved = DMatrix::zeros(freedoms + 6, twists.ncols());
         let mut within = vec![];
         let mut row = 0;
-        for (LegOrder { svd, .. }, &rank) in self.legs.iter().zip(ranks) {
-            let own = svd.image.nrows();
-            let mut rates = moved.rows_mut(row, own);
+        for (leg @ LegOrder { svd, .. }, &rank) in self.legs.iter().zip(ranks) {
+            let mut rates = DMatrix::zeros(svd.image.nrows(), twists.ncols());
             for i in 0..rank {
                 // The column of the image is a unit vector times the singular value.
                 let shares = svd.right.column(i).tr_mul(&twists) / svd.values[i].powi(2);
                 rates.ger(1.0, &svd.image.column(i), &shares.transpose(), 1.0);
             }
-            if own > rank {
-                within.push((row, complement(svd.image.columns(0, rank).into_owned())));
+            moved.rows_mut(row, leg.freedoms()).copy_from(&leg.spread(rates));
+            if svd.image.nrows() > rank {
+                let own = complement(svd.image.columns(0, rank).into_owned());
+                within.push((row, leg.spread(own)));
             }
-            row += own;
+            row += leg.freedoms();
         }
         moved.rows_mut(freedoms, 6).copy_from(&twists);
         let mut all = match moved.ncols() {
@@ -99,7 +173,9 @@ impl FirstOrder {
             all = all.resize_horizontally(column + own.ncols(), 0.0);
             all.view_mut((row, column), own.shape()).copy_from(&own);
         }
-        all
+        // Rates of two hinges for one make lengths and angles others.
+        let is_spread = self.legs.iter().any(|leg| leg.spread.is_some());
+        if is_spread && all.ncols() > 0 { all.qr().q() } else { all }
     }
 }
 
@@ -155,6 +231,7 @@ impl Linkage {
                 .iter()
                 .map(|leg| leg.screws().iter().map(normalised).collect())
                 .collect(),
+            backs: mechanism.legs.iter().map(Leg::turn_back).collect(),
         })
     }
 
@@ -167,18 +244,19 @@ impl Linkage {
     /// or not.
     pub fn pose(&self, coordinates: &[f64]) -> Pose {
         let mut coordinates = coordinates.iter();
-        let (mut screws, mut tips) = (vec![], vec![]);
-        for leg in &self.legs {
+        let (mut screws, mut moving, mut tips) = (vec![], vec![], vec![]);
+        for (leg, backs) in self.legs.iter().zip(&self.backs) {
             let mut tip = Isometry3::identity();
             let mut moved = vec![];
             for (screw, amount) in leg.iter().zip(&mut coordinates) {
                 moved.push(screw.transformed(&tip));
                 tip *= screw.exp(*amount);
             }
+            moving.push(Moving::of(&moved, backs));
             screws.push(moved);
             tips.push(tip);
         }
-        Pose { screws, tips }
+        Pose { screws, moving, tips }
     }
 
     /// The rows of the actuated freedoms among those of all freedoms.
@@ -201,15 +279,13 @@ impl Linkage {
     /// The first-order kinematics in a pose.
     pub fn first_order(&self, pose: &Pose) -> FirstOrder {
         let units = self.units(pose);
-        let rows =
-            |vectors: &[Vector6<f64>]| DMatrix::from_fn(vectors.len(), 6, |i, j| vectors[i][j]);
         let mut all = svd::singular_values(rows(&units.concat()));
         all.sort_by(|a, b| b.total_cmp(a));
-        let of_leg = |leg: &Vec<Vector6<f64>>| {
-            let svd = Svd::new(rows(leg));
-            LegOrder { values: relative(&svd.values[..leg.len().min(6)]), svd }
-        };
-        FirstOrder { all: relative(&all), legs: units.iter().map(of_leg).collect() }
+        let legs = pose.screws.iter().zip(&pose.moving);
+        FirstOrder {
+            all: relative(&all),
+            legs: legs.map(|(screws, moving)| LegOrder::new(screws, moving)).collect(),
+        }
     }
 
     /// Motions of unit screws in a pose, which are columns, as rates of the coordinates.
@@ -251,14 +327,14 @@ impl Pose {
     /// With `M_k = (J_k J_kᵀ + damping)⁻¹`, each leg answers `q̇_k = J_kᵀ M_k (t - g_k)`, and the rest is six equations:
     /// `(Σ M_k + 1) t = Σ M_k g_k`.
     pub fn step(&self, gaps: &DVector<f64>, damping: f64) -> Option<(DVector<f64>, Vector6<f64>)> {
-        let columns = |leg: &Vec<Screw>| -> Vec<Vector6<f64>> {
-            leg.iter().map(|screw| screw.to_vector()).collect()
+        let columns = |leg: &Vec<Moving>| -> Vec<Vector6<f64>> {
+            leg.iter().map(|moving| moving.screw.to_vector()).collect()
         };
         let factors = |leg: &Vec<Vector6<f64>>| {
             let own = Matrix6::from_diagonal_element(damping);
             leg.iter().fold(own, |sum, column| sum + column * column.transpose()).cholesky()
         };
-        let legs: Vec<_> = self.screws.iter().map(columns).collect();
+        let legs: Vec<_> = self.moving.iter().map(columns).collect();
         let factors: Vec<_> = legs.iter().map(factors).collect::<Option<_>>()?;
         let gap = |leg: usize| Vector6::from(gaps.fixed_rows::<6>(6 * leg));
         let (mut sum, mut right) = (Matrix6::identity(), Vector6::zeros());
@@ -269,7 +345,10 @@ impl Pose {
         let twist = sum.cholesky()?.solve(&right);
         let rates = legs.iter().zip(&factors).enumerate().flat_map(|(leg, (columns, own))| {
             let force = own.solve(&(twist - gap(leg)));
-            columns.iter().map(move |column| column.dot(&force))
+            let moving = self.moving[leg].iter().zip(columns);
+            moving.flat_map(move |(moving, column)| {
+                moving.rates().map(move |(_, rate)| rate * column.dot(&force))
+            })
         });
         Some((DVector::from_vec(rates.collect()), twist))
     }

@@ -16,6 +16,8 @@ pub(super) enum Kind {
     Slide,
     /// Any rotation about a point.
     Ball,
+    /// A translation on a circle: this vector from the centre to what moves turns, and nothing else does.
+    Circle(Vector3<f64>),
 }
 
 /// A joint at home.
@@ -34,7 +36,7 @@ pub(super) struct Element {
 /// What a joint other than a ball is displaced by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moved<T: Real> {
-    /// Its rotation, as a unit vector.
+    /// Its rotation, or that of its arm, as a unit vector.
     pub unit: T::Plane,
     /// Its translation along its direction.
     pub shift: T,
@@ -67,6 +69,8 @@ pub(super) fn congruent(one: &[Element], other: &[Element], size: f64) -> bool {
     const SAME: f64 = 1e-6;
     let same_kind = |(a, b): (&Element, &Element)| match (a.kind, b.kind) {
         (Kind::Helix(a), Kind::Helix(b)) => (a - b).abs() <= SAME * size,
+        // How an arm lies to the axes of other joints is not compared.
+        (Kind::Circle(_), Kind::Circle(_)) => false,
         (a, b) => a == b,
     };
     let shape = |a: &Element, b: &Element| {
@@ -98,6 +102,9 @@ impl Element {
                 }
                 LegJoint::Slide { axis } => (Kind::Slide, zero, axis.into_inner(), 1),
                 LegJoint::Ball { point } => (Kind::Ball, point.coords, zero, 3),
+                LegJoint::Parallelogram { axis, point, arm } => {
+                    (Kind::Circle(arm), point.coords, axis.into_inner(), 2)
+                }
             };
             let element = Self { kind, point, direction, slot: *slot };
             *slot += freedoms;
@@ -116,23 +123,57 @@ impl Element {
     /// The displacement of a joint, which is no ball, by a value.
     pub fn moved_by<T: Real>(&self, value: T) -> Moved<T> {
         match self.kind {
-            Kind::Turn => Moved { unit: value.unit(), ..Moved::home() },
+            Kind::Turn | Kind::Circle(_) => Moved { unit: value.unit(), ..Moved::home() },
             Kind::Helix(pitch) => Moved { unit: value.unit(), shift: value * pitch },
             Kind::Slide => Moved { shift: value, ..Moved::home() },
             Kind::Ball => Moved::home(),
         }
     }
 
-    /// The axis.
+    /// Whether it matters where its axis or centre is.
+    pub fn has_place(&self) -> bool {
+        match self.kind {
+            Kind::Turn | Kind::Helix(_) | Kind::Ball => true,
+            Kind::Slide | Kind::Circle(_) => false,
+        }
+    }
+
+    /// Whether it turns what it carries.
+    pub fn turns(&self) -> bool {
+        match self.kind {
+            Kind::Turn | Kind::Helix(_) | Kind::Ball => true,
+            Kind::Slide | Kind::Circle(_) => false,
+        }
+    }
+
+    /// The arm of a circle and the point to which it moves the arm's end where it moves a point to another one: an equation in
+    /// these is one in the joint. Both points themselves for other joints.
+    #[inline(always)]
+    pub fn armed<T: Real>(&self, moved: T::Space, fixed: T::Space) -> (T::Space, T::Space) {
+        match self.kind {
+            Kind::Circle(arm) => {
+                let arm = constant::<T>(&arm);
+                (arm, fixed.plus(T::constant(-1.0), moved).plus(T::constant(1.0), arm))
+            }
+            Kind::Turn | Kind::Helix(_) | Kind::Slide | Kind::Ball => (moved, fixed),
+        }
+    }
+
+    /// The axis. That of a circle is through the origin, from where its arm is.
     #[inline(always)]
     pub fn axis<T: Real>(&self) -> Axis<T> {
-        Axis { point: constant::<T>(&self.point), direction: constant::<T>(&self.direction) }
+        let point = match self.kind {
+            Kind::Circle(_) => Vector3::zeros(),
+            Kind::Turn | Kind::Helix(_) | Kind::Slide | Kind::Ball => self.point,
+        };
+        Axis { point: constant::<T>(&point), direction: constant::<T>(&self.direction) }
     }
 
     /// The number of freedoms.
     pub fn freedoms(&self) -> usize {
         match self.kind {
             Kind::Turn | Kind::Helix(_) | Kind::Slide => 1,
+            Kind::Circle(_) => 2,
             Kind::Ball => 3,
         }
     }
@@ -150,7 +191,12 @@ impl Element {
             (Kind::Turn | Kind::Helix(_), Vector::Direction) => self.axis::<T>().turned(v, unit),
             (Kind::Helix(_), Vector::Point) => along(self.axis::<T>().moved(v, unit)),
             (Kind::Slide, Vector::Point) => along(v),
-            (Kind::Slide, Vector::Direction) | (Kind::Ball, _) => v,
+            (Kind::Circle(arm), Vector::Point) => {
+                let arm = constant::<T>(&arm);
+                let moved = self.axis::<T>().turned(arm, by.unit).plus(T::constant(-1.0), arm);
+                v.plus(T::constant(if back { -1.0 } else { 1.0 }), moved)
+            }
+            (Kind::Slide | Kind::Circle(_), Vector::Direction) | (Kind::Ball, _) => v,
         })
     }
 
@@ -166,10 +212,13 @@ impl Element {
             (Kind::Turn, &[q, ..]) => about(turn(q), Vector3::zeros()),
             (Kind::Helix(pitch), &[q, ..]) => about(turn(q), self.direction * (pitch * q)),
             (Kind::Slide, &[q, ..]) => Translation3::from(self.direction * q).into(),
+            (Kind::Circle(arm), &[q, ..]) => Translation3::from(turn(q) * arm - arm).into(),
             (Kind::Ball, &[x, y, z, ..]) => {
                 about(UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z)), Vector3::zeros())
             }
-            (Kind::Turn | Kind::Helix(_) | Kind::Slide | Kind::Ball, _) => Isometry3::identity(),
+            (Kind::Turn | Kind::Helix(_) | Kind::Slide | Kind::Ball | Kind::Circle(_), _) => {
+                Isometry3::identity()
+            }
         }
     }
 }

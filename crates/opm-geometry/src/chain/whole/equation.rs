@@ -150,7 +150,18 @@ impl<P: Copy> Equation<P> {
         T::compute(|| match *self {
             Self::Distance { moved, fixed, square } => {
                 let square = square.of::<T>(read);
-                (axis.distance(read(moved), read(fixed), square), Invariant::Distance(square))
+                let (moved, fixed) = element.armed::<T>(read(moved), read(fixed));
+                (axis.distance(moved, fixed, square), Invariant::Distance(square))
+            }
+            // What a circle shifts is shifted by its arm's end, whichever side of it the plane is on.
+            Self::Height { moved, normal, base, height, back }
+                if let Kind::Circle(arm) = element.kind =>
+            {
+                let (normal, arm) = (read(normal), constant::<T>(&arm));
+                let level = read(moved).plus(T::constant(-1.0), read(base)).inner(normal);
+                let missing = height.of::<T>(read) - level;
+                let shift = if back { -missing } else { missing };
+                (axis.height(arm, normal, shift + normal.inner(arm)), Invariant::Height)
             }
             Self::Height { moved, normal, base, height, back } => {
                 let normal = read(normal);
@@ -265,7 +276,11 @@ impl<P: Copy> Kernel<P> {
     ) -> (Moved<T>, T::Joint) {
         let minus = T::constant(-1.0);
         let towards = |y, w, size, roots: &mut R| towards::<T, R>(element, y, w, size, roots);
-        let point = || constant::<T>(&element.point);
+        let arms = |moved, fixed| {
+            let (from, to) = element.armed::<T>(read(moved), read(fixed));
+            let point = element.axis::<T>().point;
+            (from.plus(minus, point), to.plus(minus, point))
+        };
         match self {
             Self::Linear(one) => {
                 let (rate, constant) = one.linear::<T>(element, read);
@@ -281,9 +296,8 @@ impl<P: Copy> Kernel<P> {
                 slid(element, roots.quadratic(half, constant, square, sign))
             }
             &Self::Point { moved, fixed } => match element.kind {
-                Kind::Turn => {
-                    let (from, to) =
-                        (read(moved).plus(minus, point()), read(fixed).plus(minus, point()));
+                Kind::Turn | Kind::Circle(_) => {
+                    let (from, to) = arms(moved, fixed);
                     turned(element, towards(from, to, size, roots))
                 }
                 Kind::Helix(_) | Kind::Slide | Kind::Ball => slid(
@@ -292,8 +306,7 @@ impl<P: Copy> Kernel<P> {
                 ),
             },
             &Self::Line { moved, fixed } => {
-                let (from, to) =
-                    (read(moved).plus(minus, point()), read(fixed).plus(minus, point()));
+                let (from, to) = arms(moved, fixed);
                 turned(element, towards(from, to, size, roots))
             }
             &Self::Direction { moved, fixed } => {
@@ -323,7 +336,7 @@ fn slid<T: Real>(element: &Element, shift: T) -> (Moved<T>, T::Joint) {
             let angle = shift * (1.0 / pitch);
             (Moved { unit: angle.unit(), shift }, T::Joint::value(angle))
         }
-        Kind::Turn | Kind::Slide | Kind::Ball => {
+        Kind::Turn | Kind::Slide | Kind::Ball | Kind::Circle(_) => {
             (Moved { shift, ..Moved::home() }, T::Joint::value(shift))
         }
     }
@@ -337,7 +350,7 @@ fn turned<T: Real>(element: &Element, unit: T::Plane) -> (Moved<T>, T::Joint) {
             let angle = unit.argument();
             (Moved { unit, shift: angle * pitch }, T::Joint::value(angle))
         }
-        Kind::Turn | Kind::Slide | Kind::Ball => {
+        Kind::Turn | Kind::Slide | Kind::Ball | Kind::Circle(_) => {
             (Moved { unit, ..Moved::home() }, T::Joint::direction(unit))
         }
     }

@@ -106,11 +106,10 @@ impl<'a> Nodes<'a> {
             (Kind::Turn | Kind::Helix(_), Vector::Direction) => {
                 vector.cross(&element.direction).norm() <= 1e-9
             }
-            (Kind::Slide, Vector::Direction) => true,
+            (Kind::Slide | Kind::Circle(_), Vector::Direction) => true,
             (Kind::Ball, Vector::Point) => (vector - element.point).norm() <= self.tiny,
-            (Kind::Helix(_) | Kind::Slide, Vector::Point) | (Kind::Ball, Vector::Direction) => {
-                false
-            }
+            (Kind::Helix(_) | Kind::Slide | Kind::Circle(_), Vector::Point)
+            | (Kind::Ball, Vector::Direction) => false,
         }
     }
 
@@ -118,7 +117,7 @@ impl<'a> Nodes<'a> {
     pub fn carried(&mut self, by: Link, back: bool, kind: Vector, of: Id) -> Id {
         if let Link::Joint(joint) = by {
             let known = self.known(of).is_some_and(|vector| self.leaves(joint, kind, &vector));
-            if known || (self.elements[joint].kind == Kind::Slide && kind == Vector::Direction) {
+            if known || (!self.elements[joint].turns() && kind == Vector::Direction) {
                 return of;
             }
         }

@@ -151,29 +151,47 @@ impl Leg<'_> {
         let turns = of(|kind| matches!(kind, Kind::Turn));
         let helices = of(|kind| matches!(kind, Kind::Helix(_)));
         let slides = of(|kind| matches!(kind, Kind::Slide));
+        let circles = of(|kind| matches!(kind, Kind::Circle(_)));
         let mut found = Objects::default();
-        if slides.is_empty() && helices.is_empty() {
+        if slides.is_empty() && helices.is_empty() && circles.is_empty() {
             self.points(nodes, seen, &balls, &turns, &mut found);
         }
         if !balls.is_empty() {
             return found;
         }
-        if let ([(place, joint)], [], []) = (&helices[..], &turns[..], &slides[..]) {
+        if let ([(place, joint)], [], [], []) =
+            (&helices[..], &turns[..], &slides[..], &circles[..])
+        {
             found.some.push(Object::Line { place: *place, joint: *joint });
         }
+        // Sliders across a direction, and circles about it, keep the height along it.
+        let level = |along: usize| {
+            slides.iter().all(|&(_, one)| self.across(along, one))
+                && circles.iter().all(|&(_, one)| self.parallel(along, one))
+        };
         let axes = || turns.iter().chain(&helices);
         if let Some(&(place, first)) = axes().next() {
             if axes().all(|&(_, joint)| self.parallel(first, joint)) {
                 let direction = nodes.constant(self.elements[first].direction);
                 found.some.push(Object::Direction { place, direction });
-                if helices.is_empty() && slides.iter().all(|&(_, one)| self.across(first, one)) {
+                if helices.is_empty() && level(first) {
                     let base = nodes.constant(self.foot(first));
                     found.some.push(Object::Plane { place, normal: direction, base });
                 }
             }
         } else {
             found.directions = true;
-            self.planes(nodes, seen, &slides, &mut found);
+            match circles.first() {
+                // What circles about one direction, and sliders across it, move in planes across it.
+                Some(&(place, first)) => {
+                    if level(first) {
+                        let normal = nodes.constant(self.elements[first].direction);
+                        let base = nodes.constant(self.centre);
+                        found.some.push(Object::Plane { place, normal, base });
+                    }
+                }
+                None => self.planes(nodes, seen, &slides, &mut found),
+            }
         }
         found
     }

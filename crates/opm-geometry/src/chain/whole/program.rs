@@ -1,9 +1,9 @@
 //! An order as a flat list of operations on vectors, over any numbers.
 
 use super::MOST_FREEDOMS;
-use super::element::{Element, Moved, Vector, constant};
+use super::element::{Element, Kind, Moved, Vector, constant};
 use super::equation::{Kernel, Roots};
-use crate::numbers::{Joint, Real, Rotation, Space};
+use crate::numbers::{Joint, Plane, Real, Rotation, Space};
 use nalgebra::Vector3;
 
 /// So many vectors are held at once, at most.
@@ -156,6 +156,10 @@ impl Program {
                     let (by, displacement) = kernel.solve(element, size, sign, at, roots);
                     moved[joint % JOINTS] = by;
                     joints[element.slot] = displacement;
+                    // The second hinge of a parallelogram turns back.
+                    if let Kind::Circle(_) = element.kind {
+                        joints[element.slot + 1] = T::Joint::direction(by.unit.conj());
+                    }
                     continue;
                 }
             };

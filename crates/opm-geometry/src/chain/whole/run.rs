@@ -56,6 +56,7 @@ impl WholeLeg {
                 Kind::Helix(pitch) => LegJoint::Screw { axis, point, pitch },
                 Kind::Slide => LegJoint::Slide { axis },
                 Kind::Ball => LegJoint::Ball { point },
+                Kind::Circle(arm) => LegJoint::Parallelogram { axis, point, arm },
             }
         };
         self.elements.iter().map(joint).collect()

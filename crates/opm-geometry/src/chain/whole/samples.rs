@@ -73,6 +73,10 @@ pub(super) fn step(
             Kind::Turn => write(element.slot, direction, zero),
             Kind::Helix(pitch) => write(element.slot, direction, direction * pitch),
             Kind::Slide => write(element.slot, zero, direction * size),
+            Kind::Circle(arm) => {
+                let arm = inner.rotation * (arm + joint.translation.vector);
+                write(element.slot, zero, direction.cross(&arm));
+            }
             Kind::Ball => {
                 for i in 0..3 {
                     write(element.slot + i, inner.rotation * Vector3::ith(i, 1.0), zero);
@@ -93,7 +97,7 @@ pub(super) fn step(
         let slot = element.slot;
         match element.kind {
             _ if element.is_given() => {}
-            Kind::Turn | Kind::Helix(_) => {
+            Kind::Turn | Kind::Helix(_) | Kind::Circle(_) => {
                 values[slot] += by[slot];
                 *joint = element.exp(&values[slot..]);
             }

@@ -105,10 +105,7 @@ impl Solved<'_> {
             let sine = if forwards { unit.im } else { 1.0 - unit.re };
             (w, elements[joint].direction * -sine)
         };
-        let turns = |joint: usize| match elements[joint].kind {
-            Kind::Turn | Kind::Helix(_) => true,
-            Kind::Slide | Kind::Ball => false,
-        };
+        let turns = |joint: usize| elements[joint].turns() && elements[joint].kind != Kind::Ball;
         for joint in (0..first).filter(|&joint| turns(joint)) {
             rest = product(inverse(joint), rest);
         }
@@ -185,6 +182,11 @@ impl Solved<'_> {
                         let value = values[element.slot];
                         out[element.slot] = match element.kind {
                             Kind::Turn => JointDisplacement::Direction(angle::unit(value)),
+                            Kind::Circle(_) => {
+                                let unit = angle::unit(value);
+                                out[element.slot + 1] = JointDisplacement::Direction(unit.conj());
+                                JointDisplacement::Direction(unit)
+                            }
                             Kind::Helix(_) | Kind::Slide => JointDisplacement::Value(value),
                             Kind::Ball => {
                                 let vector = joint.rotation.scaled_axis();
@@ -222,7 +224,7 @@ impl Solved<'_> {
                         out[i] = JointDisplacement::Value(values[i]);
                     }
                 }
-                Kind::Turn | Kind::Helix(_) | Kind::Slide => {}
+                Kind::Turn | Kind::Helix(_) | Kind::Slide | Kind::Circle(_) => {}
             }
         }
     }

@@ -60,7 +60,7 @@ impl Leg<'_> {
             self.invariants(nodes, seen, [first, last], &a, &b, &mut equations);
         }
         match element.kind {
-            Kind::Turn => self.angles(nodes, seen, equations, &mut found),
+            Kind::Turn | Kind::Circle(_) => self.angles(nodes, seen, equations, &mut found),
             Kind::Helix(_) => {
                 let angle = |one: &&(Equation<Id>, usize)| matches!(one.0, Equation::Angle { .. });
                 let angles = equations.iter().filter(angle).copied().collect();
@@ -137,7 +137,7 @@ impl Leg<'_> {
             points.push((0, nodes.constant(self.centre)));
         }
         let samples = self.samples.len();
-        if element.kind != Kind::Slide {
+        if element.turns() {
             for (place, v) in directions {
                 let moved = seen.carry(nodes, Vector::Direction, v, place, 0);
                 let fixed = seen.carry(nodes, Vector::Direction, v, place, end);
@@ -149,7 +149,10 @@ impl Leg<'_> {
         }
         let arm = |nodes: &Nodes<'_>, moved: Id| {
             middle((1..samples).map(|s| {
-                let arm = nodes.value(moved, s) - element.point;
+                let arm = match element.kind {
+                    Kind::Circle(arm) => arm,
+                    _ => nodes.value(moved, s) - element.point,
+                };
                 arm.cross(&element.direction).norm() / self.size
             }))
         };
@@ -157,7 +160,7 @@ impl Leg<'_> {
             let moved = seen.carry(nodes, Vector::Point, v, place, 0);
             let fixed = seen.carry(nodes, Vector::Point, v, place, end);
             let quality = match element.kind {
-                Kind::Turn => arm(nodes, moved),
+                Kind::Turn | Kind::Circle(_) => arm(nodes, moved),
                 Kind::Helix(_) | Kind::Slide | Kind::Ball => 1.0,
             };
             let cost = nodes.cost(moved) + nodes.cost(fixed);
@@ -181,10 +184,10 @@ impl Leg<'_> {
         b: &Objects,
         to: &mut Vec<(Equation<Id>, usize)>,
     ) {
-        let slides = self.elements[seen.joint].kind != Kind::Turn;
+        let shifts = self.elements[seen.joint].kind != Kind::Turn;
         let end = seen.joints;
         let (mut moved, mut fixed) = (a.some.clone(), b.some.clone());
-        if slides {
+        if shifts {
             // Any point will do for the height over a plane of the other arc.
             let centre = nodes.constant(self.centre);
             if a.everything && !b.everything {
@@ -399,7 +402,7 @@ impl Leg<'_> {
             let value = self.samples[s].values[element.slot];
             match element.kind {
                 Kind::Helix(pitch) => value * pitch,
-                Kind::Turn | Kind::Slide | Kind::Ball => value,
+                Kind::Turn | Kind::Slide | Kind::Ball | Kind::Circle(_) => value,
             }
         };
         let mut distances: Vec<(Equation<Id>, usize, Vec<f64>)> = Vec::new();

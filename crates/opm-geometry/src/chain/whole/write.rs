@@ -122,7 +122,7 @@ impl Writer<'_, '_, '_> {
             steps.iter().filter_map(|step| self.used(step, Vector::Point)).collect();
         ways.push(self.ways(Vector::Point, centre, 0));
         for (joint, element) in elements.iter().enumerate() {
-            if element.kind != Kind::Slide {
+            if element.has_place() {
                 ways.push(self.ways(Vector::Point, element.point, joint));
                 ways.push(self.ways(Vector::Point, self.leg.foot(joint), joint));
             }

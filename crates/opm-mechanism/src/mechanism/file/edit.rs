@@ -107,14 +107,21 @@ pub(super) fn joints(
         for leg in root.items("leg")? {
             let count = leg.table("pattern").map(|pattern| count_of(&pattern));
             let all: Vec<_> = legs.by_ref().take(count.unwrap_or(1)).collect();
-            let described = leg.array("joints")?;
-            for (number, joint) in described.iter().enumerate() {
+            let mut numbers = 0..;
+            let mut next = || {
+                let number = numbers.next()?;
                 let pairs = all
                     .iter()
                     .map(|(old, new)| Some([old.joints.get(number)?, new.joints.get(number)?]));
-                let pairs: Vec<[&Joint; 2]> = pairs.collect::<Option<_>>()?;
+                pairs.collect::<Option<Vec<[&Joint; 2]>>>()
+            };
+            for joint in leg.array("joints")? {
                 let joint = Place::inline(joint)?;
+                let pairs = next()?;
                 edit_joint(&joint, &pairs, count.is_some(), units, edits)?;
+                if joint.get("point2").is_some() {
+                    edit_end(&joint, [&pairs, &next()?], units, edits)?;
+                }
             }
         }
         legs.next().is_none().then_some(())
@@ -146,6 +153,7 @@ fn edit_joint(
         let kinds = std::mem::discriminant(&before.kind) == std::mem::discriminant(&after.kind);
         kinds
             && before.actuated == after.actuated
+            && before.turns_back == after.turns_back
             && before.cone == after.cone
             && before
                 .coordinates
@@ -222,6 +230,30 @@ fn edit_joint(
             let value = limit.of(c)?;
             Some(vec![if limit.has_units_of_file() { number(c, value) } else { value }])
         });
+    }
+    Some(())
+}
+
+/// Edits the second hinge of a parallelogram, which has nothing of its own but its place. The first hinges are edited.
+fn edit_end(
+    table: &Place<'_>,
+    [first, ends]: [&[[&Joint; 2]]; 2],
+    units: FileUnits,
+    edits: &mut Edits<'_>,
+) -> Option<()> {
+    let said = |[[_, first], [old, new]]: [&[&Joint; 2]; 2]| {
+        let [_, mut end] = Joint::parallelogram(&first.name, first.axis, [first.point, new.point]);
+        end.coordinates[0].home = -first.coordinates[0].home;
+        end == **new && (ends.len() == 1 || old.point == new.point)
+    };
+    if !first.iter().zip(ends).all(|(first, end)| said([first, end])) {
+        return None;
+    }
+    let [old, new] = *ends.first()?;
+    if old.point != new.point {
+        let number = |value| units.number_of(value, Quantity::Length);
+        let [before, after] = [old, new].map(|joint| joint.point.coords.as_slice().to_vec());
+        Change { before, after, number: &number, rows: 1 }.apply(table, "point2", edits);
     }
     Some(())
 }

@@ -22,13 +22,14 @@ pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates",
 /// The keys of `[task]` in the file of a family, of which the frames are given.
 pub(super) const FAMILY_TASK_KEYS: &[&str] = &["coordinates"];
 pub(super) const FRAME_KEYS: &[&str] = &["x", "axis", "w", "normal", "origin"];
-pub(super) const TYPES: [(&str, Type); 6] = [
+pub(super) const TYPES: [(&str, Type); 7] = [
     ("revolute", Type::Revolute),
     ("prismatic", Type::Prismatic),
     ("helical", Type::Helical),
     ("cylindrical", Type::Cylindrical),
     ("universal", Type::Universal),
     ("spherical", Type::Spherical),
+    ("parallelogram", Type::Parallelogram),
 ];
 
 /// Names that tables and recordings use for other columns than joints: the task coordinates of all
@@ -55,6 +56,9 @@ pub(super) const RESERVED: [&str; 15] = [
 /// two freedoms would be the same.
 const PARALLEL: f64 = 1e-6;
 
+/// The key of a hinge that turns back what the one before it turned, which `type = "parallelogram"` writes shorter.
+pub(super) const TURNS_BACK: &str = "turns_back";
+
 /// The `type` of a joint.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Type {
@@ -64,6 +68,8 @@ pub(super) enum Type {
     Cylindrical,
     Universal,
     Spherical,
+    /// Two hinges: see [`Joint::parallelogram`].
+    Parallelogram,
 }
 
 impl Type {
@@ -76,6 +82,11 @@ impl Type {
         if self.tilts() {
             keys.push("cone");
         }
+        match self {
+            Self::Revolute => keys.push(TURNS_BACK),
+            Self::Parallelogram => keys.push("point2"),
+            _ => {}
+        }
         keys
     }
 
@@ -86,6 +97,9 @@ impl Type {
         if self != Self::Prismatic {
             keys.push("point");
         }
+        if self == Self::Parallelogram {
+            keys.push("point2");
+        }
         keys
     }
 
@@ -93,14 +107,22 @@ impl Type {
     fn tilts(self) -> bool {
         match self {
             Self::Universal | Self::Spherical => true,
-            Self::Revolute | Self::Prismatic | Self::Helical | Self::Cylindrical => false,
+            Self::Revolute
+            | Self::Prismatic
+            | Self::Helical
+            | Self::Cylindrical
+            | Self::Parallelogram => false,
         }
     }
 
     /// The keys of its axes.
     fn directions(self) -> &'static [&'static str] {
         match self {
-            Self::Revolute | Self::Prismatic | Self::Helical | Self::Cylindrical => &["axis"],
+            Self::Revolute
+            | Self::Prismatic
+            | Self::Helical
+            | Self::Cylindrical
+            | Self::Parallelogram => &["axis"],
             Self::Universal => &["axis", "axis2"],
             Self::Spherical => &[],
         }
@@ -114,7 +136,8 @@ impl Type {
             | Self::Prismatic
             | Self::Cylindrical
             | Self::Universal
-            | Self::Spherical => &[],
+            | Self::Spherical
+            | Self::Parallelogram => &[],
         }
     }
 }
@@ -293,10 +316,52 @@ fn read_joints(
     if items.is_empty() {
         value.report("is empty, expected at least one joint");
     }
-    let joints = all(items.iter().map(|item| read_joint(item, platform, number, names)))?;
+    let read = all(items.iter().map(|item| read_joint(item, platform, number, names)))?;
+    let described = items
+        .iter()
+        .zip(read)
+        .flat_map(|(item, joints)| joints.into_iter().map(move |joint| (item, joint)));
+    let (items, joints): (Vec<&Value<'_>>, Vec<_>) = described.unzip();
     let placed = Leg::new("", placed(joints));
     check_cones(leg, &items, &placed);
+    check_parallelograms(leg, &items, &placed);
     Some(placed.joints)
+}
+
+/// Checks that each hinge that turns back follows one with another, parallel axis.
+fn check_parallelograms(table: &Table<'_>, items: &[&Value<'_>], leg: &Leg) {
+    for (number, (item, joint)) in items.iter().zip(&leg.joints).enumerate() {
+        if !joint.turns_back {
+            continue;
+        }
+        let first = number.checked_sub(1).map(|before| &leg.joints[before]);
+        let first = first.filter(|first| first.kind == JointKind::Revolute && !first.turns_back);
+        let name = &joint.name;
+        let problem = match first {
+            None => format!(
+                "{name} turns back, but the joint before it is not a revolute joint that it could turn back"
+            ),
+            Some(first) if (*first.axis - *joint.axis).norm() > PARALLEL => {
+                format!(
+                    "{name} turns back {}, but its `axis` is another, expected the same",
+                    first.name
+                )
+            }
+            Some(first) => {
+                let bar = joint.point - first.point;
+                let across = bar.cross(&first.axis).norm();
+                let least = PARALLEL * bar.norm().max(first.point.coords.norm());
+                if across > least {
+                    continue;
+                }
+                format!(
+                    "the two axes of {} are one line, expected a bar between them: the points have to differ across the axis",
+                    first.name
+                )
+            }
+        };
+        table.reader.report(item.at, problem);
+    }
 }
 
 /// Reads a joint; `None` if it has no type, because the type decides what else there is to check.
@@ -306,7 +371,7 @@ fn read_joint(
     platform: Point3<f64>,
     number: Option<(usize, usize)>,
     names: &mut UniqueNames,
-) -> Option<(Joint, bool)> {
+) -> Option<Vec<(Joint, bool)>> {
     let table = value.open_table()?;
     let name = table.require("name", "the joint's name");
     let name = name.and_then(|value| Some(pattern::numbered(Some(&value), value.name()?, number)));
@@ -342,7 +407,34 @@ fn read_joint(
     let units = table.reader.units();
     let cone = table.get("cone").filter(|_| kind.tilts());
     joint.cone = cone.and_then(|value| read_cone(&value, units));
-    Some((joint, has_place))
+    let back = table.get(TURNS_BACK).filter(|_| kind == Type::Revolute);
+    if back.is_some_and(|value| value.boolean().unwrap_or_default()) {
+        joint.turns_back = true;
+        if joint.actuated {
+            let at = table.location_of("actuated");
+            let name = &joint.name;
+            let problem = format!(
+                "{name} turns back and is actuated, expected the motor at the joint before it"
+            );
+            table.reader.report(at, problem);
+        }
+    }
+    let mut joints = vec![(joint, has_place)];
+    if kind == Type::Parallelogram {
+        joints.extend(read_end(&table, &joints[0].0, names).map(|end| (end, true)));
+    }
+    Some(joints)
+}
+
+/// Reads the second hinge of a parallelogram. What limits the angle stands with the first one.
+fn read_end(table: &Table<'_>, first: &Joint, names: &mut UniqueNames) -> Option<Joint> {
+    let end = table.require("point2", "a point [x, y, z] on the axis at the other end of the bar");
+    let end = Point3::from(end?.point()?);
+    let [_, back] = Joint::parallelogram(&first.name, first.axis, [first.point, end]);
+    if !first.name.is_empty() {
+        names.add(&back.name, table.reader, table.location_of("name"));
+    }
+    Some(back.at(-first.coordinates[0].home))
 }
 
 /// Reads the cone of a joint: half its angle, or a table with that and its axis.
@@ -366,7 +458,7 @@ fn read_cone(value: &Value<'_>, units: FileUnits) -> Option<Cone> {
 }
 
 /// Checks the cones of a leg's joints: that they have a rod, and that home is inside.
-fn check_cones(table: &Table<'_>, items: &[Value<'_>], leg: &Leg) {
+fn check_cones(table: &Table<'_>, items: &[&Value<'_>], leg: &Leg) {
     let units = table.reader.units();
     let cones = leg.cones();
     for (number, (item, joint)) in items.iter().zip(&leg.joints).enumerate() {
@@ -397,7 +489,7 @@ fn direction(table: &Table<'_>, key: &str) -> Option<Unit<Vector3<f64>>> {
 
 fn joint_kind(table: &Table<'_>, kind: Type, axis: Option<Unit<Vector3<f64>>>) -> JointKind {
     match kind {
-        Type::Revolute => JointKind::Revolute,
+        Type::Revolute | Type::Parallelogram => JointKind::Revolute,
         Type::Prismatic => JointKind::Prismatic,
         Type::Cylindrical => JointKind::Cylindrical,
         Type::Spherical => JointKind::Spherical,

@@ -172,3 +172,48 @@ fn sliders_without_points_are_on_their_legs() {
         }
     }
 }
+
+/// A parallelogram is two hinges. A changed file keeps it as it was typed, and a written one says the same with hinges.
+#[test]
+fn a_parallelogram_stays_as_it_was_typed() {
+    let text = r#"
+format = 1
+name = "rail"
+units = { length = "mm", angle = "deg" }
+platform = { point = [0, 0, -300] }
+
+[[leg]]
+joints = [
+  { name = "s1", type = "prismatic", axis = [1, 0, 0], actuated = true },
+  { name = "p1", type = "parallelogram", axis = [0, 1, 0], point = [-250, 0, 0], point2 = [-50, 0, -300], home = 20 },
+]
+
+[[leg]]
+joints = [
+  { name = "s2", type = "prismatic", axis = [1, 0, 0], actuated = true },
+  { name = "p2", type = "parallelogram", axis = [0, 1, 0], point = [250, 0, 0], point2 = [50, 0, -300] }, # as drawn
+]
+"#;
+    let file = read(text).unwrap();
+    let leg = &file.mechanism.legs[0];
+    let names: Vec<&str> = leg.coordinates().map(|c| &*c.name).collect();
+    assert_eq!(names, ["s1", "p1", "p1.end"]);
+    let home: Vec<f64> = leg.coordinates().map(|c| c.home.to_degrees()).collect();
+    assert!((home[1] - 20.0).abs() < 1e-12 && home[1] == -home[2]);
+
+    let mut moved = file.clone();
+    moved.mechanism.legs[1].joints[2].point.z = -0.31;
+    moved.mechanism.legs[0].joints[1].coordinates[0].home = 25_f64.to_radians();
+    moved.mechanism.legs[0].joints[2].coordinates[0].home = -25_f64.to_radians();
+    let expected = text
+        .replace("point2 = [50, 0, -300]", "point2 = [50, 0, -310]")
+        .replace("home = 20", "home = 25");
+    assert_eq!(moved.text(), expected);
+    // Hinges that are no longer opposite cannot be said as one joint.
+    moved.mechanism.legs[0].joints[2].coordinates[0].home = 0.0;
+    assert!(!moved.text().contains("# as drawn"));
+
+    let written = write(&file.mechanism, file.units, Digits::All);
+    assert!(written.contains("turns_back = true"), "{written}");
+    assert_eq!(read(&written).unwrap().mechanism, file.mechanism);
+}

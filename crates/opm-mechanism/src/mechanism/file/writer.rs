@@ -1,6 +1,7 @@
 //! Writing a mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
+use super::joints::TURNS_BACK;
 use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointCoordinate, JointKind};
 use crate::mechanism::{Cone, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, TaskHints};
 use crate::numeric::Quantity;
@@ -175,6 +176,9 @@ impl Writer {
         }
         if joint.actuated {
             entries.push("actuated = true".into());
+        }
+        if joint.turns_back {
+            entries.push(format!("{TURNS_BACK} = true"));
         }
 
         let one_or_all = |values: Vec<String>| match &values[..] {

@@ -1,5 +1,6 @@
 //! The part of the schema that describes lists of joints.
 
+use super::super::joints::TURNS_BACK;
 use super::Properties;
 use super::values::{
     array, cases, closed, described, direction, exactly, form, name, number, object, point,
@@ -111,7 +112,7 @@ fn joint() -> Value {
     let types = TYPES.map(|(word, _)| word);
     let description = "What the joint allows: revolute a rotation, prismatic a translation, helical a screw \
                        motion, cylindrical a rotation and a translation along one axis, universal rotations \
-                       about two axes, spherical every rotation.";
+                       about two axes, spherical every rotation, parallelogram a translation on a circle.";
     let mut named = name("The joint's name, unique in the mechanism.");
     named["not"] = json!({ "enum": RESERVED });
     let properties = [
@@ -120,6 +121,14 @@ fn joint() -> Value {
         ("axis", direction("the direction of the axis at home")),
         ("axis2", direction("the direction, at home, of the axis next to the platform")),
         ("point", point("a point on the axis at home; of a prismatic joint, where it is drawn", 3)),
+        (
+            "point2",
+            point(
+                "of a parallelogram, a point on the axis at the other end of its bar, at home",
+                3,
+            ),
+        ),
+        (TURNS_BACK, json!({ "description": TURNS_BACK_MEANS, "type": "boolean" })),
         ("pitch", number(PITCH, Quantity::Length)),
         (
             "actuated",
@@ -163,6 +172,7 @@ fn cone() -> Value {
 
 const CONE: &str = "How far the rod at the joint may tilt: half the angle of a cone about the rod at home, or about a \
                     given axis. In units.angle.";
+const TURNS_BACK_MEANS: &str = "Whether it turns back what the joint before it turns: the two are the hinges of a parallelogram.";
 const PITCH: &str = "the advance along the axis per radian; negative if it is left-handed";
 const AT_HOME: &str = "The value at home, 0 if it is not given; a reported value is this one plus the \
                        displacement. A number, or for a joint of several coordinates an array with one for \
@@ -190,7 +200,7 @@ const COULOMB: &str = "The joint's friction against its rate, N m, of a slider N
 fn joint_form(kind: Type) -> Value {
     // Only the number of its coordinates counts.
     let like = match kind {
-        Type::Revolute => JointKind::Revolute,
+        Type::Revolute | Type::Parallelogram => JointKind::Revolute,
         Type::Prismatic => JointKind::Prismatic,
         Type::Helical => JointKind::Helical { pitch: 1.0 },
         Type::Cylindrical => JointKind::Cylindrical,

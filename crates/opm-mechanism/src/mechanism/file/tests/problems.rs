@@ -484,3 +484,65 @@ fn obstacles_and_radii() {
         marked(text, message);
     }
 }
+
+/// Two sliders, each with a parallelogram, and a slider that has neither.
+const PARALLELOGRAMS: &str = r#"
+format = 1
+name = "rail"
+units = { length = "mm", angle = "deg" }
+platform = { point = [0, 0, -300] }
+
+[[leg]]
+joints = [
+  { name = "s1", type = "prismatic", axis = [1, 0, 0], actuated = true },
+  { name = "p1", type = "parallelogram", axis = [0, 1, 0], point = [-250, 0, 0], point2 = [-50, 0, -300], home = 20 },
+]
+
+[[leg]]
+joints = [
+  { name = "s2", type = "prismatic", axis = [1, 0, 0], actuated = true },
+  { name = "r2", type = "revolute", axis = [0, 1, 0], point = [250, 0, 0] },
+  { name = "q2", type = "revolute", axis = [0, 1, 0], point = [50, 0, -300], turns_back = true },
+]
+"#;
+
+#[test]
+fn parallelograms() {
+    for (from, to, message) in [
+        (r#"{ name = "p1", type"#, r#"^{ name = "p1", type"#, ""),
+        (", point2 = [-50, 0, -300]", "", "`point2` is missing"),
+        ("point2 = [-50, 0, -300]", "point2 = ^7", "`point2` is an integer"),
+        (
+            "point = [50, 0, -300]",
+            "axis2 = [1, 0, 0], point = [50, 0, -300]",
+            "unknown key `axis2`",
+        ),
+        ("point2 = [-50, 0, -300]", "point2 = [-250, 9, 0]", "the two axes of p1 are one line"),
+        (
+            "axis = [0, 1, 0], point = [50",
+            "axis = [0, 1, 1], point = [50",
+            "q2 turns back r2, but its `axis`",
+        ),
+        (
+            r#""revolute", axis = [0, 1, 0], point = [250"#,
+            r#""helical", pitch = 3, axis = [0, 1, 0], point = [250"#,
+            "is not a revolute joint",
+        ),
+        (
+            "turns_back = true",
+            "turns_back = true, actuated = true",
+            "q2 turns back and is actuated",
+        ),
+        ("name = \"r2\"", "name = \"p1.end\"", "p1.end"),
+    ] {
+        assert!(PARALLELOGRAMS.contains(from), "{from}");
+        let text = PARALLELOGRAMS.replace(from, to).replace('^', "");
+        if message.is_empty() {
+            assert!(read(&text).is_ok());
+            continue;
+        }
+        let errors = problems(&text);
+        assert!(errors.problems[0].message.contains(message), "{message:?} in {errors}");
+        assert_eq!(errors.problems.len(), 1, "{errors}");
+    }
+}
