@@ -136,3 +136,38 @@ def test_drives_are_checked_as_in_files():
             m.with_joints({joint: {key: -1.0}})
         with pytest.raises(opm.OpmError, match="nan|NaN"):
             m.with_joints({joint: {key: float("nan")}})
+
+
+def test_a_parallelogram_is_two_hinges():
+    rail = opm.Manipulator.parse(
+        """
+format = 1
+name = "rail"
+units = { length = "mm", angle = "deg" }
+platform = { point = [0, 0, -300] }
+[[leg]]
+joints = [
+  { name = "s1", type = "prismatic", axis = [1, 0, 0], point = [-250, 0, 0], actuated = true },
+  { name = "p1", type = "parallelogram", axis = [0, 1, 0], point = [-250, 0, 0], point2 = [-50, 0, -300] },
+]
+[[leg]]
+joints = [
+  { name = "s2", type = "prismatic", axis = [1, 0, 0], point = [250, 0, 0], actuated = true },
+  { name = "p2", type = "parallelogram", axis = [0, 1, 0], point = [250, 0, 0], point2 = [50, 0, -300] },
+]
+"""
+    )
+    first, back = rail.legs["leg1"][1:]
+    assert (first.name, first.turns_back, back.name, back.turns_back) == ("p1", False, "p1.end", True)
+    values = dict(zip(rail.joints, rail.inverse([0.05, -0.32])))
+    assert values["p1"] == pytest.approx(-values["p1.end"])
+    # The end of the bar is 20 mm lower and 50 mm to the right: the slider follows with the bar's length of 360.6 mm.
+    out = np.sqrt(0.2**2 + 0.3**2 - 0.32**2)
+    assert values["s1"] == pytest.approx(0.05 + 0.2 - out, abs=1e-12)
+    again = opm.Manipulator.from_joints(rail.legs, platform=rail.reference_point)
+    assert again.decomposition.mobility == rail.decomposition.mobility == 2
+    # Without what holds them, the hinges let the platform turn.
+    loose = rail.with_joints({"p1.end": {"turns_back": False}, "p2.end": {"turns_back": False}})
+    assert loose.decomposition.mobility == 3
+    moved = rail.with_joints({"p1.end": {"point": (-0.05, 0, -0.31)}})
+    assert "point2 = [-50, 0, -310]" in moved.text

@@ -189,6 +189,7 @@ class Joint:
         axis2: _Vector | None = None,
         pitch: float | None = None,
         actuated: bool = False,
+        turns_back: bool = False,
         home: _PerCoordinate | None = None,
         limits: tuple[float, float] | Sequence[tuple[float, float] | None] | None = None,
         max_rate: _PerCoordinate | None = None,
@@ -216,6 +217,8 @@ class Joint:
     def pitch(self) -> float | None: ...
     @property
     def actuated(self) -> bool: ...
+    @property
+    def turns_back(self) -> bool: ...
     @property
     def coordinates(self) -> list[str]: ...
     @property

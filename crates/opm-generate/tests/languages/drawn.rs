@@ -11,12 +11,34 @@ use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
 /// The shipped mechanisms whose legs are split, and some whose legs are solved whole: with universal joints, with spherical ones and
-/// cones, with a height; with a stem that determines positions, with one that turns; with constraints of several legs; a symmetric one.
+/// cones, with a height, with parallelograms; with a stem that determines positions, with one that turns; with constraints of several
+/// legs; a symmetric one.
 pub fn shipped() -> Vec<Manipulator> {
     let split = SPLIT.iter().filter_map(|example| Manipulator::read(example.text).ok());
     let example = |name: &str| Manipulator::example(name).expect("it is shipped");
     let whole = ["delta", "quadrupteron", "tricept", "ankle"].map(example);
-    split.chain(whole).chain([with_cones(&example("stewart")), three_rps(), omni_wrist()]).collect()
+    let typed = [with_cones(&example("stewart")), three_rps(), omni_wrist(), generator()];
+    split.chain(whole).chain(typed).collect()
+}
+
+/// Two legs of a hinge, two parallelograms in a row, and a hinge (the Schoenflies Motion Generator).
+fn generator() -> Manipulator {
+    let text = r#"
+format = 1
+name = "generator"
+units = { length = "mm", angle = "deg" }
+platform = { point = [0, 0, 100] }
+[[leg]]
+name = "leg{i}"
+pattern = { count = 2, axis = [0, 0, 1] }
+joints = [
+  { name = "r{i}", type = "revolute", axis = [0, 0, 1], point = [400, 0, 0], actuated = true },
+  { name = "p{i}", type = "parallelogram", axis = [0, 1, 0], point = [370, 0, 40], point2 = [300, 0, 330], actuated = true, limits = [-70, 80] },
+  { name = "q{i}", type = "parallelogram", axis = [0, 1, 0], point = [290, 0, 330], point2 = [70, 0, 120] },
+  { name = "s{i}", type = "revolute", axis = [0, 0, 1], point = [60, 0, 110] },
+]
+"#;
+    Manipulator::read(text).expect("its platform translates and turns about the vertical")
 }
 
 /// Three legs of a hinge, a motor that slides, and a ball: the platform turns as it tilts.

@@ -59,6 +59,7 @@ impl Leg<'_> {
             self.direct(nodes, seen, &a, &b, &mut found);
             self.invariants(nodes, seen, [first, last], &a, &b, &mut equations);
         }
+        equations.extend(self.beside_circle(nodes, seen, &unknown));
         match element.kind {
             Kind::Turn | Kind::Circle(_) => self.angles(nodes, seen, equations, &mut found),
             Kind::Helix(_) => {
@@ -75,6 +76,23 @@ impl Leg<'_> {
             these.min_by_key(|one| one.rank).copied()
         };
         [false, true].into_iter().filter_map(best).collect()
+    }
+
+    /// The equation where the only other unknown is a circle: what it carries stays at its arm's length from a point on its other
+    /// side.
+    fn beside_circle(
+        &self,
+        nodes: &mut Nodes<'_>,
+        seen: &Loop,
+        unknown: &[usize],
+    ) -> Option<(Equation<Id>, usize)> {
+        let &[place] = unknown else { return None };
+        let Kind::Circle(arm) = self.elements[seen.unknown(place)?].kind else { return None };
+        let [near, far] = [self.centre - arm, self.centre].map(|point| nodes.constant(point));
+        let moved = seen.carry(nodes, Vector::Point, near, place, 0);
+        let fixed = seen.carry(nodes, Vector::Point, far, place + 1, seen.joints);
+        let square = Scalar::Known(arm.norm_squared());
+        Some((Equation::Distance { moved, fixed, square }, nodes.cost(moved) + nodes.cost(fixed)))
     }
 
     fn add(

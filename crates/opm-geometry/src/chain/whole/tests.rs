@@ -43,6 +43,11 @@ fn s(point: [f64; 3]) -> LegJoint {
     LegJoint::Ball { point: point.into() }
 }
 
+/// A parallelogram.
+fn pa(axis: [f64; 3], point: [f64; 3], arm: [f64; 3]) -> LegJoint {
+    LegJoint::Parallelogram { axis: unit(axis), point: point.into(), arm: arm.into() }
+}
+
 /// A type of leg.
 struct Type {
     name: &'static str,
@@ -102,6 +107,23 @@ fn types() -> Vec<Type> {
         of("RPPR", &[r(Z, A), p(X), p(Z), r(Y, C)], 1, 0, free),
         of("UPR", &[r(X, A), r(Y, A), p([-0.1, 0.0, 0.4]), r(Y, C)], 2, 1, free),
         of("PCU", &[p(X), r(Z, A), p(Z), r(X, C), r(Y, C)], 0, 1, free),
+        of(
+            "RRPaR",
+            &[r(Y, A), r(Y, B), pa([0.3, 0.0, 0.25], B, [-0.25, 0.0, 0.3]), r(Y, C)],
+            0,
+            2,
+            |q| {
+                (q[3], q[4]) = (-q[2], -q[0] - q[1]);
+            },
+        ),
+        of("PRPaR", &[p(X), r(Y, B), pa(X, B, [0.0, 0.02, 0.3]), r(Y, C)], 0, 2, |q| {
+            (q[3], q[4]) = (-q[2], -q[1]);
+        }),
+        of("RPaR", &[r(Z, A), pa(Z, B, [-0.3, 0.1, 0.0]), r(Z, C)], 0, 1, |q| q[2] = -q[1]),
+        of("RPaPaR", &[r(Z, A), pa(Y, A, d), pa(Y, B, [-0.2, 0.0, 0.1]), r(Z, C)], 0, 2, |q| {
+            (q[2], q[4]) = (-q[1], -q[3]);
+        }),
+        of("PaS", &[pa(Y, A, d), s(C)], 0, 0, |q| q[1] = -q[0]),
         of("RC", &[r(X, A), r(Y, B), p(Y)], 0, 0, free),
         of("HH", &[h(Z, A, 0.02), h(Z, B, 0.03)], 0, 0, free),
         of("S", &[s(C)], 0, 0, free),
@@ -111,6 +133,7 @@ fn types() -> Vec<Type> {
 fn freedoms(joint: &LegJoint) -> usize {
     match joint {
         LegJoint::Screw { .. } | LegJoint::Slide { .. } => 1,
+        LegJoint::Parallelogram { .. } => 2,
         LegJoint::Ball { .. } => 3,
     }
 }
@@ -129,6 +152,11 @@ fn exponential(joint: &LegJoint, q: &[f64]) -> Isometry3<f64> {
         LegJoint::Slide { axis } => Translation3::from(axis.into_inner() * q[0]).into(),
         LegJoint::Ball { point } => {
             about(point, UnitQuaternion::from_scaled_axis(Vector3::new(q[0], q[1], q[2])))
+        }
+        // Two hinges.
+        LegJoint::Parallelogram { axis, point, arm } => {
+            let [there, back] = [q[0], -q[0]].map(|q| UnitQuaternion::from_axis_angle(&axis, q));
+            about(point, there) * about(point + arm, back)
         }
     }
 }
@@ -195,7 +223,9 @@ fn apart(leg: &Type, a: &[f64], b: &[f64]) -> f64 {
     for joint in &leg.joints {
         let off = a[slot] - b[slot];
         most = match joint {
-            LegJoint::Screw { .. } => most.max((off - TAU * (off / TAU).round()).abs()),
+            LegJoint::Screw { .. } | LegJoint::Parallelogram { .. } => {
+                most.max((off - TAU * (off / TAU).round()).abs())
+            }
             LegJoint::Slide { .. } => most.max(off.abs() / SIZE),
             LegJoint::Ball { .. } => most,
         };
@@ -221,7 +251,9 @@ fn regularity(leg: &Type, q: &[f64]) -> f64 {
         columns.fixed_view_mut::<3, 1>(0, i).copy_from(&turn);
         columns.fixed_view_mut::<3, 1>(3, i).copy_from(&shift);
     }
-    let rank = n.min(6);
+    // The second hinge of a parallelogram moves with the first one.
+    let hinges = leg.joints.iter().filter(|joint| matches!(joint, LegJoint::Parallelogram { .. }));
+    let rank = (n - hinges.count()).min(6);
     let values = columns.singular_values();
     values.iter().take(rank).fold(f64::INFINITY, |least, &one| least.min(one))
 }
@@ -249,6 +281,11 @@ fn congruent_legs_have_the_same_order() {
             }
             LegJoint::Slide { axis } => LegJoint::Slide { axis: turned(axis) },
             LegJoint::Ball { point } => LegJoint::Ball { point: place * point },
+            LegJoint::Parallelogram { axis, point, arm } => LegJoint::Parallelogram {
+                axis: turned(axis),
+                point: place * point,
+                arm: place.rotation * arm,
+            },
         };
         let joints: Vec<LegJoint> = leg.joints.iter().map(stands).collect();
         let motions: Vec<_> = random(9)
