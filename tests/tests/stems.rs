@@ -372,6 +372,108 @@ fn an_exechon_by_its_rows() {
     assert!(solved > 500, "{solved}");
 }
 
+const EXECHON: &str = include_str!("../../crates/opm-core/templates/exechon.toml");
+
+fn exechon(independent: &str) -> Result<Manipulator, String> {
+    let text = EXECHON
+        .replace("[platform]", &format!("[task]\nindependent = {independent}\n\n[platform]"));
+    Manipulator::read(&text).map_err(|error| error.to_string())
+}
+
+/// An Exechon is at a place with four orientations: two of the plane of its first two legs, and two in it. That of a pose is
+/// among them, with the same joints, and each of them is as geometry has it.
+#[test]
+fn an_exechon_by_its_position() {
+    let plain = Manipulator::read(EXECHON).unwrap();
+    let m = exechon(r#"["x", "y", "z"]"#).unwrap();
+    let names: Vec<&str> = m.task_coordinates().iter().map(|c| &*c.name).collect();
+    assert_eq!(names, ["x", "y", "z"]);
+    assert_eq!(m.dependent_coordinates().len(), 3);
+    let foot = Vector3::new(0.0, 0.4, 0.0);
+    let mut rng = Rng::with_seed(8);
+    let (mut known, mut at) = (plain.solution(), m.solution());
+    let mut four = 0;
+    for _ in 0..100 {
+        let pose = [0.7 + 0.4 * rng.f64(), rng.f64() - 0.5, rng.f64() - 0.5];
+        let (p, turn) = platform(&plain, &pose, plain.home_mode());
+        let joints = plain.inverse(&pose, plain.home_mode(), &mut known).unwrap();
+        let joints = joints.map(|solution| solution.joints().to_vec());
+        let mut orientations: Vec<Matrix3<f64>> = Vec::new();
+        let mut found = false;
+        for mode in m.modes() {
+            let Ok(Some(_)) = m.dependent_values(p.as_slice(), mode) else { continue };
+            let (there, other) = platform(&m, p.as_slice(), mode);
+            assert!((there - p).norm() < 1e-11);
+            assert!(other[(0, 1)].abs() < 1e-11);
+            assert!(other.column(1).dot(&p).abs() < 1e-11);
+            assert!(other.column(0).dot(&(foot - p)).abs() < 1e-11);
+            if orientations.iter().all(|one| (one - other).norm() > 1e-6) {
+                orientations.push(other);
+            }
+            if (other - turn).norm() < 1e-9
+                && let (Some(joints), Some(solution)) =
+                    (&joints, m.inverse(p.as_slice(), mode, &mut at).unwrap())
+            {
+                let off = solution.joints().iter().zip(joints).map(|(a, b)| (a - b).abs());
+                found |= off.fold(0.0, f64::max) < 1e-9;
+            }
+        }
+        assert!(found || joints.is_none(), "{pose:?}");
+        assert!(orientations.len() <= 4 && orientations.len() % 2 == 0);
+        four += usize::from(orientations.len() == 4);
+    }
+    assert!(four > 90, "{four}");
+
+    // Rates against differences.
+    let home = m.home_pose();
+    let pose: Vec<f64> =
+        home.iter().enumerate().map(|(i, q)| q + 0.03 * (i as f64 + 1.0)).collect();
+    let rates = [0.3, -0.2, 0.1];
+    let (mut motion, mut other) = (m.joint_motion(), m.solution());
+    m.inverse(&pose, m.home_mode(), &mut at).unwrap().unwrap();
+    assert!(m.velocity(&at, &rates, &[0.0; 3], &mut motion).unwrap());
+    let mut joints = |t: f64| {
+        let moved: Vec<f64> = pose.iter().zip(rates).map(|(q, rate)| q + t * rate).collect();
+        other.clone_from(&at);
+        m.inverse_near(&moved, m.home_mode(), &mut other).unwrap().unwrap().joints().to_vec()
+    };
+    let (before, after) = (joints(-1e-5), joints(1e-5));
+    for (i, rate) in motion.joint_rates.iter().enumerate() {
+        assert!(((after[i] - before[i]) / 2e-5 - rate).abs() < 1e-7 * (1.0 + rate.abs()));
+    }
+}
+
+/// Coordinates that cannot be the independent ones, or that there are not, are refused by name.
+#[test]
+fn independent_coordinates_are_checked() {
+    assert!(exechon(r#"["z", "roll", "pitch"]"#).is_ok());
+    for (given, message) in [
+        (
+            r#"["x", "y", "h"]"#,
+            "`independent` has \"h\", expected one of x, y, z, roll, pitch, yaw",
+        ),
+        (
+            r#"["x", "roll", "yaw"]"#,
+            "the coordinates that follow from x, roll, yaw have no closed form",
+        ),
+        (r#"["x", "y"]"#, "`independent` is x, y, but"),
+        (r#"["x", "y", "x"]"#, "twice"),
+        ("[]", "is empty"),
+        ("7", "array of names"),
+    ] {
+        let problem = exechon(given).unwrap_err();
+        assert!(problem.contains(message), "{given}: {problem}");
+    }
+    // A Delta has nothing to choose.
+    let delta = opm_core::mechanism::examples::find("delta").unwrap().text;
+    let asked = |names: &str| {
+        delta.replace("[platform]", &format!("[task]\nindependent = {names}\n[platform]"))
+    };
+    assert!(Manipulator::read(&asked(r#"["z", "y", "x"]"#)).is_ok());
+    let problem = Manipulator::read(&asked(r#"["x", "y"]"#)).unwrap_err().to_string();
+    assert!(problem.contains("`independent` is x, y, but the coordinates from which the others follow in closed form are x, y, z"), "{problem}");
+}
+
 /// A leg whose ball stays on a torus constrains in another way: that is said, with the leg.
 #[test]
 fn rows_that_are_not_affine_are_refused() {

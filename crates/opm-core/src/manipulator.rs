@@ -565,6 +565,7 @@ impl Compiled {
             Some(by) => Some(Dependent::of_whole(&task, mechanism, by, length)?),
             None => Dependent::new(&task, &legs, &names, decomposition.mobility, length)?,
         };
+        Dependent::check_wanted(dependent.as_ref(), &task, mechanism)?;
         let choices: Vec<usize> = dependent.iter().flat_map(Dependent::choosing_legs).collect();
         let modes = ModeLayout::new(&legs, &choices);
         if let Some(dependent) = &mut dependent {

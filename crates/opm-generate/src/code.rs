@@ -27,7 +27,7 @@ use leg::Given;
 use opm_core::Manipulator;
 use opm_core::chain::Chain;
 use opm_core::manipulator::Section;
-use opm_core::manipulator::form::ClosedForms;
+use opm_core::manipulator::form::{ClosedForms, WholeStep};
 use opm_core::nalgebra::Vector3;
 use opm_core::task::Task;
 use std::cell::RefCell;
@@ -71,6 +71,9 @@ impl<'a> Writer<'a> {
         let names = manipulator.coordinates().iter().map(|c| &*c.name);
         let fields = identifiers(names).into_iter().map(|name| format!("q_{name}")).collect();
         let (task, forms) = (manipulator.task(), manipulator.closed_forms());
+        if matches!(&forms.whole, Some(WholeStep::Rows(rows)) if rows.by_place) {
+            return Err(GenerateError::Place);
+        }
         Ok(Self { manipulator, task, forms, fields, functions: RefCell::default() })
     }
 

@@ -70,6 +70,12 @@ pub enum GenerateError {
         /// The most that there may be.
         most: u32,
     },
+    /// The orientation follows from the position, for which no code is written.
+    #[error(
+        "the orientation of the platform follows from its position (`independent` in [task]), for which no code is written: leave \
+         `independent` out"
+    )]
+    Place,
     /// The closed forms have what the other languages do not know: this is a defect of opm.
     #[error("the closed forms cannot be written in this language, which is a defect of opm: {0}")]
     Unread(String),

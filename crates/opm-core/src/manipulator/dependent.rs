@@ -26,6 +26,7 @@ pub(super) mod form;
 mod many;
 mod mirror;
 pub(crate) mod one_joint;
+mod place;
 mod rows;
 mod stem;
 pub(crate) mod zeros;
@@ -37,7 +38,7 @@ use crate::chain::whole::NoOrder;
 use crate::decomposition::mobility::assembled;
 use crate::decomposition::whole::Constrained;
 use crate::group::{JointDisplacement, SubspaceKind};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, TaskKey};
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task};
 use constraint::{Constraint, constraints, follows, order, target_of};
@@ -100,6 +101,25 @@ pub enum ConstraintError {
         "the platform is the image of its base in a plane, expected one that is at home across the third axis of the base, and roll,          pitch and yaw as coordinates, zero there"
     )]
     Mirror,
+    /// The file wants other independent coordinates than can be.
+    #[error(
+        "`independent` is {}, but the coordinates from which the others follow in closed form are {}",
+        given.join(", "), expected.join(", ")
+    )]
+    Independent {
+        /// The names in the file.
+        given: Vec<String>,
+        /// Those that are possible.
+        expected: Vec<String>,
+    },
+    /// The file wants a coordinate that the mechanism does not have.
+    #[error("`independent` has {name:?}, expected one of {}", expected.join(", "))]
+    Unknown {
+        /// The name in the file.
+        name: String,
+        /// The names of the task coordinates.
+        expected: Vec<String>,
+    },
     /// The constraints of several legs differ, or those of one have no closed form in this order.
     #[error(
         "legs {} constrain the platform in more ways than closed-form inverse kinematics covers: the mobility is \
@@ -124,9 +144,32 @@ impl ConstraintError {
             Self::Singular { leg, .. } | Self::Stem { leg, .. } | Self::Poles { leg } => Some(leg),
             Self::Several { legs, .. } => legs.first().map(String::as_str),
             Self::Rows(NoRows::Leg { leg, .. }) => Some(leg),
-            Self::Rows(_) | Self::Mirror => None,
+            Self::Rows(_) | Self::Mirror | Self::Independent { .. } | Self::Unknown { .. } => None,
         }
     }
+
+    /// The key of `[task]` that causes the error, if one does.
+    pub fn key(&self) -> Option<TaskKey> {
+        match self {
+            Self::Independent { .. } | Self::Unknown { .. } | Self::Rows(NoRows::Wanted { .. }) => {
+                Some(TaskKey::Independent)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The numbers of the coordinates that the file wants as independent ones; `None` if it says nothing.
+fn wanted(task: &Task, mechanism: &Mechanism) -> Result<Option<Vec<usize>>, ConstraintError> {
+    let names = &mechanism.task.independent;
+    let number = |name: &String| {
+        task.coordinates.iter().position(|c| c.name == *name).ok_or_else(|| {
+            let expected = task.coordinates.iter().map(|c| c.name.to_owned()).collect();
+            ConstraintError::Unknown { name: name.clone(), expected }
+        })
+    };
+    let numbers = names.iter().map(number).collect::<Result<Vec<usize>, _>>()?;
+    Ok((!names.is_empty()).then_some(numbers))
 }
 
 /// The coordinates that follow from the others, and how.
@@ -180,7 +223,7 @@ impl Whole {
     fn bits(&self) -> [Option<u32>; 4] {
         match self {
             Self::Stem(stem) => stem.bits,
-            Self::Rows(rows) => [rows.bit, None, None, None],
+            Self::Rows(rows) => [rows.bits[0], rows.bits[1], None, None],
             Self::Mirror(_) => [None; 4],
         }
     }
@@ -266,6 +309,7 @@ impl Dependent {
         by: Constrained,
         size: f64,
     ) -> Result<Self, ConstraintError> {
+        let wanted = wanted(task, mechanism)?;
         let (mut independent, whole) = match by {
             Constrained::Stem(leg) => {
                 let name = || mechanism.legs[leg].name.clone();
@@ -278,7 +322,8 @@ impl Dependent {
             }
             Constrained::Legs { freedoms } => {
                 let motions = assembled(mechanism);
-                let found = Rows::new(task, mechanism, freedoms, &motions, size);
+                let wanted = (freedoms, wanted.as_deref());
+                let found = Rows::new(task, mechanism, wanted, &motions, size);
                 let (independent, rows) = found.map_err(ConstraintError::Rows)?;
                 (independent, Whole::Rows(rows))
             }
@@ -297,6 +342,29 @@ impl Dependent {
         let coordinates = all.filter(|i| !independent.contains(i)).collect();
         let (steps, checks, bits) = (Vec::new(), Vec::new(), Vec::new());
         Ok(Self { independent, coordinates, whole: Some(whole), steps, checks, bits, size })
+    }
+
+    /// Checks that the independent coordinates are those that the file wants.
+    ///
+    /// # Errors
+    /// They are others.
+    pub fn check_wanted(
+        dependent: Option<&Self>,
+        task: &Task,
+        mechanism: &Mechanism,
+    ) -> Result<(), ConstraintError> {
+        let Some(wanted) = wanted(task, mechanism)? else { return Ok(()) };
+        let all: Vec<usize> = (0..task.coordinates.len()).collect();
+        let found = dependent.map_or(&all, |dependent| &dependent.independent);
+        let same = found.len() == wanted.len() && wanted.iter().all(|i| found.contains(i));
+        let name = |&i: &usize| task.coordinates[i].name.to_owned();
+        match same {
+            true => Ok(()),
+            false => Err(ConstraintError::Independent {
+                given: mechanism.task.independent.clone(),
+                expected: found.iter().map(name).collect(),
+            }),
+        }
     }
 
     /// The steps, in their order.
@@ -327,7 +395,10 @@ impl Dependent {
                 let given = layout.pose_bits(stem.leg);
                 stem.bits.iter_mut().zip(given).for_each(|(to, bit)| *to = Some(bit));
             }
-            Some(Whole::Rows(rows)) => rows.bit = layout.pose_bits(rows.leg()).next(),
+            Some(Whole::Rows(rows)) => {
+                let given = layout.pose_bits(rows.leg());
+                rows.bits.iter_mut().zip(given).for_each(|(to, bit)| *to = Some(bit));
+            }
             Some(Whole::Mirror(_)) | None => {}
         }
         let mut bits: Vec<u32> = self.own_bits().collect();

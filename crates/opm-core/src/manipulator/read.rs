@@ -92,7 +92,10 @@ impl CompileError {
                 | TaskError::Height { odd: OddJoint { leg, .. }, .. }
                 | TaskError::JointName { leg, .. },
             ) => of_leg(leg),
-            Self::Constraint(error) => error.leg().and_then(of_leg),
+            Self::Constraint(error) => {
+                let of_key = error.key().and_then(|key| places.of_task(key));
+                of_key.or_else(|| error.leg().and_then(of_leg))
+            }
             Self::Task(error) => error.key().and_then(|key| places.of_task(key)),
             _ => None,
         }

@@ -228,7 +228,11 @@ impl Checked<'_> {
             TaskKey::W(_) => self.hints.w,
             TaskKey::Normal(_) => self.hints.normal,
             TaskKey::AxisOf(_) => self.hints.axis,
-            TaskKey::Axis | TaskKey::Coordinates | TaskKey::Home | TaskKey::Origin(_) => None,
+            TaskKey::Axis
+            | TaskKey::Coordinates
+            | TaskKey::Home
+            | TaskKey::Independent
+            | TaskKey::Origin(_) => None,
         };
         given.map(Unit::new_normalize)
     }

@@ -24,6 +24,9 @@ pub struct TaskHints {
     /// Home values of task coordinates by name, metres or radians; the others follow from the
     /// geometry.
     pub home: Vec<(String, f64)>,
+    /// The names of the task coordinates from which the others follow, where they are not those that opm chooses; empty where
+    /// it does.
+    pub independent: Vec<String>,
 }
 
 /// The task coordinates whose values at home a file can give. An orientation at home is given in Euler angles or in roll,
@@ -146,6 +149,8 @@ pub enum TaskKey {
     Coordinates,
     /// `home`: [`TaskHints::home`].
     Home,
+    /// `independent`: [`TaskHints::independent`].
+    Independent,
     /// `axis` of a section: [`FrameHints::axis`].
     AxisOf(Section),
     /// `x` of a section: [`FrameHints::x`].
@@ -159,12 +164,13 @@ pub enum TaskKey {
 }
 
 impl TaskKey {
-    /// The last part of the key: `x`, `w`, `normal`, `origin`, `axis`, `coordinates`, or `home`.
+    /// The last part of the key: `x`, `w`, `normal`, `origin`, `axis`, `coordinates`, `home`, or `independent`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Axis | Self::AxisOf(_) => "axis",
             Self::Coordinates => "coordinates",
             Self::Home => "home",
+            Self::Independent => "independent",
             Self::X(_) => "x",
             Self::W(_) => "w",
             Self::Normal(_) => "normal",
@@ -177,7 +183,7 @@ impl fmt::Display for TaskKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.name();
         match self {
-            Self::Axis | Self::Coordinates | Self::Home => f.write_str(name),
+            Self::Axis | Self::Coordinates | Self::Home | Self::Independent => f.write_str(name),
             Self::AxisOf(section)
             | Self::X(section)
             | Self::W(section)

@@ -105,6 +105,8 @@ pub struct RowsForm {
     pub couples: usize,
     /// The bit of the choice in a mode.
     pub bit: Option<u32>,
+    /// Whether the orientation follows from the position: then there are two choices, and nothing below says how.
+    pub by_place: bool,
     /// The dependent positions.
     pub lengths: Vec<usize>,
     /// The factor of the orientation that follows and the coordinate that has it, its value at home, and the unit of the

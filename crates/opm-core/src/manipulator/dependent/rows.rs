@@ -8,9 +8,12 @@
 //! Of the coordinates, at most one angle `ψ` is dependent. With the others known, `R` is affine in its cosine and sine, and the
 //! rows determine the positions that follow only where `F(ψ) = det [c | c · P + ⟨r, R⟩ + c₀] = 0`. That is
 //! `A cos ψ + B sin ψ + C` for the mechanisms that are covered, and its sign of slope names the branch. The positions are linear.
+//!
+//! Where a file asks for it, the orientation follows from the position instead: see [`place`](super::place).
 
 use super::determining::determining;
 use super::form::{RowForm, RowsForm};
+use super::place::{Place, write_angles};
 use super::stem::{Rotations, rates};
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
@@ -25,9 +28,9 @@ use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Point3, SMatrix, SVector, V
 use std::f64::consts::FRAC_PI_2;
 
 /// An equation holds, or an equation follows from others, to within this, relative to its scale.
-const HOLDS: f64 = 1e-9;
+pub(super) const HOLDS: f64 = 1e-9;
 /// What is smaller counts as zero; lengths are over the size.
-const LEVEL: f64 = 1e-6;
+pub(super) const LEVEL: f64 = 1e-6;
 /// The most rows.
 const MOST: usize = 6;
 
@@ -61,16 +64,22 @@ pub enum NoRows {
         "with no choice of coordinates an angle follows from one equation `A cos + B sin + C = 0`, and the positions from linear ones"
     )]
     Coordinates,
+    /// The coordinates that are wanted as independent ones have no closed form.
+    #[error("the coordinates that follow from {} have no closed form", .independent.join(", "))]
+    Wanted {
+        /// The names of the coordinates that are wanted.
+        independent: Vec<String>,
+    },
 }
 
 /// An equation between orientation and position, lengths over the size.
 #[derive(Clone, Debug)]
-struct Row {
+pub(super) struct Row {
     leg: usize,
     /// Whether the direction turns with the platform.
     carried: bool,
-    direction: Vector3<f64>,
-    turn: Matrix3<f64>,
+    pub direction: Vector3<f64>,
+    pub turn: Matrix3<f64>,
     constant: f64,
 }
 
@@ -84,7 +93,7 @@ impl Row {
         self.turn.dot(r) + self.constant
     }
 
-    fn value(&self, r: &Matrix3<f64>, p: &Vector3<f64>) -> f64 {
+    pub fn value(&self, r: &Matrix3<f64>, p: &Vector3<f64>) -> f64 {
         self.direction_at(r).dot(p) + self.rest(r)
     }
 
@@ -110,12 +119,14 @@ impl Row {
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     rows: Vec<Row>,
-    /// The bit of the choice in a [`Mode`].
-    pub bit: Option<u32>,
+    /// The bits of the choices in a [`Mode`].
+    pub bits: [Option<u32>; 2],
     /// The dependent positions.
     lengths: Vec<usize>,
     /// The factor of the orientation that follows, and the coordinate that has it; `None` where all angles are known.
     turn: Option<(usize, usize, Function)>,
+    /// How all angles follow from the position, where they do.
+    place: Option<Place>,
     /// The number of rows that determine the angle alone.
     angles: usize,
     rotations: Rotations,
@@ -125,14 +136,15 @@ pub(crate) struct Rows {
 
 impl Rows {
     /// The independent coordinates, and how the others follow from the constraints of all legs. `motions` are displacements of
-    /// the platform, at random, by which the rows that are left over are tested.
+    /// the platform, at random, by which the rows that are left over are tested. `wanted` are the independent coordinates, where
+    /// these are not for opm to choose.
     ///
     /// # Errors
     /// Where there is no closed form.
     pub fn new(
         task: &Task,
         mechanism: &Mechanism,
-        freedoms: usize,
+        (freedoms, wanted): (usize, Option<&[usize]>),
         motions: &[Isometry3<f64>],
         size: f64,
     ) -> Result<(Vec<usize>, Self), NoRows> {
@@ -166,17 +178,27 @@ impl Rows {
         let held = DMatrix::from_fn(kept.len(), 6, |i, j| kept[i].at_home()[j]);
         let left = Svd::new(held).right.columns(kept.len(), freedoms).into_owned();
         let rates = rates(task, &left, &rotations);
-        let one_angle = |independent: &[usize]| {
+        let suits = |independent: &[usize]| {
             let is_angle = |i: &usize| task.coordinates[*i].quantity == Quantity::Angle;
-            (0..6).filter(|i| is_angle(i) && !independent.contains(i)).count() <= 1
+            let angles = (0..6).filter(|i| is_angle(i) && !independent.contains(i)).count();
+            match wanted {
+                Some(wanted) => wanted.iter().all(|i| independent.contains(i)),
+                None => angles <= 1,
+            }
         };
-        for independent in determining(&rates, &preferred(task), one_angle, |_| false) {
+        for independent in determining(&rates, &preferred(task), suits, |_| false) {
             let found = Self::of(task, &independent, &kept, rotations, (reference, size));
             if let Some(rows) = found.filter(|rows| rows.holds(task, motions)) {
                 return Ok((independent, rows));
             }
         }
-        Err(NoRows::Coordinates)
+        Err(match wanted {
+            Some(wanted) => {
+                let name = |&i: &usize| task.coordinates[i].name.to_owned();
+                NoRows::Wanted { independent: wanted.iter().map(name).collect() }
+            }
+            None => NoRows::Coordinates,
+        })
     }
 
     fn of(
@@ -192,14 +214,22 @@ impl Rows {
         let of_angles = rows.iter().filter(|row| row.direction == Vector3::zeros()).count();
         let mut found = Self {
             rows: rows.to_vec(),
-            bit: None,
+            bits: [None; 2],
             lengths,
             turn: None,
+            place: None,
             angles: of_angles,
             rotations,
             reference,
             size,
         };
+        if let [_, _, _] = angles[..] {
+            found.place = Some(Place::new(rows)?);
+            return Some(found);
+        }
+        if angles.len() > 1 {
+            return None;
+        }
         let Some(&angle) = angles.first() else {
             return (of_angles == 0).then_some(found);
         };
@@ -290,7 +320,8 @@ impl Rows {
             leg: self.leg(),
             rows: self.rows.iter().map(row).collect(),
             couples: self.angles,
-            bit: self.bit,
+            bit: self.bits[0],
+            by_place: self.place.is_some(),
             lengths: self.lengths.clone(),
             turn: self
                 .turn
@@ -302,7 +333,7 @@ impl Rows {
 
     /// The number of its two-valued choices.
     pub fn choices(&self) -> usize {
-        usize::from(self.turn.is_some())
+        if self.place.is_some() { 2 } else { usize::from(self.turn.is_some()) }
     }
 
     /// The number of the first leg that constrains.
@@ -344,10 +375,10 @@ impl Rows {
                         <= LEVEL * function.unit
                 })
             });
-            let found = |sign: f64| {
+            let found = |signs: [f64; 2]| {
                 let mut pose = all.clone();
                 self.lengths.iter().for_each(|&i| pose[i] = task.coordinates[i].home);
-                self.complete_with(task, sign, &mut pose).is_ok()
+                self.complete_with(task, signs, &mut pose).is_ok()
                     && task.coordinates.iter().zip(pose.iter().zip(&all)).all(|(c, (a, b))| {
                         let unit = if c.quantity == Quantity::Length { self.size } else { 1.0 };
                         (a - b).abs() < LEVEL * unit
@@ -355,7 +386,7 @@ impl Rows {
             };
             harmonic
                 && self.rows.iter().all(|row| row.value(&r, &p).abs() <= HOLDS)
-                && [1.0, -1.0].into_iter().any(found)
+                && [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].into_iter().any(found)
         })
     }
 
@@ -364,16 +395,31 @@ impl Rows {
     /// # Errors
     /// By how much no angle satisfies the rows.
     pub fn complete(&self, task: &Task, mode: Mode, pose: &mut [f64]) -> Result<(), ReachDeficit> {
-        let minus = self.bit.is_some_and(|bit| mode.0 >> bit & 1 == 1);
-        self.complete_with(task, if minus { -1.0 } else { 1.0 }, pose)
+        let minus = |bit: Option<u32>| bit.is_some_and(|bit| mode.0 >> bit & 1 == 1);
+        let signs = self.bits.map(|bit| if minus(bit) { -1.0 } else { 1.0 });
+        self.complete_with(task, signs, pose)
     }
 
-    fn complete_with(&self, task: &Task, sign: f64, pose: &mut [f64]) -> Result<(), ReachDeficit> {
+    fn complete_with(
+        &self,
+        task: &Task,
+        signs: [f64; 2],
+        pose: &mut [f64],
+    ) -> Result<(), ReachDeficit> {
+        if let Some(place) = &self.place {
+            let mut p = Vector3::zeros();
+            for (i, (at, c)) in pose.iter().zip(&task.coordinates).enumerate().take(3) {
+                p += task.lower.axes.column(i) * ((at - c.home) / self.size);
+            }
+            let r = place.orientation(&self.rows, &p, signs)?;
+            write_angles(task, &self.rotations, &r, pose);
+            return Ok(());
+        }
         if let Some((factor, angle, function)) = self.turn {
             let values = function.places().map(|at| self.left(task, pose, at));
             let mut factors = self.rotations.angles.factors(task, pose);
             factors[factor] = function
-                .zero(values, sign, factors[factor])
+                .zero(values, signs[0], factors[factor])
                 .map_err(|value| ReachDeficit::angle((value / function.unit).abs()))?;
             let found = task.angles.of_factors(factors)[angle - self.rotations.angles.first];
             pose[angle] = found;

@@ -39,7 +39,7 @@ pub(crate) struct Stem {
     coordinates: Vec<usize>,
     angles: Angles,
     /// What rotations are about.
-    centre: Point3<f64>,
+    pub centre: Point3<f64>,
 }
 
 /// A part of the displacement that follows.
@@ -58,7 +58,7 @@ enum Part {
 pub(super) struct Rotations {
     pub angles: Angles,
     axes: [Vector3<f64>; 3],
-    centre: Point3<f64>,
+    pub centre: Point3<f64>,
 }
 
 /// The angles among the coordinates.

@@ -18,7 +18,8 @@ use std::f64::consts::PI;
 pub(super) const KEYS: &[&str] =
     &["format", "name", "units", "parameters", "platform", "task", "bodies", "obstacle", "leg"];
 pub(super) const LEG_KEYS: &[&str] = &["name", "joints", "pattern"];
-pub(super) const TASK_KEYS: &[&str] = &["axis", "lower", "upper", "coordinates", "home"];
+pub(super) const TASK_KEYS: &[&str] =
+    &["axis", "lower", "upper", "coordinates", "home", "independent"];
 /// The keys of `[task]` in the file of a family, of which the frames are given.
 pub(super) const FAMILY_TASK_KEYS: &[&str] = &["coordinates"];
 pub(super) const FRAME_KEYS: &[&str] = &["x", "axis", "w", "normal", "origin"];
@@ -243,7 +244,28 @@ fn read_task(task: &Table<'_>, locations: &mut Locations<usize>) -> TaskHints {
         upper: read_frame(task, Section::Upper, locations),
         coordinates: read_angles(task, locations),
         home: read_home(task, locations),
+        independent: read_independent(task, locations),
     }
+}
+
+/// Reads the names of the independent task coordinates. Whether the mechanism has these is checked later.
+fn read_independent(task: &Table<'_>, locations: &mut Locations<usize>) -> Vec<String> {
+    let Some(value) = task_value(task, TaskKey::Independent, locations) else { return Vec::new() };
+    let Some(items) = value.items("an array of names of task coordinates") else {
+        return Vec::new();
+    };
+    if items.is_empty() {
+        value.report("is empty, expected the names of the independent task coordinates");
+    }
+    let mut names: Vec<String> = Vec::new();
+    for item in items {
+        let Some(name) = item.name() else { continue };
+        if names.iter().any(|known| known == name) {
+            item.report(format!("has {name:?} twice, expected different task coordinates"));
+        }
+        names.push(name.to_owned());
+    }
+    names
 }
 
 /// Reads the values of task coordinates at home. Whether the mechanism has these coordinates is checked later.

@@ -92,6 +92,10 @@ impl Writer {
         if !home.is_empty() {
             lines.push(format!("home = {{ {} }}", home.join(", ")));
         }
+        if !hints.independent.is_empty() {
+            let names: Vec<String> = hints.independent.iter().map(|name| quoted(name)).collect();
+            lines.push(format!("independent = [{}]", names.join(", ")));
+        }
         if let Some(coordinates) = hints.coordinates {
             lines.push(format!("coordinates = {}", quoted(coordinates.name())));
         }

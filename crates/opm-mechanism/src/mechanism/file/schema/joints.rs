@@ -67,6 +67,13 @@ fn task_key(key: &str) -> Value {
         "upper" => frame("The frame of the upper section, next to the platform."),
         "coordinates" => orientation_coordinates(),
         "home" => home(),
+        "independent" => json!({
+            "description": "The task coordinates from which the others follow, such as [\"x\", \"y\", \"z\"], where several choices are possible.",
+            "type": "array",
+            "items": { "type": "string" },
+            "minItems": 1,
+            "uniqueItems": true,
+        }),
         _ => Value::Bool(true),
     }
 }

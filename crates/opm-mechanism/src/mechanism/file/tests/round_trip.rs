@@ -87,11 +87,13 @@ prop_compose! {
         home in prop::sample::subsequence(&HOME_COORDINATES[..], 0..=HOME_COORDINATES.len()),
         values in prop::collection::vec(-3.0..3.0_f64, HOME_COORDINATES.len()),
         coordinates in proptest::option::of(prop::sample::select(&OrientationCoordinates::NAMED[..])),
+        independent in prop::sample::subsequence(vec!["x", "y", "z", "roll"], 0..=4),
     ) -> TaskHints {
         let home = home.into_iter().zip(values).map(|((name, _), value)| (name.to_owned(), value));
         let axis = axis.map(Unit::into_inner);
         let coordinates = coordinates.map(|(_, coordinates)| coordinates);
-        TaskHints { axis, lower, upper, coordinates, home: home.collect() }
+        let independent = independent.into_iter().map(str::to_owned).collect();
+        TaskHints { axis, lower, upper, coordinates, home: home.collect(), independent }
     }
 }
 
