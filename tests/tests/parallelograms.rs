@@ -3,7 +3,8 @@
 use fastrand::Rng;
 use nalgebra::{Isometry3, Point3, Rotation3, Vector3};
 use opm_core::Manipulator;
-use opm_core::decomposition::{PlatformSet, decompose};
+use opm_core::decomposition::PlatformSet;
+use opm_core::decomposition::mobility::mobility;
 use opm_core::mechanism::file;
 
 /// The dimensions of the Delta, metres: base, platform, crank, rod.
@@ -167,11 +168,11 @@ fn sliders_on_a_rail_are_where_circles_meet_a_line() {
 #[test]
 fn hinges_that_turn_back_take_a_freedom() {
     let mut mechanism = file::read(RAIL_FILE).unwrap().mechanism;
-    assert_eq!(decompose(&mechanism).unwrap()[0].mobility, 2);
+    assert_eq!(mobility(&mechanism).unwrap().mobility, 2);
     for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
         joint.turns_back = false;
     }
-    assert_eq!(decompose(&mechanism).unwrap()[0].mobility, 3);
+    assert_eq!(mobility(&mechanism).unwrap().mobility, 3);
 }
 
 #[test]
@@ -304,7 +305,9 @@ fn the_pose_that_motors_came_from_is_found() {
         let pose: Vec<f64> = m.home_pose().iter().map(|q| q + 0.02).collect();
         let solution = m.inverse(&pose, m.home_mode(), &mut at).unwrap().unwrap();
         let actuated: Vec<f64> = m.actuated().iter().map(|&i| solution.joints()[i]).collect();
-        let found = m.forward_near(&actuated, &m.home_pose(), m.home_mode()).unwrap();
+        // Home may be a parallel singularity.
+        let start: Vec<f64> = pose.iter().map(|q| q + 0.03).collect();
+        let found = m.forward_near(&actuated, &start, m.home_mode()).unwrap();
         for (a, b) in found.pose.iter().zip(&pose) {
             assert!((a - b).abs() < 1e-9, "{text}: {:?} {pose:?}", found.pose);
         }

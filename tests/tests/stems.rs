@@ -2,7 +2,7 @@
 //! geometry and published formulas.
 
 use fastrand::Rng;
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use opm_core::Manipulator;
 use opm_core::decomposition::{PlatformSet, rerooted};
 use opm_core::manipulator::{CompileError, ConstraintError};

@@ -270,16 +270,11 @@ impl Linkage {
         absolute_values(motions.select_rows(&rows))
     }
 
-    /// The unit screws of a pose, leg by leg.
-    pub fn units(&self, pose: &Pose) -> Vec<Vec<Vector6<f64>>> {
-        let unit = |screw: &Screw| screw.to_vector().normalize();
-        pose.screws.iter().map(|leg| leg.iter().map(unit).collect()).collect()
-    }
-
     /// The first-order kinematics in a pose.
     pub fn first_order(&self, pose: &Pose) -> FirstOrder {
-        let units = self.units(pose);
-        let mut all = svd::singular_values(rows(&units.concat()));
+        let unit = |moving: &Moving| moving.screw.to_vector().normalize();
+        let units: Vec<Vector6<f64>> = pose.moving.iter().flatten().map(unit).collect();
+        let mut all = svd::singular_values(rows(&units));
         all.sort_by(|a, b| b.total_cmp(a));
         let legs = pose.screws.iter().zip(&pose.moving);
         FirstOrder {
