@@ -39,6 +39,9 @@ home = { x = 1, y = 2, z = 3, h = 4, w = 5, theta = 0.1, phi = 0.2, zeta = 0.3, 
 [bodies]
 density = 1200
 masses = { platform = 0.8, S1 = 0.25 }
+centres = { platform = [1, 2, 3], S1 = [4, 5, 6] }
+inertias = { platform = [1, 2, 2], S1 = [1, 2, 2, 0.1, 0.2, 0.3] }
+payload = { mass = 2, centre = [0, 0, 1], inertia = [0.1, 0.1, 0.1] }
 radius = 0.1
 radii = { base = 0.2, platform = 0.3, S1 = 0.4 }
 

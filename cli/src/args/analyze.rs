@@ -24,7 +24,7 @@ use std::path::PathBuf;
 /// --limit, --color and --scalars. docs/analysis.md has the definitions.
 ///
 /// --gravity adds the weight of links and platform. Their masses are those of the mechanism file, or follow from the shapes
-/// and a density, as in models for simulators. The weight of a payload is a --wrench. It also gives the mass matrix in task
+/// and a density, as in models for simulators. What the platform carries is a payload in [bodies], or a --wrench. It also gives the mass matrix in task
 /// coordinates (docs/dynamics.md).
 ///
 /// Statics do not tell what the legs of an overconstrained mechanism, or redundant actuators, carry: --link-stiffness

@@ -165,7 +165,9 @@ fn wrong_masses_are_told_where_they_stand() {
         ("masses = { platform = -1 }", "`platform` is -1 kg, expected 1e-9 to 1000000.0 kg"),
         ("masses = { S11 = 1 }", "no body is called \"S11\""),
         ("masses = { s4 = 1 }", "the joint s4 carries the platform, expected `platform`"),
-        ("mass = 1", "unknown key `mass`"),
+        ("mass = 1", "unknown key `mass`, did you mean `masses`"),
+        ("inertias = { S1 = [1, 1, 3] }", "`S1` is the inertia of no body"),
+        ("payload = { centre = [0, 0, 1] }", "`mass` is missing, expected the payload's mass"),
     ] {
         let file = folder.write("wrong.toml", format!("{text}\n[bodies]\n{bodies}\n"));
         opm(&["export", "mjcf", &file]).fails_with_one_line(1, &["wrong.toml:", problem]);

@@ -13,7 +13,7 @@ pub mod leg;
 mod screws;
 mod shapes;
 
-pub use bodies::BodyMasses;
+pub use bodies::{BodyMasses, Payload};
 pub use cone::{Cone, JointCone};
 #[doc(hidden)]
 pub use hints::HOME_COORDINATES;

@@ -1,7 +1,7 @@
 //! Masses of solids of one density, their centres and their tensors of inertia.
 
 use super::{Body, Density, Skeleton, Solid};
-use crate::mechanism::{BodyMasses, Mechanism};
+use crate::mechanism::{BodyMasses, Mechanism, Payload};
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 use std::f64::consts::PI;
 
@@ -34,21 +34,44 @@ impl Skeleton {
         let density = density.of(mechanism);
         // The base, then the bodies that move in the order of their names.
         let platform = self.platform - 1;
-        let given = mechanism.body_names().enumerate().map(|(number, name)| {
+        let names = mechanism.body_names().enumerate().map(|(number, name)| {
             // A joint may be called as the platform is.
-            let other = name == BodyMasses::PLATFORM && number != platform;
-            mechanism.bodies.of(name).filter(|_| !other)
+            (name != BodyMasses::PLATFORM || number == platform).then_some(name)
         });
-        let weighed = self.bodies.iter().zip([None].into_iter().chain(given));
-        let weighed = weighed.map(|(body, given)| {
+        let weighed = self.bodies.iter().zip([None].into_iter().chain(names));
+        let weighed = weighed.map(|(body, name)| {
             let mass = Mass::of_body(body, density);
-            given.map_or(mass, |given| mass.share(given / mass.mass))
+            name.map_or(mass, |name| mass.given(&mechanism.bodies, name, body.origin))
         });
-        weighed.collect()
+        let mut weighed: Vec<Mass> = weighed.collect();
+        if let (Some(payload), Some(mass)) =
+            (mechanism.bodies.payload, weighed.get_mut(self.platform))
+        {
+            let Payload { mass: kilograms, centre, inertia } = payload;
+            let centre = centre.unwrap_or(mechanism.platform);
+            let origin = self.bodies[self.platform].origin;
+            let carried = Mass { mass: kilograms, centre: centre - origin.coords, inertia };
+            *mass = Mass::sum(&[*mass, carried]);
+        }
+        weighed
     }
 }
 
 impl Mass {
+    /// The same with what a mechanism gives of the body with this name, whose frame is at `origin` at home.
+    fn given(mut self, given: &BodyMasses, name: &str, origin: Point3<f64>) -> Self {
+        if let Some(mass) = given.of(name) {
+            self = self.share(mass / self.mass);
+        }
+        if let Some(centre) = given.centre_of(name) {
+            self.centre = centre - origin.coords;
+        }
+        if let Some(inertia) = given.inertia_of(name) {
+            self.inertia = inertia;
+        }
+        self
+    }
+
     /// The mass of a body of one density, kilograms per cubic metre, in the body's frame.
     pub fn of_body(body: &Body, density: f64) -> Self {
         Self::sum(&body.parts.iter().map(|part| Self::of(&part.solid, density)).collect::<Vec<_>>())

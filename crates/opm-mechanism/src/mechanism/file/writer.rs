@@ -3,9 +3,11 @@
 use super::FileUnits;
 use super::joints::TURNS_BACK;
 use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointCoordinate, JointKind};
-use crate::mechanism::{Cone, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, TaskHints};
+use crate::mechanism::{
+    Cone, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, Payload, TaskHints,
+};
 use crate::numeric::Quantity;
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use std::fmt::Write;
 
 /// How many digits the numbers of a written file have.
@@ -55,6 +57,26 @@ pub(super) fn task(hints: &TaskHints, units: FileUnits, digits: Digits) -> Strin
 /// The table `[bodies]` of a mechanism and its obstacles; nothing if none of it is given.
 pub(super) fn surroundings(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String {
     Writer { units, digits }.surroundings(mechanism)
+}
+
+/// A table of values by the names of bodies; nothing if there are none.
+fn by_name<T>(key: &str, given: &[(String, T)], value: impl Fn(&T) -> String) -> String {
+    let entries = given.iter().map(|(name, of)| format!("{} = {}", quoted(name), value(of)));
+    let entries: Vec<_> = entries.collect();
+    match entries.is_empty() {
+        true => String::new(),
+        false => format!("{key} = {{ {} }}\n", entries.join(", ")),
+    }
+}
+
+/// A tensor of inertia, without the products where all are zero.
+fn inertia(tensor: &Matrix3<f64>) -> String {
+    let mut entries = vec![tensor.m11, tensor.m22, tensor.m33];
+    let products = [tensor.m12, tensor.m13, tensor.m23];
+    if products != [0.0; 3] {
+        entries.extend(products);
+    }
+    format!("{entries:?}")
 }
 
 #[derive(Clone, Copy)]
@@ -114,20 +136,21 @@ impl Writer {
         if let Some(density) = weights.density {
             let _ = writeln!(text, "density = {density:?}");
         }
-        let table = |key: &str, given: &[(String, f64)], number: &dyn Fn(f64) -> String| {
-            let entries =
-                given.iter().map(|(name, of)| format!("{} = {}", quoted(name), number(*of)));
-            let entries: Vec<_> = entries.collect();
-            match entries.is_empty() {
-                true => String::new(),
-                false => format!("{key} = {{ {} }}\n", entries.join(", ")),
+        text += &by_name("masses", &weights.masses, |mass| format!("{mass:?}"));
+        text += &by_name("centres", &weights.centres, |centre| self.point(*centre));
+        text += &by_name("inertias", &weights.inertias, inertia);
+        if let Some(Payload { mass, centre, inertia: tensor }) = weights.payload {
+            let mut keys = vec![format!("mass = {mass:?}")];
+            keys.extend(centre.map(|centre| format!("centre = {}", self.point(centre))));
+            if tensor != Matrix3::zeros() {
+                keys.push(format!("inertia = {}", inertia(&tensor)));
             }
-        };
-        text += &table("masses", &weights.masses, &|mass| format!("{mass:?}"));
+            let _ = writeln!(text, "payload = {{ {} }}", keys.join(", "));
+        }
         if let Some(radius) = shapes.radius {
             let _ = writeln!(text, "radius = {}", self.length(radius));
         }
-        text += &table("radii", &shapes.radii, &|radius| self.length(radius));
+        text += &by_name("radii", &shapes.radii, |radius| self.length(*radius));
         if text.is_empty() { text } else { format!("\n[bodies]\n{text}") }
     }
 

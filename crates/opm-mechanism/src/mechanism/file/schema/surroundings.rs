@@ -3,7 +3,7 @@
 use super::values::{
     array, cases, closed, described, direction, form, in_units, name, numbers, object, point,
 };
-use crate::mechanism::file::bodies::{DENSITIES, MASSES};
+use crate::mechanism::file::bodies::{DENSITIES, INERTIA, MASSES};
 use crate::mechanism::file::obstacles::TYPES;
 use crate::numeric::Quantity;
 use serde_json::{Value, json};
@@ -17,6 +17,15 @@ fn length(what: &str) -> Value {
     json!({ "description": description, "type": ["number", "string"], "exclusiveMinimum": 0 })
 }
 
+/// A tensor of inertia.
+fn inertia(what: &str) -> Value {
+    let item = json!({ "type": ["number", "string"], "minimum": -INERTIA, "maximum": INERTIA });
+    let what = format!("{what} [xx, yy, zz] or [xx, yy, zz, xy, xz, yz], kg m^2.");
+    let mut tensor = array(&what, item);
+    tensor["oneOf"] = json!([{ "minItems": 3, "maxItems": 3 }, { "minItems": 6, "maxItems": 6 }]);
+    tensor
+}
+
 /// What the bodies weigh, and how thick they are.
 pub fn bodies() -> Value {
     let by_name = |what: &str, of: Value| json!({ "description": what, "type": "object", "additionalProperties": of });
@@ -27,9 +36,32 @@ pub fn bodies() -> Value {
     let radius = "the radius of the rods of all bodies whose radius is not given";
     let radii =
         "Radii of rods, by the names of bodies: base, platform, or the joint that carries a link.";
+    let centres = "Centres of mass, where they are at home, by the names of bodies.";
+    let inertias = "Tensors of inertia about the centres of mass, at home, base directions, kg m^2, by the names of bodies.";
+    let payload = "What the platform carries, besides its own mass.";
+    let of_payload = [
+        ("mass", within("The payload's mass, kilograms.", MASSES)),
+        (
+            "centre",
+            point(
+                "the payload's centre of mass, where it is at home; the platform's point if it is not given",
+                3,
+            ),
+        ),
+        (
+            "inertia",
+            inertia(
+                "The payload's inertia about its centre of mass; that of a point if it is not given.",
+            ),
+        ),
+    ];
+    let of_payload = of_payload.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
     let properties = [
         ("density", within(density, DENSITIES)),
         ("masses", by_name(masses, within("The mass of this body, kilograms.", MASSES))),
+        ("centres", by_name(centres, point("the centre of mass of this body, at home", 3))),
+        ("inertias", by_name(inertias, inertia("The inertia of this body."))),
+        ("payload", closed(payload, of_payload, &["mass"])),
         ("radius", length(radius)),
         ("radii", by_name(radii, length("the radius of this body's rods"))),
     ];

@@ -452,6 +452,19 @@ fn obstacles_and_radii() {
         assert_eq!((problem.line, problem.column), place, "{problem}");
     };
     for (text, message) in [
+        ("[bodies]\ncentres = { platform = ^[1, 2] }", "`platform` has 2 values, expected a point"),
+        ("[bodies]\ninertias = { platform = ^[1, 2] }", "has 2 values, expected [xx, yy, zz] or"),
+        ("[bodies]\ninertias = { platform = [1, ^2e12, 1] }", "is 2000000000000 kg m^2, expected"),
+        ("[bodies]\ninertias = { platform = ^[1, 1, 3] }", "is the inertia of no body"),
+        ("[bodies]\ninertias = { platform = ^[1, 1, 1, 2, 0, 0] }", "moments are -1.000e0, 1"),
+        ("[bodies]\ninertias = { c1 = [1, 1, 1], s7 = ^[1, 1, 1] }", "no body is called \"s7\""),
+        ("[bodies]\npayload = ^{ centre = [0, 0, 0] }", "`mass` is missing, expected the payload"),
+        ("[bodies]\npayload = { mass = ^0 }", "`mass` is 0 kg, expected 1e-9 to 1000000.0 kg"),
+        (
+            "[bodies]\npayload = { mass = 1, centre = ^3 }",
+            "`centre` is an integer, expected a point",
+        ),
+        ("[bodies]\npayload = { mass = 1, ^weight = 3 }", "unknown key `weight`"),
         ("[bodies]\nradius = ^0", "`radius` is 0 mm, expected a length above 0"),
         ("[bodies]\nradii = { platform = ^-2 }", "`platform` is -2 mm, expected a length above 0"),
         ("[bodies]\nradii = { c1 = 2, s7 = ^2 }", "no body is called \"s7\""),

@@ -5,9 +5,9 @@ use crate::mechanism::joint::{Joint, JointKind, MotionLimits};
 use crate::mechanism::leg::Leg;
 use crate::mechanism::{
     BodyMasses, Cone, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape,
-    OrientationCoordinates, Shapes, TaskHints,
+    OrientationCoordinates, Payload, Shapes, TaskHints,
 };
-use nalgebra::{Point3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
 use proptest::prelude::*;
 
 /// Files have 12 decimals, in metres at worst.
@@ -136,6 +136,17 @@ fn numbers_of(shape: &ObstacleShape) -> Vec<f64> {
     }
 }
 
+/// The inertia of a body that consists of three points.
+fn inertia() -> impl Strategy<Value = Matrix3<f64>> {
+    let of_point = |p: Point3<f64>| {
+        Matrix3::identity() * p.coords.norm_squared() - p.coords * p.coords.transpose()
+    };
+    prop_oneof![
+        Just(Matrix3::zeros()),
+        [point(), point(), point()].prop_map(move |all| all.map(of_point).into_iter().sum()),
+    ]
+}
+
 fn mechanism() -> impl Strategy<Value = Mechanism> {
     let legs = prop::collection::vec(prop::collection::vec(joint(), 1..6), 2..6);
     // Names consist of all letters that a name may have.
@@ -143,7 +154,14 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
     let names = names.unwrap().prop_filter("a name", |name| {
         !name.contains(|c: char| crate::text::is_unseen(c) || ",=\"".contains(c))
     });
-    let weights = (proptest::option::of(1.0..9e3_f64), prop::collection::vec(0.01..9.0_f64, 0..30));
+    let payload = (0.01..9.0_f64, proptest::option::of(point()), inertia());
+    let payload = payload.prop_map(|(mass, centre, inertia)| Payload { mass, centre, inertia });
+    let weights = (
+        proptest::option::of(1.0..9e3_f64),
+        prop::collection::vec(0.01..9.0_f64, 0..30),
+        prop::collection::vec((point(), inertia()), 0..30),
+        proptest::option::of(payload),
+    );
     let around = (
         proptest::option::of(0.001..0.1_f64),
         prop::collection::vec(0.001..0.1_f64, 0..30),
@@ -188,9 +206,16 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
         let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
         let mut mechanism =
             Mechanism { name, legs, platform, task, bodies, shapes, units: FileUnits::SI };
-        let names = mechanism.body_names().map(str::to_owned);
-        let masses = names.zip(weights.1).collect();
-        mechanism.bodies = BodyMasses { density: weights.0, masses };
+        let names: Vec<_> = mechanism.body_names().map(str::to_owned).collect();
+        let (density, masses, placed, payload) = weights;
+        let with_names = || names.iter().cloned();
+        mechanism.bodies = BodyMasses {
+            density,
+            masses: with_names().zip(masses).collect(),
+            centres: with_names().zip(placed.iter().map(|of| of.0)).collect(),
+            inertias: with_names().zip(placed.iter().map(|of| of.1)).collect(),
+            payload,
+        };
         let (radius, radii, shapes) = around;
         let bodies = mechanism.body_names().chain([Shapes::BASE]).map(str::to_owned);
         let radii = bodies.zip(radii).collect();
@@ -249,7 +274,22 @@ proptest! {
             let off = read.unwrap_or_default() - written.unwrap_or_default();
             prop_assert!(off.norm() < WRITTEN, "{text}");
         }
-        prop_assert_eq!(&read.bodies, &mechanism.bodies);
+        let (found, expected) = (&read.bodies, &mechanism.bodies);
+        prop_assert_eq!(found.density, expected.density);
+        prop_assert_eq!(&found.masses, &expected.masses);
+        prop_assert_eq!(&found.inertias, &expected.inertias);
+        prop_assert_eq!(found.centres.len(), expected.centres.len());
+        for ((name, centre), (other, expected)) in found.centres.iter().zip(&expected.centres) {
+            prop_assert!(name == other && (centre - expected).norm() < WRITTEN, "{text}");
+        }
+        prop_assert_eq!(
+            found.payload.map(|of| (of.mass, of.centre.is_some(), of.inertia)),
+            expected.payload.map(|of| (of.mass, of.centre.is_some(), of.inertia))
+        );
+        if let (Some(found), Some(expected)) = (found.payload, expected.payload) {
+            let off = found.centre.unwrap_or_default() - expected.centre.unwrap_or_default();
+            prop_assert!(off.norm() < WRITTEN, "{text}");
+        }
         let (found, expected) = (&read.shapes, &mechanism.shapes);
         let near = |a: f64, b: f64| (a - b).abs() < WRITTEN;
         prop_assert_eq!(found.radius.is_some(), expected.radius.is_some());
