@@ -249,3 +249,42 @@ fn wrong_input_is_told_and_leaves_no_file() {
     export(&[&own, "-o", &own]).fails_with_one_line(2, &["--output", "also the input"]);
     assert_eq!(fs::read_to_string(folder.path("own.xml")).unwrap(), text);
 }
+
+/// Friction and rotors stand at their joints, in both formats as far as they have a place for them.
+#[test]
+fn drives_are_part_of_models() {
+    let folder = Folder::new();
+    let text = opm(&["examples", "five-bar"]).stdout;
+    let drive = "rotor_inertia = 2e-5, gear = 50, viscous_friction = 0.25, coulomb_friction = 0.5";
+    let text = text.replace("actuated = true", &format!("actuated = true, {drive}"));
+    let with_payload = format!("{text}\n[bodies]\npayload = {{ mass = 4, inertia = [1, 1, 1] }}\n");
+    let (plain, laden) =
+        (folder.write("plain.toml", &text), folder.write("laden.toml", &with_payload));
+    let model = |file: &str, format: &str| {
+        let run = opm(&["export", format, file]);
+        run.text().to_owned()
+    };
+    let mass = |file: &str| -> f64 {
+        let text = model(file, "mjcf");
+        let model = Document::parse(&text).unwrap();
+        let all = model.descendants().filter(|n| n.has_tag_name("inertial"));
+        all.map(|n| n.attribute("mass").unwrap().parse::<f64>().unwrap()).sum()
+    };
+    assert!((mass(&laden) - mass(&plain) - 4.0).abs() < 1e-9);
+
+    let text = model(&plain, "mjcf");
+    let model_of_mujoco = Document::parse(&text).unwrap();
+    let driven = model_of_mujoco.descendants().filter(|n| n.attribute("armature").is_some());
+    let driven: Vec<_> = driven.collect();
+    assert_eq!(driven.len(), 2, "{text}");
+    for joint in driven {
+        let number = |key: &str| joint.attribute(key).unwrap().parse::<f64>().unwrap();
+        assert!((number("armature") - 0.05).abs() < 1e-15);
+        assert_eq!((number("damping"), number("frictionloss")), (0.25, 0.5));
+    }
+    let text = model(&plain, "urdf");
+    let tree = Document::parse(&text).unwrap();
+    let dynamics = tree.descendants().filter(|n| n.has_tag_name("dynamics"));
+    let all: Vec<_> = dynamics.map(|n| (n.attribute("damping"), n.attribute("friction"))).collect();
+    assert_eq!(all, [(Some("0.25"), Some("0.5")); 2]);
+}

@@ -109,7 +109,7 @@ struct Model<'a> {
 
 impl Model<'_> {
     fn document(&self, keyframes: &Keyframes<'_>) -> String {
-        let servos = Servos::new(self.bodies, self.masses);
+        let servos = Servos::new(self.bodies, self.masses, self.unit);
         let mut names = Names::of(self.mechanism);
         let mut base = Element::new("body").with("name", "base");
         base = base.children(geoms::shapes(&self.bodies[0]));

@@ -76,7 +76,7 @@ pub fn joints(joint: &Joint, body: &Body, servos: &Servos, names: &mut Names) ->
     let own = |kind: &str, number: usize, axis: Unit<Vector3<f64>>| {
         let coordinate = &joint.coordinates[number];
         let element = one(kind, &coordinate.name, Some(axis)).numbers("ref", &[coordinate.home]);
-        servos.armed(limited(element, coordinate), joint, number)
+        servos.driven(limited(element, coordinate), joint, number)
     };
     let alone = |joint| JointPart { joint, coupling: None };
     match joint.kind {
@@ -88,7 +88,9 @@ pub fn joints(joint: &Joint, body: &Body, servos: &Servos, names: &mut Names) ->
         JointKind::Universal { second } => {
             vec![alone(own("hinge", 0, joint.axis)), alone(own("hinge", 1, second))]
         }
-        JointKind::Spherical => vec![alone(servos.armed(one("ball", &joint.name, None), joint, 0))],
+        JointKind::Spherical => {
+            vec![alone(servos.driven(one("ball", &joint.name, None), joint, 0))]
+        }
         JointKind::Helical { pitch } => {
             let hinge = &joint.coordinates[0].name;
             let slide = names.slide(joint);

@@ -5,7 +5,7 @@ use crate::xml::Element;
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 use opm_core::Quantity;
 use opm_core::mechanism::Mechanism;
-use opm_core::mechanism::joint::{Joint, JointCoordinate, JointKind};
+use opm_core::mechanism::joint::{Drive, Joint, JointCoordinate, JointKind};
 use std::collections::BTreeSet;
 
 /// What stands where URDF wants a limit and the mechanism has none: of a value, a rate, and a force; radians, metres,
@@ -22,6 +22,8 @@ pub struct UrdfJoint {
     limits: Option<[f64; 2]>,
     max_rate: Option<f64>,
     max_effort: Option<f64>,
+    /// What of its drive the format can say: friction.
+    drive: Drive,
     /// Whether it counts revolutions, because a slide follows it.
     counts: bool,
     /// The joint that it follows, and by how much: its value is `ratio` times what that joint has moved from `from`.
@@ -61,6 +63,7 @@ pub fn parts(
         JointKind::Universal { second } => vec![own(0, joint.axis), own(1, second)],
         JointKind::Spherical => {
             let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+            let drive = mean(joint);
             let turn = |(number, axis)| UrdfJoint {
                 name: unique(names, format!("{}.{number}", joint.name)),
                 quantity: Quantity::Angle,
@@ -69,6 +72,7 @@ pub fn parts(
                 limits: None,
                 max_rate: None,
                 max_effort: None,
+                drive,
                 counts: false,
                 follows: None,
             };
@@ -85,11 +89,24 @@ pub fn parts(
                 limits: None,
                 max_rate: None,
                 max_effort: None,
+                drive: Drive::default(),
                 counts: false,
                 follows: Some(Follows { joint: leader, ratio: pitch, from }),
             };
             vec![hinge, slide]
         }
+    }
+}
+
+/// The friction of a ball's coordinates, which turn about other axes than its three joints: the mean of all.
+fn mean(joint: &Joint) -> Drive {
+    let mean = |of: fn(&Drive) -> f64| {
+        joint.coordinates.iter().map(|c| of(&c.drive)).sum::<f64>() / joint.coordinates.len() as f64
+    };
+    Drive {
+        viscous_friction: mean(|drive| drive.viscous_friction),
+        coulomb_friction: mean(|drive| drive.coulomb_friction),
+        ..Drive::default()
     }
 }
 
@@ -104,6 +121,7 @@ impl UrdfJoint {
             limits: coordinate.limits,
             max_rate: coordinate.motion_limits.max_rate,
             max_effort: coordinate.max_effort,
+            drive: coordinate.drive,
             counts: false,
             follows: None,
         }
@@ -135,10 +153,15 @@ impl UrdfJoint {
         let limit = limit
             .numbers("effort", &[self.max_effort.unwrap_or(UNLIMITED)])
             .numbers("velocity", &[self.max_rate.unwrap_or(UNLIMITED)]);
-        let element = between(&self.name, kind, [parent, child])
+        let mut element = between(&self.name, kind, [parent, child])
             .child(origin(place, &back))
             .child(Element::new("axis").numbers("xyz", self.axis.as_slice()))
             .child(limit);
+        let Drive { viscous_friction: damping, coulomb_friction: friction, .. } = self.drive;
+        if damping != 0.0 || friction != 0.0 {
+            let dynamics = Element::new("dynamics").numbers("damping", &[damping]);
+            element.push(dynamics.numbers("friction", &[friction]));
+        }
         match &self.follows {
             None => element,
             Some(Follows { joint, ratio, from }) => element.child(
