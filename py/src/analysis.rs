@@ -51,6 +51,11 @@ pub struct Analysis {
     /// (...), N m: radius of the largest ball in the wrench polytope around the load, a force with the characteristic length as
     /// its lever.
     payload_ball: Py<PyArrayDyn<f64>>,
+    /// (...), m/s²: largest acceleration that the actuators give the platform in every direction from rest, without turning it,
+    /// within their ``max_effort`` and on top of weight and load.
+    acceleration: Py<PyArrayDyn<f64>>,
+    /// (...), rad/s²: largest angular acceleration about every axis through its reference point, likewise.
+    angular_acceleration: Py<PyArrayDyn<f64>>,
     /// (...), N/m: least force that displaces the platform by a unit of length along it.
     stiffness: Py<PyArrayDyn<f64>>,
     /// (...), N m/rad: least moment that turns the platform by a unit of angle about its axis.
@@ -98,6 +103,8 @@ pickled!(Analysis {
     payload,
     payload_moment,
     payload_ball,
+    acceleration,
+    angular_acceleration,
     stiffness,
     rotational_stiffness,
     natural_frequency,
@@ -330,6 +337,8 @@ impl Manipulator {
             payload: index(Index::Payload)?,
             payload_moment: index(Index::PayloadMoment)?,
             payload_ball: index(Index::PayloadBall)?,
+            acceleration: index(Index::Acceleration)?,
+            angular_acceleration: index(Index::AngularAcceleration)?,
             stiffness: index(Index::Stiffness)?,
             rotational_stiffness: index(Index::RotationalStiffness)?,
             natural_frequency: index(Index::NaturalFrequency)?,

@@ -40,9 +40,9 @@ pub struct Capacity {
 }
 
 /// A facet, in independent velocities.
-struct LocalFacet {
-    normal: Velocity,
-    bound: f64,
+pub(crate) struct LocalFacet {
+    pub(crate) normal: Velocity,
+    pub(crate) bound: f64,
 }
 
 impl Statics<'_> {
@@ -124,7 +124,7 @@ impl Statics<'_> {
     }
 
     /// Whether an actuator has a largest effort.
-    fn has_limits(&self) -> bool {
+    pub(crate) fn has_limits(&self) -> bool {
         let manipulator = self.manipulator();
         let limited = |&c: &usize| manipulator.coordinates()[c].max_effort.is_some();
         manipulator.actuated().iter().any(limited)
@@ -143,7 +143,7 @@ impl Statics<'_> {
     }
 
     /// Gives every facet at a finite distance, with a unit normal, some of them several times.
-    fn each_facet(&self, mut each: impl FnMut(&LocalFacet)) {
+    pub(crate) fn each_facet(&self, mut each: impl FnMut(&LocalFacet)) {
         let (f, m) = (self.free, self.manipulator().actuated().len());
         let mut chosen: [usize; MOST] = std::array::from_fn(|i| i);
         let count = f - 1;

@@ -2,6 +2,7 @@
 //!
 //! Another index is a variant here, a row in [`Index::facts`] and an arm in [`Indices::evaluate`].
 
+use crate::acceleration::Pure;
 use crate::setup::{Loads, Setup};
 use crate::springs::SpringError;
 use crate::statics::{MOST, Statics, Velocity};
@@ -40,6 +41,10 @@ pub enum Index {
     PayloadMoment,
     /// The radius of the largest ball in the wrench polytope around the load.
     PayloadBall,
+    /// The largest acceleration that the actuators give the platform in every direction from rest, within their `max_effort`.
+    Acceleration,
+    /// The largest angular acceleration that they give it about every axis, likewise.
+    AngularAcceleration,
     /// The least force that displaces the reference point by a unit of length in its direction.
     Stiffness,
     /// The least moment that turns the platform by a unit of angle about its axis.
@@ -107,11 +112,19 @@ pub enum IndexError {
     /// No two bodies can interfere.
     #[error("{0}: no two bodies that could interfere")]
     NoBodies(Index),
+    /// The platform cannot be accelerated so.
+    #[error("{index}: the platform {what}")]
+    NoMotion {
+        /// The index.
+        index: Index,
+        /// What it does not do.
+        what: &'static str,
+    },
 }
 
 impl Index {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Iti,
         Self::Oti,
         Self::Lti,
@@ -123,6 +136,8 @@ impl Index {
         Self::Payload,
         Self::PayloadMoment,
         Self::PayloadBall,
+        Self::Acceleration,
+        Self::AngularAcceleration,
         Self::Stiffness,
         Self::RotationalStiffness,
         Self::NaturalFrequency,
@@ -149,6 +164,14 @@ impl Index {
             Self::PayloadBall => {
                 good("payload_ball", "N m", "radius of the largest ball of wrenches that is borne")
             }
+            Self::Acceleration => {
+                good("acceleration", "m/s^2", "largest acceleration in every direction, from rest")
+            }
+            Self::AngularAcceleration => good(
+                "angular_acceleration",
+                "rad/s^2",
+                "largest angular acceleration about every axis, from rest",
+            ),
             Self::Stiffness => good("stiffness", "N/m", "least stiffness against a force"),
             Self::RotationalStiffness => {
                 good("rotational_stiffness", "N m/rad", "least stiffness against a moment")
@@ -190,6 +213,8 @@ impl Index {
                 | Self::Payload
                 | Self::PayloadMoment
                 | Self::PayloadBall
+                | Self::Acceleration
+                | Self::AngularAcceleration
         )
     }
 
@@ -200,7 +225,7 @@ impl Index {
 
     /// Whether its value depends on the masses of bodies.
     pub fn depends_on_masses(self) -> bool {
-        self == Self::NaturalFrequency
+        matches!(self, Self::NaturalFrequency | Self::Acceleration | Self::AngularAcceleration)
     }
 
     /// Whether a value is as good as a bound, or better. A value that is not a number is not.
@@ -273,6 +298,8 @@ pub struct Indices<'a> {
     loads: Option<Loads<'a>>,
     transmissions: Option<Transmissions<'a>>,
     compliant: Option<Compliant<'a>>,
+    /// What acts on bodies that have masses.
+    heavy: Option<Loads<'a>>,
     distances: Option<Distances<'static>>,
     values: Vec<f64>,
     /// The effort of each actuated and each imaginary joint under the load, if they are asked for.
@@ -296,6 +323,7 @@ impl<'a> Indices<'a> {
             loads: Loads::new(manipulator, setup),
             transmissions: None,
             compliant: None,
+            heavy: None,
             distances: None,
             values: vec![f64::NAN; indices.len()],
             efforts: Vec::new(),
@@ -321,7 +349,7 @@ impl<'a> Indices<'a> {
 
     /// Takes another load on the platform, if the setup has one.
     pub fn set_load(&mut self, load: Load) {
-        if let Some(loads) = &mut self.loads {
+        for loads in self.loads.iter_mut().chain(&mut self.heavy) {
             loads.set_load(load);
         }
     }
@@ -374,10 +402,30 @@ impl<'a> Indices<'a> {
             {
                 return Err(IndexError::Efforts { index, actuators, freedoms });
             }
-            Index::EffortShare | Index::Payload | Index::PayloadMoment | Index::PayloadBall
+            Index::EffortShare
+            | Index::Payload
+            | Index::PayloadMoment
+            | Index::PayloadBall
+            | Index::Acceleration
+            | Index::AngularAcceleration
                 if !actuated.iter().any(limited) =>
             {
                 return Err(IndexError::NoLimits(index));
+            }
+            Index::Acceleration | Index::AngularAcceleration => {
+                self.heavy = Some(Loads::of(manipulator, &setup.heavy()));
+                let (pure, what) = match index {
+                    Index::Acceleration => (Pure::Translations, "never moves without turning"),
+                    _ => (Pure::Rotations, "never turns about its reference point alone"),
+                };
+                let new = || Statics::new(manipulator, setup.length);
+                let statics = self.statics.get_or_insert_with(new);
+                // Home stands for all poses.
+                let regular = statics.update(&manipulator.solution()).unwrap_or(false);
+                if regular && statics.pure(pure).1 == 0 {
+                    return Err(IndexError::NoMotion { index, what });
+                }
+                return Ok(());
             }
             Index::Effort | Index::EffortShare if !setup.has_load() => {
                 return Err(IndexError::NoLoad(index));
@@ -420,6 +468,7 @@ impl<'a> Indices<'a> {
             loads,
             transmissions,
             compliant,
+            heavy,
             distances,
             values,
             efforts,
@@ -449,6 +498,8 @@ impl<'a> Indices<'a> {
             })
             .then(capacity)
             .flatten();
+        let radius = statics.zip(heavy.as_mut());
+        let radius = radius.and_then(|(statics, loads)| loads.acceleration_radius(statics, at));
         let stiffness = compliant.as_mut().and_then(|compliant| {
             let found = compliant.stiffness(at)?;
             let vibrates = indices.contains(&Index::NaturalFrequency);
@@ -478,6 +529,8 @@ impl<'a> Indices<'a> {
                 Index::Payload => capacity.map(|found| found.force),
                 Index::PayloadMoment => capacity.map(|found| found.moment),
                 Index::PayloadBall => capacity.map(|found| found.ball),
+                Index::Acceleration => radius.and_then(|found| found.linear),
+                Index::AngularAcceleration => radius.and_then(|found| found.angular),
                 Index::Stiffness => stiffness.map(|([against_force, _], _)| against_force),
                 Index::RotationalStiffness => {
                     stiffness.map(|([_, against_moment], _)| against_moment)

@@ -6,6 +6,7 @@
 //! | what a solved pose does for virtual motions | [`Statics`] |
 //! | which efforts balance a load, and which loads are worst | [`Statics::efforts`], [`Statics::worst`] |
 //! | which loads actuators with limits bear | [`Statics::capacity`], [`Statics::facets`] |
+//! | which accelerations they give the platform from rest | [`Loads::acceleration_radius`] |
 //! | how well motion and force are transmitted | [`Transmissions`] |
 //! | what acts: a load on the platform, and the weight of all bodies | [`Loads`] |
 //! | the equations of motion: mass matrix, bias, gravity, friction; accelerations and motion under efforts; the linear model | [`Dynamics`] |
@@ -35,6 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod acceleration;
 mod capacity;
 mod dynamics;
 mod efforts;
@@ -51,6 +53,7 @@ mod vibration;
 mod weights;
 mod wrench;
 
+pub use acceleration::AccelerationRadius;
 pub use capacity::{Capacity, Facet};
 pub use dynamics::Dynamics;
 pub use efforts::{Balance, Efforts, Worst};

@@ -63,7 +63,10 @@ impl Setup {
 pub struct Loads<'a> {
     manipulator: &'a Manipulator,
     load: Load,
-    weights: Option<Weights<'a>>,
+    pub(crate) weights: Option<Weights<'a>>,
+    /// Working memory for a motion from rest: a rate and an acceleration for each joint coordinate.
+    pub(crate) rest: Vec<f64>,
+    pub(crate) accelerations: Vec<f64>,
 }
 
 impl<'a> Loads<'a> {
@@ -74,8 +77,11 @@ impl<'a> Loads<'a> {
 
     /// The same, also if it has none.
     pub(crate) fn of(manipulator: &'a Manipulator, setup: &Setup) -> Self {
+        let none = vec![0.0; manipulator.coordinates().len()];
         Self {
             manipulator,
+            rest: none.clone(),
+            accelerations: none,
             load: setup.load.unwrap_or_default(),
             weights: setup.gravity.map(|gravity| Weights::new(manipulator, &gravity)),
         }

@@ -261,7 +261,8 @@ impl<'a> Weights<'a> {
 
     /// The twist of what each freedom moves, and its rate.
     fn move_freedoms(&mut self, motion: JointMotion<'_>) {
-        for leg in self.screws.legs.clone() {
+        for leg in 0..self.screws.legs.len() {
+            let leg = self.screws.legs[leg].clone();
             let [mut twist, mut rate] = [Screw::default(); 2];
             let mut number = leg.start;
             while number < leg.end {

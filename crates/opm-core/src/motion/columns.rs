@@ -25,6 +25,8 @@ const NAMES: &[&str] = &[
     "payload",
     "payload_moment",
     "payload_ball",
+    "acceleration",
+    "angular_acceleration",
     "stiffness",
     "rotational_stiffness",
     "natural_frequency",
