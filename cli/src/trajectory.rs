@@ -55,7 +55,6 @@ impl<'a> Target<'a> {
         };
         if let Self::Recording(_) = target {
             let options = [
-                ("--efforts", args.efforts, "a recording has none"),
                 ("--rates", args.rates, "a recording has them anyway"),
                 ("--accelerations", args.accelerations, "a recording has them anyway"),
                 ("--units", args.units == TableUnits::File, "a recording is in metres and radians"),

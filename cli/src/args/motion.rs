@@ -102,7 +102,8 @@ pub struct LinkageArgs {
 /// A table (.csv, or .npy for NumPy) has a row for each sample: `t`, the task coordinates, those that depend on
 /// them, every joint, actuated or passive, and the imaginary joints, by their names. --rates adds `d.NAME` for each
 /// of these but `t`, and --accelerations `dd.NAME`: derivatives of the coordinates themselves, so those of an
-/// Euler angle are no angular velocity. --efforts adds `effort.NAME` for each actuated joint, N and N m. Out of reach, and where a joint has no rate, a cell is empty (NaN in NPY).
+/// Euler angle are no angular velocity. --efforts adds `effort.NAME` for each actuated joint, N and N m;
+/// a recording has them in /indices, and `opm plot` draws them with their max_effort. Out of reach, and where a joint has no rate, a cell is empty (NaN in NPY).
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -135,7 +136,7 @@ pub struct TrajectoryArgs {
     #[arg(help_heading = heading::WRITTEN, long, requires = "output")]
     pub indices: bool,
     /// The efforts of the actuators that move the mechanism: peak, root mean square and power of each, and effort.NAME in the
-    /// table
+    /// table or the recording
     #[arg(help_heading = heading::WRITTEN, long, conflicts_with = "indices")]
     pub efforts: bool,
     /// What indices and efforts are computed with.

@@ -71,7 +71,8 @@ impl Wanted {
                 | PanelName::Actuated
                 | PanelName::Passive
                 | PanelName::Condition
-                | PanelName::Indices => {}
+                | PanelName::Indices
+                | PanelName::Efforts => {}
                 PanelName::Positions => rates.push(Rate::Position),
                 PanelName::Velocities => rates.push(Rate::Velocity),
                 PanelName::Accelerations => rates.push(Rate::Acceleration),
@@ -95,10 +96,13 @@ impl Wanted {
         }
     }
 
-    /// Condition number, measures and indices are not positions: if --panels names them, they are drawn with any
+    /// Condition number, measures, indices and efforts are not positions: if --panels names them, they are drawn with any
     /// rates.
     fn takes(&self, trace: &Trace) -> bool {
-        let judged = matches!(trace.group, Group::Condition | Group::Singularity | Group::Indices);
+        let judged = matches!(
+            trace.group,
+            Group::Condition | Group::Singularity | Group::Indices | Group::Efforts
+        );
         self.rates.contains(&trace.rate) || (judged && self.groups.is_some())
     }
 }
@@ -112,6 +116,7 @@ fn rows_of(panel: PanelName) -> &'static [Group] {
         PanelName::Passive => &[Group::Passive],
         PanelName::Condition => &[Group::Condition, Group::Singularity],
         PanelName::Indices => &[Group::Indices],
+        PanelName::Efforts => &[Group::Efforts],
         PanelName::Positions
         | PanelName::Velocities
         | PanelName::Accelerations
@@ -125,6 +130,7 @@ fn recorded_by(panel: PanelName) -> &'static str {
     match panel {
         PanelName::Condition => "; `opm trajectory -o` records it for every motion",
         PanelName::Indices => "; record with `opm trajectory --indices`",
+        PanelName::Efforts => "; record with `opm trajectory --efforts`",
         _ => "",
     }
 }
@@ -397,15 +403,28 @@ fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) ->
         let (Measure { name, mut unit }, _) =
             source.measure(axis(group, quantity, rate), quantity, rate);
         unit.symbol = symbol.unwrap_or(unit.symbol);
+        let limits = traces.iter().map(|trace| (number(&trace.name), trace.limit));
+        let levels = levels(&limits.collect::<Vec<_>>());
         let curves = traces.into_iter().map(|trace| (number(&trace.name), trace.curve)).collect();
         let scale = match group {
             Group::Condition => Scale::Logarithmic,
             _ => Scale::Linear,
         };
-        Some(Panel { title: title(group, quantity, rate), name, unit, scale, curves })
+        Some(Panel { title: title(group, quantity, rate), name, unit, scale, curves, levels })
     };
     let panels = columns.into_iter().map(panel).collect();
     PanelRow { names, panels }
+}
+
+/// The limits of curves in both directions, each once: in the colour of its curve, or in none if several have it.
+fn levels(limits: &[(usize, Option<f64>)]) -> Vec<(Option<usize>, f64)> {
+    let given = || limits.iter().filter_map(|&(curve, limit)| Some((curve, limit?)));
+    let first = |curve: usize, limit: f64| given().find(|of| of.1 == limit) == Some((curve, limit));
+    let each = given().filter(|&(curve, limit)| first(curve, limit)).flat_map(|(curve, limit)| {
+        let alone = given().filter(|of| of.1 == limit).count() == 1;
+        [limit, -limit].map(|level| (alone.then_some(curve), level))
+    });
+    each.collect()
 }
 
 /// The label of an axis.
@@ -414,6 +433,7 @@ fn axis(group: Group, quantity: Option<Quantity>, rate: Rate) -> &'static str {
         (Rate::Position, Some(Quantity::Angle)) => "angle",
         (Rate::Position, Some(Quantity::Length)) => "length",
         (Rate::Position, None) if group == Group::Condition => "condition",
+        (Rate::Position, None) if group == Group::Efforts => "effort",
         (Rate::Position, None) => "value",
         (Rate::Velocity, _) => "velocity",
         (Rate::Acceleration, _) => "acceleration",
@@ -432,6 +452,7 @@ fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
         (Group::Condition, _) => "Condition number",
         (Group::Singularity, _) => "Singularity measures",
         (Group::Indices, _) => "Indices",
+        (Group::Efforts, _) => "Efforts",
     };
     match rate {
         Rate::Position => what.to_owned(),

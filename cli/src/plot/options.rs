@@ -20,6 +20,8 @@ pub enum PanelName {
     Condition,
     /// Indices over time (`opm trajectory --indices`)
     Indices,
+    /// Efforts of the actuators over time (`opm trajectory --efforts`), with their limits dashed
+    Efforts,
     /// For a motion: positions
     Positions,
     /// For a motion: velocities, in a second column

@@ -25,6 +25,7 @@ pub enum Group {
     Condition,
     Singularity,
     Indices,
+    Efforts,
 }
 
 /// The topics that are drawn.
@@ -73,6 +74,8 @@ pub struct Trace {
     pub unit: String,
     /// The divisor of the SI values.
     pub factor: f64,
+    /// Its largest value in either direction, in the unit of the values, if the mechanism file gives one.
+    pub limit: Option<f64>,
     pub curve: Curve,
 }
 
@@ -90,7 +93,7 @@ pub fn traces(source: &Source<'_>, topic: Topic, flat: &Flat) -> Vec<Trace> {
 
 fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
     let find = |record: &str| source.metadata(record).get(field).cloned();
-    let mut unit = String::new();
+    let (mut unit, mut limit) = (String::new(), None);
     let (name, quantity, group) = match topic.kind {
         TopicKind::Condition => {
             let group = if field == CONDITION { Group::Condition } else { Group::Singularity };
@@ -101,11 +104,13 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
             let of_joint =
                 field.strip_prefix("effort_").filter(|_| Index::from_name(field).is_none());
             let joint = of_joint.and_then(|field| source.metadata("joints").get(field).cloned());
+            limit = joint.as_deref().and_then(|joint| max_effort(source, joint));
+            let group = if of_joint.is_some() { Group::Efforts } else { Group::Indices };
             let name = joint.map_or_else(|| field.to_owned(), |joint| format!("effort.{joint}"));
             let known = find("quantities");
             let quantity = quantity(known.as_deref());
             unit = known.filter(|_| quantity.is_none()).unwrap_or_default();
-            (name, quantity, Group::Indices)
+            (name, quantity, group)
         }
         TopicKind::Pose => {
             let mut task = source
@@ -135,7 +140,8 @@ fn trace(source: &Source<'_>, topic: Topic, field: &str) -> Trace {
         }
     };
     let (_, factor) = source.measure("", quantity, topic.rate);
-    Trace { name, group, quantity, rate: topic.rate, unit, factor, curve: Curve::default() }
+    let (rate, curve) = (topic.rate, Curve::default());
+    Trace { name, group, quantity, rate, unit, factor, limit, curve }
 }
 
 fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
@@ -148,6 +154,13 @@ fn imaginary_quantity(source: &Source<'_>, name: &str) -> Option<Quantity> {
         }
         SourceSolver::Other => None,
     }
+}
+
+/// The largest effort of the actuator of a joint coordinate.
+fn max_effort(source: &Source<'_>, name: &str) -> Option<f64> {
+    let mechanism = &source.mechanism.as_ref()?.file.mechanism;
+    let mut all = mechanism.joints().filter(|joint| joint.actuated).flat_map(|j| &j.coordinates);
+    all.find(|coordinate| coordinate.name == name)?.max_effort
 }
 
 /// The properties of a joint coordinate.

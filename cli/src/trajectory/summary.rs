@@ -78,7 +78,8 @@ impl Report<'_> {
                 let [peak, time] = duty.peak.map_or([None; 2], |peak| peak.map(Some));
                 let [gives, takes] = duty.power;
                 let duty = json!({
-                    "peak": peak, "time": time, "rms": duty.rms(), "power": [takes, gives],
+                    "peak": peak, "time": time, "rate": duty.peak.map(|_| duty.rate_at_peak),
+                    "rms": duty.rms(), "power": [takes, gives],
                 });
                 (name, duty)
             };
@@ -177,6 +178,7 @@ impl Report<'_> {
             "unit",
             ">peak",
             ">at t [s]",
+            ">at rate",
             ">rms",
             ">peak rate",
             "unit",
@@ -189,15 +191,17 @@ impl Report<'_> {
             let known = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), short);
             let rate = self.summary.joints[number][1].get();
             let rate = rate.map(|[low, high]| low.abs().max(high.abs()));
-            let shown =
-                rate.map_or_else(|| "-".to_owned(), |rate| text::number(rate, quantity, units));
+            let shown = |rate: Option<f64>| {
+                rate.map_or_else(|| "-".to_owned(), |rate| text::number(rate, quantity, units))
+            };
             table.row([
                 name,
                 unit.to_owned(),
                 known(duty.peak.map(|[peak, _]| peak)),
                 known(duty.peak.map(|[_, time]| time)),
+                shown(duty.peak.map(|_| duty.rate_at_peak)),
                 known(duty.rms()),
-                shown,
+                shown(rate),
                 format!("{}/s", units.symbol(quantity)),
                 short(duty.power[0]),
                 short(0.0 - duty.power[1]),

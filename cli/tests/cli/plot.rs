@@ -216,11 +216,11 @@ fn indices_are_drawn_by_their_units() {
     let load = ["--indices", "--wrench", "10,0,0,0,0,0.5", "--link-stiffness", "1e7,1e4"];
     let of = [&["--motion", MOTION, "--rate", "10"], &load[..]].concat();
     let file = motion(&folder, &of);
-    let (_, svg) = plot(&folder, &file, &["--panels", "indices"]);
+    let (_, svg) = plot(&folder, &file, &["--panels", "indices,efforts"]);
     assert_legible(&svg);
     let document = Document::parse(&svg).unwrap();
     let panels = class(document.root(), "panel");
-    assert!(titles(&document).iter().all(|title| *title == "Indices"));
+    assert!(titles(&document).iter().all(|title| ["Indices", "Efforts"].contains(title)));
     let axes: Vec<&str> = class(document.root(), "y-axis").into_iter().map(label).collect();
     let table = folder.arg("table.csv");
     opm(&[&["trajectory", PLANO, "-o", &table], &of[..]].concat()).text();
@@ -228,8 +228,8 @@ fn indices_are_drawn_by_their_units() {
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     for (name, axis) in [
         ("lti", "value"),
-        ("effort.S1", "value (N)"),
-        ("effort.phi14", "value (N m)"),
+        ("effort.S1", "effort (N)"),
+        ("effort.phi14", "effort (N m)"),
         ("rotational_stiffness", "value (N m/rad)"),
         ("clearance", "length (mm)"),
     ] {
@@ -252,12 +252,52 @@ fn indices_are_drawn_by_their_units() {
     // With everything else they are below it, and a name selects one.
     let (_, svg) = plot(&folder, &file, &[]);
     let document = Document::parse(&svg).unwrap();
-    assert_eq!(titles(&document).last(), Some(&"Indices"));
+    assert_eq!(titles(&document).last(), Some(&"Efforts"));
     let (_, svg) = plot(&folder, &file, &["--values", "effort.S1"]);
-    assert_eq!(titles(&Document::parse(&svg).unwrap()), ["Indices"]);
+    assert_eq!(titles(&Document::parse(&svg).unwrap()), ["Efforts"]);
     let without = motion(&folder, &["--motion", MOTION, "--rate", "10"]);
     let none = opm(&["plot", &without, "-o", &folder.arg("none.svg"), "--panels", "indices"]);
     none.fails_with_one_line(2, &["--panels: indices: ", "record with `opm trajectory --indices`"]);
+}
+
+/// The efforts of a recorded motion are those of the table, and a limit of theirs is a dashed line on both sides.
+#[test]
+fn efforts_are_drawn_with_their_limits() {
+    let folder = Folder::new();
+    let limits = ["--set", "max_effort.S=40", "--set", "leg1.max_effort.S=60"];
+    let of = [&["--motion", MOTION, "--rate", "10", "--efforts"], &limits[..]].concat();
+    let file = motion(&folder, &of);
+    let (_, svg) = plot(&folder, &file, &["--panels", "efforts"]);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    assert!(titles(&document).iter().all(|title| *title == "Efforts"));
+    let axes: Vec<&str> = class(document.root(), "y-axis").into_iter().map(label).collect();
+    let place = axes.iter().position(|axis| *axis == "effort (N)").unwrap();
+    let panel = class(document.root(), "panel")[place];
+    let up = up(panel);
+    let table = folder.arg("table.csv");
+    opm(&[&["trajectory", PLANO, "-o", &table], &of[..]].concat()).text();
+    let text = folder.read("table.csv");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let column = rows[0].iter().position(|found| *found == "effort.S1").unwrap();
+    let points = pieces(paths(named(panel, "curve", "effort.S1"))[0]).concat();
+    assert_eq!(points.len(), rows.len() - 1);
+    for ([_, y], row) in points.into_iter().zip(&rows[1..]) {
+        let value: f64 = row[column].parse().unwrap();
+        assert!((up(y) - value).abs() < 0.05, "{} {value}", up(y));
+    }
+    let levels = class(panel, "level").into_iter().map(|level| {
+        let ends = pieces(paths(level)[0]).concat();
+        assert_eq!(ends.len(), 2);
+        assert!((ends[0][1] - ends[1][1]).abs() < 1e-9);
+        up(ends[0][1]).round() as i32
+    });
+    let mut levels: Vec<i32> = levels.collect();
+    levels.sort_unstable();
+    assert_eq!(levels, [-60, -40, 40, 60]);
+    let without = motion(&folder, &["--motion", MOTION, "--rate", "10"]);
+    let none = opm(&["plot", &without, "-o", &folder.arg("none.svg"), "--panels", "efforts"]);
+    none.fails_with_one_line(2, &["--panels: efforts: ", "record with `opm trajectory --efforts`"]);
 }
 
 /// A tile has as many cells as a sweep of that slice alone counts poses.

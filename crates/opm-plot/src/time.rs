@@ -1,7 +1,7 @@
 //! Figures of curves over time, or over another value: panels below each other, related ones side by side.
 
 use crate::axis::{self, Axis, Unit};
-use crate::color::{ALARM, SHADE, line};
+use crate::color::{ALARM, INK, SHADE, line};
 use crate::curve::Curve;
 use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
 use crate::font::{CAPITALS, Face};
@@ -48,6 +48,9 @@ pub struct Panel {
     pub scale: Scale,
     /// The curves, each with the number of its name in [`PanelRow::names`].
     pub curves: Vec<(usize, Curve)>,
+    /// Values that are marked by dashed lines from side to side, limits for instance: each in the colour of the curve with this
+    /// number, or in that of the frame.
+    pub levels: Vec<(Option<usize>, f64)>,
 }
 
 /// How values are laid out along an axis.
@@ -217,6 +220,18 @@ impl TimeFigure {
             shapes.push(Shape::Area(area, SHADE));
         }
         shapes.push(frame.grid());
+        for (number, value) in &panel.levels {
+            let color = number.map_or(INK, |number| line(number).0);
+            let pen = Pen { color, width: 1.2, dashes: &[6.0, 4.0] };
+            let ends = x.range.map(|end| frame.at(end, *value));
+            let label = number.and_then(|number| row.names.get(number).cloned());
+            let shapes_of = vec![Shape::Line(Path::through(ends), pen)];
+            shapes.push(Shape::Group {
+                kind: "level",
+                label: label.unwrap_or_default(),
+                shapes: shapes_of,
+            });
+        }
         for (number, curve) in &panel.curves {
             let (color, dashes) = line(*number);
             let pen = Pen { color, width: 1.8, dashes };
@@ -284,7 +299,8 @@ impl Panel {
     fn axis(&self, height: f64) -> Axis {
         let union = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         let curves = self.curves.iter().map(|(_, curve)| curve);
-        let values = curves.clone().filter_map(Curve::range).reduce(union);
+        let levels = self.levels.iter().map(|(_, value)| [*value; 2]);
+        let values = curves.clone().filter_map(Curve::range).chain(levels).reduce(union);
         let positive = curves.filter_map(Curve::smallest_positive).reduce(f64::min);
         let most = ticks_in(height);
         match (self.scale, values, positive) {

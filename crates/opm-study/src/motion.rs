@@ -78,7 +78,7 @@ impl<'a> MotionRequest<'a> {
     }
 
     /// Adds the efforts of the actuators that move the mechanism against its inertia and everything in a setup, as `effort.NAME`
-    /// to tables, and what each motor has to do to the summary.
+    /// to tables and recordings, and what each motor has to do to the summary.
     #[must_use]
     pub fn efforts(self, setup: &'a Setup) -> Self {
         Self { efforts: Some(setup), ..self }

@@ -31,7 +31,7 @@ fn unit(symbol: &str) -> Unit {
 
 fn panel(symbol: &str, curves: Vec<(usize, Curve)>) -> Panel {
     let (title, name) = (format!("Panel in {symbol}"), "value".to_owned());
-    Panel { title, name, unit: unit(symbol), scale: Scale::Linear, curves }
+    Panel { title, name, unit: unit(symbol), scale: Scale::Linear, curves, levels: vec![] }
 }
 
 fn row(names: &[&str], panels: Vec<Option<Panel>>) -> PanelRow {

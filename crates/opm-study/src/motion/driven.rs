@@ -2,6 +2,7 @@
 
 use opm_analysis::{JointMotion, Loads, Setup, Statics};
 use opm_core::manipulator::Manipulator;
+use opm_core::mechanism::joint::DriveLimit;
 use opm_core::trajectory::Sample;
 
 /// A rate below this share of the largest is none, nor is such an acceleration.
@@ -58,6 +59,14 @@ impl<'a> Driven<'a> {
         }
     }
 
+    /// The names of the columns of [`Driven::values`], `effort.NAME`, with their units.
+    pub fn columns(manipulator: &Manipulator) -> impl Iterator<Item = (String, &'static str)> + '_ {
+        let all = manipulator.coordinates();
+        let unit = |&number: &usize| DriveLimit::Effort.unit(all[number].quantity);
+        // Those of imaginary joints come after.
+        crate::columns::efforts(manipulator).zip(manipulator.actuated().iter().map(unit))
+    }
+
     /// The effort of each actuated coordinate, N and N m; not a number where it is not known: out of reach, at singularities, and
     /// where redundant actuators can work against each other.
     pub fn values(&mut self, sample: &Sample) -> &[f64] {
@@ -86,6 +95,8 @@ impl<'a> Driven<'a> {
 pub struct Duty {
     /// The largest effort without its sign, N or N m, and its time, seconds; `None` if no effort is known.
     pub peak: Option<[f64; 2]>,
+    /// The rate of the joint at that time, rad/s or m/s; positive where the motor drives it.
+    pub rate_at_peak: f64,
     /// The largest power that it gives, and the largest that it takes (negative), W.
     pub power: [f64; 2],
     /// The number of samples, and the sum of the squares of the efforts.
@@ -100,6 +111,8 @@ impl Duty {
         }
         if self.peak.is_none_or(|[peak, _]| effort.abs() > peak) {
             self.peak = Some([effort.abs(), time]);
+            // Not -0.
+            self.rate_at_peak = rate * effort.signum() + 0.0;
         }
         let power = effort * rate;
         self.power = [self.power[0].max(power), self.power[1].min(power)];

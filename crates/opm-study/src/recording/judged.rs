@@ -1,5 +1,6 @@
 //! The indices and the efforts of a sample of a motion, as columns.
 
+use crate::motion::MotionRequest;
 use opm_analysis::{Index, Indices, Setup};
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::joint::DriveLimit;
@@ -13,12 +14,18 @@ pub struct Judged<'a> {
 }
 
 impl<'a> Judged<'a> {
-    pub fn new(manipulator: &'a Manipulator, setup: &Setup) -> Option<Self> {
+    /// What a request asks for; nothing without a setup. Efforts in motion take the place of those at rest.
+    pub fn of(request: &MotionRequest<'a>) -> Option<Self> {
+        let at_rest = request.efforts.is_none();
+        request.indices.and_then(|setup| Self::new(request.manipulator, setup, at_rest))
+    }
+
+    fn new(manipulator: &'a Manipulator, setup: &Setup, efforts: bool) -> Option<Self> {
         let known = Index::known(manipulator, setup);
         let named = known.iter().map(|index| (index.name().to_owned(), index.facts().unit));
         let mut columns: Vec<(String, &'static str)> = named.collect();
         let mut indices = Indices::new(manipulator, setup, known).ok()?;
-        if setup.has_load() {
+        if efforts && setup.has_load() {
             indices = indices.with_efforts(setup);
             let all = manipulator.coordinates();
             let actuated = manipulator.actuated().iter().map(|&number| all[number].quantity);

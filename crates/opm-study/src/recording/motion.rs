@@ -4,7 +4,7 @@ use super::judged::Judged;
 use super::scene::{Scene, imaginary_coordinates, joint_coordinates};
 use super::{Attachment, PROGRAM, create, expect_mcap, record};
 use crate::error::StudyError;
-use crate::motion::{MOST_LISTED, MotionRequest, MotionSummary};
+use crate::motion::{Driven, MOST_LISTED, MotionRequest, MotionSummary};
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::motion::Path as MotionPath;
 use opm_core::skeleton;
@@ -29,6 +29,10 @@ pub struct MotionRecorder<'a> {
     measures: Vec<f64>,
     /// What the poses are judged by, if that is recorded.
     judged: Option<Judged<'a>>,
+    /// The efforts that move it, if they are recorded.
+    driven: Option<Driven<'a>>,
+    /// The values of both.
+    indices: Vec<f64>,
     /// The pairs of bodies, if contacts are watched for.
     interference: Option<Interference>,
     /// The numbers of the scene's bodies that interfere at the present sample.
@@ -51,10 +55,14 @@ impl<'a> MotionRecorder<'a> {
         let file = create(path)?;
         let scene = Scene::of(request.manipulator);
         let parallel = parallel(request.manipulator);
-        let judged = request.indices.and_then(|setup| Judged::new(request.manipulator, setup));
+        let manipulator = request.manipulator;
+        let judged = Judged::of(&request);
+        let driven = request.efforts.map(|setup| Driven::new(manipulator, setup));
         let names = judged.iter().flat_map(Judged::columns);
+        let names = names.map(|(name, unit)| (name.to_owned(), unit));
+        let efforts = driven.iter().flat_map(|_| Driven::columns(manipulator));
         let mut recorded = recorded(&request, files, &scene, parallel);
-        recorded.indices = names.map(|(name, unit)| (name.to_owned(), unit)).collect();
+        recorded.indices = efforts.chain(names).collect();
         let recorder = TrajectoryRecorder::new(file, &recorded);
         let recorder = recorder.map_err(|error| StudyError::record(&place, error))?;
         let interference =
@@ -69,6 +77,8 @@ impl<'a> MotionRecorder<'a> {
             parallel,
             measures,
             judged,
+            driven,
+            indices: Vec::new(),
             interference,
             interfering,
         })
@@ -181,12 +191,18 @@ impl<'a> MotionRecorder<'a> {
             }
         }
         let at = sample.reached.then_some(solution);
-        let indices = self.judged.as_mut().map_or(&[][..], |judged| judged.values(at));
+        self.indices.clear();
+        if let Some(driven) = &mut self.driven {
+            self.indices.extend(driven.values(sample));
+        }
+        if let Some(judged) = &mut self.judged {
+            self.indices.extend(judged.values(at));
+        }
         let recorded = Recorded {
             pose: &instant.pose,
             pose_velocities: &instant.velocity,
             measures: &self.measures,
-            indices,
+            indices: &self.indices,
             valid: sample.valid(),
             posture,
         };

@@ -2,12 +2,10 @@
 
 use super::judged::Judged;
 use super::{create, refuse_standard_output};
-use crate::columns;
 use crate::error::{RequestError, StudyError};
 use crate::motion::{Driven, MotionRequest, MotionSummary};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
-use opm_core::mechanism::joint::DriveLimit;
 use opm_core::trajectory::{Sample, Trajectory};
 use opm_mcap::csv::distinct;
 use opm_mcap::{RecordError, TableRecorder};
@@ -47,7 +45,7 @@ struct Columns<'a> {
 impl<'a> Columns<'a> {
     fn new(request: &MotionRequest<'a>, options: TableOptions) -> Self {
         let manipulator = request.manipulator;
-        let indices = request.indices.and_then(|setup| Judged::new(manipulator, setup));
+        let indices = Judged::of(request);
         let tasks = manipulator.task_coordinates().iter();
         let tasks = tasks.chain(manipulator.dependent_coordinates());
         let joints = manipulator.coordinates().iter().map(|c| (c.name.clone(), c.quantity));
@@ -55,10 +53,7 @@ impl<'a> Columns<'a> {
         let coordinates =
             tasks.map(|c| (c.name.to_owned(), c.quantity)).chain(joints).chain(imaginary).collect();
         let efforts = request.efforts.map(|setup| Driven::new(manipulator, setup));
-        let unit =
-            |&number: &usize| DriveLimit::Effort.unit(manipulator.coordinates()[number].quantity);
-        let motors = manipulator.actuated().iter().map(unit);
-        let motors = columns::efforts(manipulator).zip(motors).collect();
+        let motors = Driven::columns(manipulator).collect();
         Self { options, indices, efforts, motors, coordinates }
     }
 
