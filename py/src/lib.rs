@@ -43,6 +43,7 @@ mod rows;
 mod screws;
 mod setup;
 mod shared;
+mod simulation;
 mod snap;
 mod solids;
 mod solutions;

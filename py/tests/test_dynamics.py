@@ -113,3 +113,69 @@ def test_natural_frequencies_are_those_of_the_equations_of_motion():
     assert m.analyze(m.home).natural_frequencies is None
     light = m.analyze(m.home, gravity=[0, 0, -1], density=300, link_stiffness=(1e9, 1e9)).natural_frequency
     assert light > m.analyze(m.home, gravity=[0, 0, -1], density=3000, link_stiffness=(1e9, 1e9)).natural_frequency
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_simulated_motion_is_the_one_whose_efforts_drive_it(name):
+    """Efforts along a known motion, held over short times, give that motion again, the better the shorter the times are."""
+    m, poses, _, _ = drawn(name, 60)
+    start, size = poses[0], np.where([c.unit == "m" for c in m.task_coordinates], 0.01, 0.1)
+    speed, swing = 3.0, size * np.cos(1.0 + np.arange(len(start)))
+
+    def known(t):
+        angle = speed * np.asarray(t)[..., None]
+        return start + swing * np.sin(angle), speed * swing * np.cos(angle), -(speed**2) * swing * np.sin(angle)
+
+    errors = []
+    for count in (20, 40):
+        times = np.linspace(0, 0.2, count + 1)
+        middle = np.append(times[:-1] + 0.5 * np.diff(times), times[-1])
+        efforts = m.inverse_dynamics(*known(middle))
+        x, v, _ = known(times)
+        found, rates = m.simulate(x[0], v[0], times, efforts)
+        assert found.shape == x.shape and not np.isnan(found).any()
+        errors.append(max((np.abs(found - x) / size).max(), (np.abs(rates - v) / size / speed).max()))
+    assert errors[0] < 0.05 and errors[1] < 0.3 * errors[0]
+
+
+def test_a_controller_is_called_at_every_time():
+    m = opm.examples.load("five-bar")
+    rest, calls = np.zeros(2), []
+
+    def holding(t, pose, rates):
+        calls.append(t)
+        return m.inverse_dynamics(pose, rates, rest, gravity=[0, -9.81, 0])
+
+    times = np.linspace(0, 0.5, 6)
+    poses, rates = m.simulate(m.home, {}, times, holding, gravity=[0, -9.81, 0])
+    assert calls == list(times[:-1])
+    np.testing.assert_allclose(poses, np.tile(m.home, (6, 1)), atol=1e-9)
+    same, _ = m.simulate(m.home, rest, times, holding(0, m.home, rest), gravity=[0, -9.81, 0])
+    np.testing.assert_allclose(same, poses, atol=1e-12)
+    # Without motors it falls, and ends where the mechanism does.
+    poses, rates = m.simulate(m.home, rest, np.linspace(0, 9, 100), {}, gravity=[0, -9.81, 0], tolerance=1e-8)
+    gone = np.isnan(poses).any(axis=1)
+    assert not gone[0] and (gone == np.isnan(rates).all(axis=1)).all() and (np.diff(gone.astype(int)) >= 0).all()
+    assert poses[1, 1] < m.home[1]
+
+
+def test_wrong_arguments_of_a_simulation_are_named():
+    m = opm.examples.load("delta")
+    rest = np.zeros(3)
+    for arguments, message in [
+        ((m.home, rest, [0, 0], rest), "times do not rise"),
+        ((m.home, rest, [], rest), "times"),
+        ((m.home, rest, [0, np.inf], rest), "times do not rise"),
+        ((m.home, [0, np.nan, 0], [0, 1], rest), "NaN is among rates"),
+        (([m.home] * 2, rest, [0, 1], rest), "pose has 2 rows"),
+        ((m.home, rest, [0, 1, 2], np.zeros((2, 3))), "2 rows of efforts, expected 3 as of times, or one"),
+        ((m.home, rest, [0, 1], [0, 0]), "efforts has shape"),
+        ((m.home, rest, [0, 1], lambda t, x, v: [0, 0]), r"efforts\(t = 0 s\) has shape"),
+        ((m.home, rest, [0, 1], lambda t, x, v: [np.nan, 0, 0]), "NaN is among efforts"),
+    ]:
+        with pytest.raises(opm.OpmError, match=message):
+            m.simulate(*arguments)
+    with pytest.raises(opm.OpmError, match="tolerance is 0"):
+        m.simulate(m.home, rest, [0, 1], rest, tolerance=0)
+    with pytest.raises(ZeroDivisionError):
+        m.simulate(m.home, rest, [0, 1], lambda t, x, v: 1 / 0)

@@ -92,24 +92,27 @@ impl Dynamics<'_> {
     }
 
     /// The states of a motion at some times, seconds and rising, from a state at the first of them. `efforts` gives those of the
-    /// actuators from each time to the next, by the number and the state of the time. Each step has an error of at most
-    /// `tolerance`, of radians, rad/s and the characteristic length; 1e-9 keeps energy to some 1e-8.
+    /// actuators from each time to the next, by the number and the state of the time; its own error ends the motion. Each step has an
+    /// error of at most `tolerance`, of radians, rad/s and the characteristic length; 1e-9 keeps energy to some 1e-8.
     ///
     /// # Errors
-    /// [`SimulationError`], with the states before.
-    pub fn simulate(
+    /// [`SimulationError`], or that of `efforts`, with the states before.
+    pub fn simulate<E: From<SimulationError>>(
         &mut self,
         start: State,
         mode: Mode,
         (times, tolerance): (&[f64], f64),
-        mut efforts: impl FnMut(usize, &State) -> DVector<f64>,
-    ) -> (Vec<State>, Result<(), SimulationError>) {
+        mut efforts: impl FnMut(usize, &State) -> Result<DVector<f64>, E>,
+    ) -> (Vec<State>, Result<(), E>) {
         let mut states = vec![start];
         let mut at = self.manipulator().solution();
         let mut step = f64::INFINITY;
         for (number, pair) in times.windows(2).enumerate() {
             let mut state = states[number].clone();
-            let pushed = efforts(number, &state);
+            let pushed = match efforts(number, &state) {
+                Ok(pushed) => pushed,
+                Err(error) => return (states, Err(error)),
+            };
             let (mut time, mut count) = (pair[0], 0);
             while time < pair[1] {
                 let left = pair[1] - time;
@@ -126,10 +129,10 @@ impl Dynamics<'_> {
                 let next = tried * factor.clamp(0.1, 5.0);
                 step = if tried == left && error <= 1.0 { step.max(next) } else { next };
                 if step < 1e-12 * (pair[1] - times[0]) {
-                    return (states, Err(SimulationError::Stopped { time }));
+                    return (states, Err(SimulationError::Stopped { time }.into()));
                 }
                 if count == MOST_STEPS {
-                    return (states, Err(SimulationError::Steps { time }));
+                    return (states, Err(SimulationError::Steps { time }.into()));
                 }
             }
             states.push(state);

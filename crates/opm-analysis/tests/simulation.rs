@@ -22,6 +22,11 @@ fn numbers(count: usize, of: impl Fn(usize) -> f64) -> DVector<f64> {
 }
 
 /// A state near home.
+/// Efforts without an error.
+fn free(efforts: DVector<f64>) -> Result<DVector<f64>, SimulationError> {
+    Ok(efforts)
+}
+
 fn start(m: &Manipulator) -> State {
     let home = m.home_pose();
     State {
@@ -38,7 +43,7 @@ fn energy_is_kept() {
         let mut dynamics = Dynamics::new(&m, &setup(&m));
         let none = DVector::zeros(m.actuated().len());
         let times: Vec<f64> = (0..=6).map(|i| 0.01 * f64::from(i)).collect();
-        let pushed = |_: usize, _: &State| none.clone();
+        let pushed = |_: usize, _: &State| free(none.clone());
         let run = dynamics.simulate(start(&m), m.home_mode(), (&times, 1e-10), pushed);
         let (states, Ok(())) = run else { panic!("{name}") };
         let energy = |s: &State| {
@@ -62,7 +67,7 @@ fn friction_brakes() {
     let weightless = Gravity { acceleration: Vector3::zeros(), ..Gravity::default() };
     let mut dynamics = Dynamics::new(&m, &Setup { gravity: Some(weightless), ..setup(&m) });
     let state = State { pose: numbers(1, |_| 0.0), rates: numbers(1, |_| 2.0) };
-    let pushed = |_: usize, _: &State| DVector::zeros(2);
+    let pushed = |_: usize, _: &State| free(DVector::zeros(2));
     let (states, ended) = dynamics.simulate(state, m.home_mode(), (&[0.0, 0.5], 1e-10), pushed);
     ended.unwrap();
     let decay = (-2.0 * 3.0 * 0.5 / 3.0_f64).exp();
@@ -110,7 +115,7 @@ fn small_motions_are_those_of_the_linear_model() {
         let expected = flow.view((0, 0), (2 * n, 2 * n)) * &off + flow.view((0, 2 * n), (2 * n, 1));
         let moved =
             State { pose: &rest.pose + off.rows(0, n), rates: &rest.rates + off.rows(n, n) };
-        let pushed = |_: usize, _: &State| &holding + &more;
+        let pushed = |_: usize, _: &State| free(&holding + &more);
         let run = dynamics.simulate(moved, m.home_mode(), (&[0.0, TIME], 1e-13), pushed);
         let (states, Ok(())) = run else { panic!("{name}") };
         for i in 0..n {
@@ -130,7 +135,7 @@ fn a_motion_ends_where_the_mechanism_does() {
     let m = Manipulator::example("delta").unwrap();
     let mut dynamics = Dynamics::new(&m, &setup(&m));
     let times: Vec<f64> = (0..=40).map(|i| 0.05 * f64::from(i)).collect();
-    let pushed = |_: usize, _: &State| DVector::zeros(3);
+    let pushed = |_: usize, _: &State| free(DVector::zeros(3));
     let run = dynamics.simulate(start(&m), m.home_mode(), (&times, 1e-8), pushed);
     let (states, Err(error)) = run else { panic!("it falls for ever") };
     assert!(

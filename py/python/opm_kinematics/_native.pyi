@@ -462,6 +462,18 @@ class Manipulator:
         mode: str = "home",
         threads: int | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def simulate(
+        self,
+        pose: _Rows,
+        rates: _Rows,
+        times: ArrayLike,
+        efforts: _Rows | Callable[[float, NDArray[np.float64], NDArray[np.float64]], _Rows],
+        *,
+        gravity: ArrayLike | None = None,
+        density: float | None = None,
+        tolerance: float = 1e-9,
+        mode: str = "home",
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     def singularity(
         self, poses: _Rows, *, mode: str = "home", length: float | None = None, threads: int | None = None
     ) -> Singularity: ...
