@@ -24,10 +24,13 @@
 //! ```
 //!
 //! and `δt = (Σ K)⁻¹ (W − Σ F₀)`. A link's centre of mass is on its rigid part, in front of the spring at its end.
+//!
+//! In a motion, `-m a` and `-I α - ω × I ω` act beside the weights (d'Alembert), and rotors and friction of a joint need an effort `r` along
+//! it: its spring gives way by that less, and a passive joint carries `p - r`.
 
 use crate::screws::Screws;
 use crate::springs::{SpringError, Springs};
-use crate::weights::{Gravity, Weights};
+use crate::weights::{Acting, Gravity, JointMotion, Weights};
 use crate::wrench::Wrench;
 use nalgebra::{Cholesky, DMatrix, DVector, Isometry3, Matrix6, Point3, U6, Vector3, Vector6};
 use opm_core::manipulator::{Manipulator, Solution};
@@ -54,8 +57,8 @@ pub struct Reactions {
     /// What the platform does to each leg, as a wrench at the platform's reference point: what the leg carries besides its own
     /// weight.
     pub legs: Vec<Wrench>,
-    /// What passes through each joint, leg by leg from the base on: that load, and the weight of the leg's links behind the
-    /// joint, as a wrench at the joint's point on its side of the base.
+    /// What passes through each joint, leg by leg from the base on: that load, and the weight (in a motion also what resists the
+    /// acceleration) of the leg's links behind the joint, as a wrench at the joint's point on its side of the base.
     pub joints: Vec<Wrench>,
     /// The effort of every actuated coordinate; N and N m. Where statics determine it, it does not depend on the springs.
     pub efforts: Vec<f64>,
@@ -95,6 +98,8 @@ pub struct Compliant<'a> {
     heavy: Vec<(Range<usize>, Vector6<f64>)>,
     /// The platform's own weight, at the reference point.
     platform: Vector6<f64>,
+    /// What rotors and friction of each freedom need; nothing at rest.
+    resisting: Vec<f64>,
     /// What the platform does to each leg under the leg's own weight, if the platform is held.
     held: Vec<Vector6<f64>>,
     /// The unit of length, in which all numbers of a matrix are comparable.
@@ -143,6 +148,7 @@ impl<'a> Compliant<'a> {
             reference: manipulator.mechanism().platform,
             heavy: Vec::new(),
             platform: Vector6::zeros(),
+            resisting: Vec::new(),
             held: Vec::new(),
             length: manipulator.characteristic_length(),
         })
@@ -157,20 +163,31 @@ impl<'a> Compliant<'a> {
     /// The stiffness at a solved pose that is in reach. `None` where the passive joints of a leg are dependent, as at some
     /// serial singularities, and where a leg has no link: a single joint between base and platform.
     pub fn stiffness(&mut self, at: &Solution) -> Option<Stiffness> {
+        self.stiffness_in(at, None)
+    }
+
+    /// The same in a motion: with heavy bodies ([`Compliant::with_gravity`]), [`Compliant::reactions`] then has what resists their
+    /// accelerations, rotors, and the friction of joints, too. Springs are at rest: they do not swing.
+    pub fn stiffness_in(
+        &mut self,
+        at: &Solution,
+        motion: Option<JointMotion<'_>>,
+    ) -> Option<Stiffness> {
         self.screws.update(at);
         self.displacement = at.displacement(self.manipulator);
         let platform = self.manipulator.platform_at(&self.displacement);
         self.reference = Point3::from(platform.translation.vector);
-        let at_reference = |force: Vector3<f64>, point: &Point3<f64>| {
-            let wrench = Wrench { force, moment: Vector3::zeros() };
-            Vector6::from(wrench.moved(point, &self.reference).components())
+        let reference = self.reference;
+        let at_reference = |[force, moment]: Acting, point: &Point3<f64>| {
+            Vector6::from(Wrench { force, moment }.moved(point, &reference).components())
         };
-        if let Some(weights) = &self.weights {
-            let links = weights.links(&self.screws);
+        if let Some(weights) = &mut self.weights {
+            let (acting, point) = weights.act_at(at, motion);
+            self.platform = at_reference(acting, &point);
+            let links = weights.on_links();
             self.heavy =
-                links.map(|(own, force, point)| (own, at_reference(force, &point))).collect();
-            let (force, point) = weights.platform(&self.displacement);
-            self.platform = at_reference(force, &point);
+                links.map(|(own, acting, point)| (own, at_reference(*acting, &point))).collect();
+            self.resisting = weights.resisting();
         }
         let count = self.screws.legs.len();
         let legs: Vec<_> = (0..count).map(|leg| self.leg(leg)).collect::<Option<_>>()?;
@@ -205,7 +222,7 @@ impl<'a> Compliant<'a> {
         let actuated = self.manipulator.actuated().iter();
         let efforts = actuated.map(|&number| {
             let own = leg_of(number).map_or(Vector6::zeros(), |leg| legs[leg]);
-            0.0 - (own + self.behind(number)).dot(&self.twist(number))
+            0.0 - own.dot(&self.twist(number)) - self.along(number)
         });
         let efforts = efforts.collect();
         let mut joints = Vec::new();
@@ -244,12 +261,22 @@ impl<'a> Compliant<'a> {
         moved.map(|(_, weight)| weight).sum()
     }
 
+    /// What the joint of a coordinate carries along it: the weights behind it, less what its rotor and its friction need.
+    fn along(&self, number: usize) -> f64 {
+        let resisting = self.resisting.get(number).copied().unwrap_or_default();
+        self.twist(number).dot(&self.behind(number)) - resisting
+    }
+
     /// The stiffness of a leg, and what the platform does to it under its own weight, if the platform is held.
     fn leg(&self, leg: usize) -> Option<(Matrix6<f64>, Vector6<f64>)> {
         let (mut compliance, mut sag) = (Matrix6::zeros(), Vector6::zeros());
-        for Spring { behind, twist, stiffness, .. } in self.springs_of(leg) {
+        for Spring { behind, twist, stiffness, of } in self.springs_of(leg) {
             compliance += twist * twist.transpose() / stiffness;
-            sag += twist * (twist.dot(&self.behind(behind)) / stiffness);
+            let pressed = match of {
+                Sprung::Actuator => self.along(behind),
+                Sprung::Link => twist.dot(&self.behind(behind)),
+            };
+            sag += twist * (pressed / stiffness);
         }
         let back = self.per_unit();
         let inverse = (back * compliance * back).cholesky()?.inverse();
@@ -260,7 +287,7 @@ impl<'a> Compliant<'a> {
             let q = DMatrix::from_fn(6, twists.len(), |i, j| twists[j][i] / twists[j].norm());
             let carried = DVector::from_fn(twists.len(), |j, _| {
                 let number = passive[j];
-                self.twist(number).dot(&self.behind(number)) / twists[j].norm()
+                self.along(number) / twists[j].norm()
             });
             let cq = inverse * &q;
             let square = regular_inverse(q.transpose() * &cq)?;

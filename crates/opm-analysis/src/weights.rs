@@ -94,7 +94,7 @@ pub struct Weights<'a> {
 }
 
 /// What acts on a body: a force at its centre of mass, newtons, and a moment, newton metres.
-type Acting = [Vector3<f64>; 2];
+pub(crate) type Acting = [Vector3<f64>; 2];
 
 #[derive(Clone, Debug)]
 struct Link {
@@ -143,16 +143,48 @@ impl<'a> Weights<'a> {
         self.links.iter().map(|link| link.mass.mass).sum::<f64>() + self.platform.mass
     }
 
-    /// The weight of each link at a pose: the coordinates of the joints that move it, the force, newtons, and the centre of mass,
-    /// base coordinates.
-    pub(crate) fn links(
+    /// What acts on each link in a motion, or at rest: the coordinates of the joints that move it, force and moment, and the centre of
+    /// mass, base coordinates. [`Weights::act_at`] finds it.
+    pub(crate) fn on_links(
         &self,
-        screws: &Screws,
-    ) -> impl Iterator<Item = (Range<usize>, Vector3<f64>, Point3<f64>)> {
-        self.links.iter().map(|link| {
-            let centre = screws.freedoms[link.moved_by.end - 1].after * link.mass.centre;
-            (link.moved_by.clone(), self.gravity * link.mass.mass, centre)
+    ) -> impl Iterator<Item = (Range<usize>, &Acting, Point3<f64>)> + '_ {
+        self.links.iter().zip(&self.acting).map(|(link, acting)| {
+            let centre = self.screws.freedoms[link.moved_by.end - 1].after * link.mass.centre;
+            (link.moved_by.clone(), acting, centre)
         })
+    }
+
+    /// Finds what acts on all bodies at a pose, and what drives and bearings need; returns what acts on the platform, and its centre
+    /// of mass.
+    pub(crate) fn act_at(
+        &mut self,
+        at: &Solution,
+        motion: Option<JointMotion<'_>>,
+    ) -> (Acting, Point3<f64>) {
+        self.screws.update(at);
+        let displacement = at.displacement(self.manipulator);
+        let acting = self.act(&displacement, motion, Part::All);
+        (acting, displacement * self.platform.centre)
+    }
+
+    /// The force or the moment along each freedom that rotors and friction need in the motion of [`Weights::act_at`]. The three of a ball
+    /// are those about its axes, which do the work of its coordinates.
+    pub(crate) fn resisting(&self) -> Vec<f64> {
+        let freedoms = &self.screws.freedoms;
+        let mut found = vec![0.0; freedoms.len()];
+        self.drives.iter().for_each(|&(number, effort)| found[number] = effort);
+        for first in (0..freedoms.len()).filter(|&k| freedoms[k].of_ball == Some(0)) {
+            let vector = self.screws.rotation_vector(first);
+            let each = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let turning = Matrix3::from_columns(&each.map(|rate| angular_velocity(&vector, &rate)));
+            let own = Vector3::from_fn(|i, _| found[first + i]);
+            // After a full revolution a rotation vector has no rates.
+            if let Some(about) = turning.transpose().try_inverse() {
+                let about = about * own;
+                (0..3).for_each(|i| found[first + i] = about[i]);
+            }
+        }
+        found
     }
 
     /// The mass of each link at a pose: the coordinates of the joints that move it, its mass at home, and its displacement.
@@ -168,11 +200,6 @@ impl<'a> Weights<'a> {
     /// The platform's mass at home.
     pub(crate) fn platform_mass(&self) -> &Mass {
         &self.platform
-    }
-
-    /// The weight of the platform, and its centre of mass, where the platform is displaced from home.
-    pub(crate) fn platform(&self, displacement: &Isometry3<f64>) -> (Vector3<f64>, Point3<f64>) {
-        (self.gravity * self.platform.mass, displacement * self.platform.centre)
     }
 
     /// The work of the weights for each independent velocity at a pose, of which `statics` has taken the solution, and of what
