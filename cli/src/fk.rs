@@ -4,6 +4,7 @@ mod aspects;
 mod least;
 mod not_found;
 mod poses;
+mod proofs;
 mod table;
 
 use crate::args::{FkArgs, Output};
@@ -14,7 +15,7 @@ use crate::pose::Pose;
 use crate::text::{self, Table, reason};
 use crate::unitless;
 use opm_core::forward::{
-    Assemblies, Assembly, Completeness, ForwardMethod, LeastChange, NearError, Unmet,
+    Assemblies, Assembly, Certificate, Completeness, ForwardMethod, LeastChange, NearError, Unmet,
 };
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, Section};
@@ -58,11 +59,13 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
         true => None,
         false => manipulator.least_change(&actuated).ok().flatten(),
     };
+    let certificates = manipulator.certify(&found.list);
     let answer = Answer {
         loaded: &loaded,
         manipulator: &manipulator,
         actuated,
         found,
+        certificates,
         least,
         only,
         method,
@@ -221,6 +224,8 @@ struct Answer<'a> {
     manipulator: &'a Manipulator,
     actuated: Vec<f64>,
     found: Assemblies,
+    /// What is proven of each assembly.
+    certificates: Vec<Certificate>,
     /// The least change of the joints that closes, where there is no assembly.
     least: Option<LeastChange>,
     only: Option<Mode>,
@@ -257,6 +262,8 @@ struct JsonAssembly {
     joints: Map<String, Value>,
     imaginary: Map<String, Value>,
     residual: f64,
+    #[serde(flatten)]
+    proof: proofs::Json,
     /// The number of the aspect, null if the grid does not tell; only with --aspects.
     #[serde(skip_serializing_if = "Option::is_none")]
     aspect: Option<Value>,
@@ -276,6 +283,7 @@ impl Answer<'_> {
             joints: pair(m.coordinates().iter().map(|c| &*c.name).collect(), &a.joints),
             imaginary: pair(m.imaginary().iter().map(|j| &*j.name).collect(), &a.imaginary),
             residual: a.residual,
+            proof: proofs::Json::new(&self.certificates[number]),
             aspect: self.aspects.as_ref().map(|aspects| aspects[number].into()),
         };
         Json {
@@ -330,6 +338,7 @@ impl Answer<'_> {
                 "{count} {many}{in_mode}{how}, {limits}; legs close to {worst:.1e} of the size\n"
             );
             let _ = write!(text, "{}", self.table());
+            text += &proofs::text(&self.certificates);
             if let Some(aspects) = &self.aspects {
                 text += &aspects::text(m, list, aspects);
             }

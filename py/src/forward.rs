@@ -12,7 +12,7 @@ use crate::rows::Rows;
 pub use assemblies::Assemblies;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use opm_core::forward::{
-    self as core, Completeness, ForwardError, LeastChange, NearError, NearStop,
+    self as core, Certificate, Completeness, ForwardError, LeastChange, NearError, NearStop,
 };
 use opm_core::manipulator::Mode;
 use opm_study::Tracker;
@@ -23,8 +23,11 @@ use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The assemblies of a row.
+#[derive(Default)]
 pub struct Found {
     list: Vec<core::Assembly>,
+    /// For each what is proven, if that was asked for.
+    proofs: Vec<Certificate>,
     /// Whether there are no others.
     complete: bool,
 }
@@ -47,9 +50,12 @@ pub struct Assembly {
     within_limits: bool,
     /// Closure error of the legs: radians, and lengths divided by the mechanism's size.
     residual: f64,
+    /// Within this is one exact assembly, and no other one: radians, plus lengths divided by the mechanism's size. NaN where
+    /// that is not proven, or was not asked for.
+    radius: f64,
 }
 
-pickled!(Assembly { pose, mode, joints, imaginary, within_limits, residual });
+pickled!(Assembly { pose, mode, joints, imaginary, within_limits, residual, radius });
 
 #[pymethods]
 impl Assembly {
@@ -87,6 +93,10 @@ impl Manipulator {
     /// method : str, optional
     ///     ``"every"``: all assemblies. ``"newton"``: one, near `near`, for every mechanism. If not given, ``"newton"`` where `near`
     ///     is given and there is no closed form, otherwise ``"every"``.
+    /// certify : bool, optional
+    ///     Whether to prove that one exact assembly, which is none of the others, is near each: `radii` says within what. Where two
+    ///     assemblies nearly meet, or a body can move with the joints held, there is no proof. It takes a tenth of a millisecond for
+    ///     each assembly, or more.
     /// threads : int, optional
     ///     1 to 1024; the result does not depend on it. One for each processor if not given.
     ///
@@ -108,7 +118,9 @@ impl Manipulator {
     /// >>> found = m.forward(m.inverse(m.home, joints="actuated").joints)
     /// >>> int(found.counts), found.poses.shape, bool(abs(found.poses[0] - m.home).max() < 1e-9)
     /// (2, (2, 3), True)
-    #[pyo3(signature = (joints, *, near = None, mode = None, method = None, threads = None))]
+    /// >>> bool((m.forward(m.inverse(m.home, joints="actuated").joints, certify=True).radii < 1e-9).all())
+    /// True
+    #[pyo3(signature = (joints, *, near = None, mode = None, method = None, certify = false, threads = None))]
     #[allow(clippy::too_many_arguments)]
     fn forward(
         &self,
@@ -117,6 +129,7 @@ impl Manipulator {
         near: Option<&Bound<'_, PyAny>>,
         mode: Option<&str>,
         method: Option<&str>,
+        certify: bool,
         #[pyo3(from_py_with = arguments::threads)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Assemblies> {
         let mode = mode.map(|mode| self.mode(mode)).transpose()?;
@@ -146,7 +159,7 @@ impl Manipulator {
         let stop = AtomicBool::new(false);
         let solve = |row: usize| -> Result<Found, String> {
             if stop.load(Ordering::Relaxed) || joints.missing(row) {
-                return Ok(Found { list: Vec::new(), complete: false });
+                return Ok(Found::default());
             }
             let (values, start) = (joints.row(row), start(row));
             let found = if newton {
@@ -154,7 +167,11 @@ impl Manipulator {
             } else {
                 self.every_assembly(values, start, mode)
             };
-            found.map_err(|problem| format!("row {row}: {problem}"))
+            let mut found = found.map_err(|problem| format!("row {row}: {problem}"))?;
+            if certify {
+                found.proofs = self.inner.certify(&found.list);
+            }
+            Ok(found)
         };
         let found: Vec<_> = if joints.count <= FEW {
             (0..joints.count).map(solve).collect()
@@ -302,7 +319,7 @@ impl Manipulator {
         let near = self.inner.displacement_in(near, mode.unwrap_or(self.inner.home_mode()));
         let near = self.inner.platform_at(&near.map_err(|error| format!("near: {error}"))?);
         self.inner.sort_assemblies(&mut list, &near);
-        Ok(Found { list, complete })
+        Ok(Found { list, complete, ..Default::default() })
     }
 
     /// The assembly that Newton's method finds from a pose; none if it does not converge.
@@ -314,13 +331,13 @@ impl Manipulator {
     ) -> Result<Found, String> {
         let mode = mode.unwrap_or_else(|| self.inner.home_mode());
         match self.inner.forward_near(joints, near, mode) {
-            Ok(assembly) => Ok(Found { list: vec![assembly], complete: false }),
+            Ok(assembly) => Ok(Found { list: vec![assembly], ..Default::default() }),
             Err(NearError::NotFound(end)) => match end.why {
                 NearStop::OutOfReach(_) if end.steps == 0 => {
                     let mode = self.inner.format_mode(mode);
                     Err(format!("near is out of reach in mode {mode:?}: {}", end.why))
                 }
-                _ => Ok(Found { list: Vec::new(), complete: false }),
+                _ => Ok(Found::default()),
             },
             Err(error) => Err(error.to_string()),
         }

@@ -154,6 +154,11 @@ pub struct VelocityArgs {
 /// --near, or where neither is possible, Newton's method starts from a pose and finds one assembly, in the working
 /// mode of --mode or home. The assembly nearest to home comes first.
 ///
+/// Each is then proven with rounded intervals: within `radius` (radians, plus shares of the size) there is exactly one exact
+/// assembly, and it is none of the others (`distinct`). JSON has `certificate`: "proven"; "double-suspected" where two
+/// assemblies nearly meet, or a body can move with these joints held; "redundant" where more joints are actuated than the
+/// platform has freedoms.
+///
 /// No assembly is an answer (exit status 0): it names what does not meet, and the least change of the joints
 /// with which the mechanism can be assembled, of all together (least sum of squares, lengths over the
 /// mechanism's size) and of each alone; in JSON `least_change`, null where none was found or there is no closed form. Angles count

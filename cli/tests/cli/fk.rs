@@ -45,10 +45,25 @@ fn the_pose_that_the_joints_came_from_is_among_the_assemblies() {
             a["mode"] == mode && off.fold(0.0, f64::max) < 1e-9
         };
         let at = assemblies.iter().find(same).expect("the pose");
-        assert_eq!(keys(at), ["pose", "mode", "within_limits", "joints", "imaginary", "residual"]);
+        assert_eq!(
+            keys(at),
+            [
+                "pose",
+                "mode",
+                "within_limits",
+                "joints",
+                "imaginary",
+                "residual",
+                "certificate",
+                "radius",
+                "distinct"
+            ]
+        );
         assert_eq!(keys(&at["imaginary"]), ["theta11", "theta12", "theta13"]);
         for a in assemblies {
             assert!(number(&a["residual"]) < 1e-12);
+            assert_eq!((&a["certificate"], &a["distinct"]), (&"proven".into(), &true.into()));
+            assert!((0.0..1e-8).contains(&number(&a["radius"])));
             // Every assembly has the given joint values.
             for (name, value) in found["actuated"].as_object().unwrap() {
                 let off = (number(&a["joints"][name]) - number(value)).rem_euclid(TAU);
@@ -182,7 +197,8 @@ fn the_helical_manipulator_is_linear() {
     }
     let text = opm(&["fk", HELICAL, "--joints", &joints]);
     assert!(text.text().contains("1 assembly, within limits"), "{}", text.stdout);
-    let row = text.stdout.lines().last().unwrap();
+    assert!(text.stdout.contains("It is proven: one exact assembly"), "{}", text.stdout);
+    let row = text.stdout.lines().find(|line| line.starts_with("1  ")).unwrap();
     for value in ["50.000", "-30.000", "400.0000"] {
         assert!(row.contains(value), "{row}");
     }

@@ -50,6 +50,7 @@ mod accept;
 mod along;
 mod assemble;
 mod candidates;
+mod certified;
 mod distance;
 mod held;
 mod least;
@@ -63,6 +64,7 @@ mod three;
 mod trigonometric;
 
 pub use crate::manipulator::NoClosedForm;
+pub use certified::{Certificate, Proof};
 pub use least::LeastChange;
 pub use near::{NearError, NearStop, NotFound};
 pub use newton::NearBuffer;

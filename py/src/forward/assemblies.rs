@@ -34,6 +34,9 @@ pub struct Assemblies {
     within_limits: Py<PyArrayDyn<bool>>,
     /// (..., m), no unit: closure error of the legs: radians, and lengths divided by the mechanism's size.
     residuals: Py<PyArrayDyn<f64>>,
+    /// (..., m), no unit: within this of an assembly is one exact one that is none of those before it; NaN where that is not proven,
+    /// or was not asked for (`certify`).
+    radii: Py<PyArrayDyn<f64>>,
     /// The working modes of the assemblies: a list for each row; a list of modes for one row alone.
     modes: Py<PyList>,
     /// Names along the last axis of `joints`.
@@ -55,6 +58,7 @@ pickled!(Assemblies {
     imaginary,
     within_limits,
     residuals,
+    radii,
     modes,
     joint_names,
     imaginary_names,
@@ -100,6 +104,16 @@ impl Assemblies {
         let joints = table(k, &|assembly, to| to.extend(&assembly.joints));
         let imaginary = table(j, &|assembly, to| to.extend(&assembly.imaginary));
         let residuals = table(1, &|assembly, to| to.push(assembly.residual));
+        let mut radii = Vec::with_capacity(found.len() * most);
+        for (row, Found { proofs, .. }) in found.iter().enumerate() {
+            let proven = |proof: Option<&core::Proof>| match proof {
+                Some(proof) if proof.distinct => proof.radius,
+                _ => f64::NAN,
+            };
+            radii.extend(proofs.iter().map(|certificate| proven(certificate.proof())));
+            radii.resize((row + 1) * most, f64::NAN);
+        }
+        let radii = radii.into_pyarray(py);
         let transforms = table(16, &|assembly, to| {
             let platform = inner.platform_at(&inner.displacement_of(assembly));
             to.extend(platform.to_homogeneous().transpose().iter());
@@ -124,6 +138,7 @@ impl Assemblies {
             imaginary: rows.frozen(&imaginary, &[most, j])?,
             within_limits: rows.frozen(&within.into_pyarray(py), &[most])?,
             residuals: rows.frozen(&residuals, &[most])?,
+            radii: rows.frozen(&radii, &[most])?,
             modes: modes.unbind(),
             joint_names: manipulator.joint_names(),
             imaginary_names: manipulator.imaginary_names(),
@@ -151,6 +166,7 @@ impl Assemblies {
             imaginary: vector(&self.imaginary)?,
             within_limits: part(py, &self.within_limits, place)?.is_truthy()?,
             residual: part(py, &self.residuals, place)?.extract()?,
+            radius: part(py, &self.radii, place)?.extract()?,
         })
     }
 
@@ -173,6 +189,7 @@ impl Assemblies {
             imaginary: of(py, &self.imaginary, at)?,
             within_limits: of(py, &self.within_limits, at)?,
             residuals: of(py, &self.residuals, at)?,
+            radii: of(py, &self.radii, at)?,
             modes: self.modes.bind(py).get_item(at)?.cast_into()?.unbind(),
             joint_names: self.joint_names.clone(),
             imaginary_names: self.imaginary_names.clone(),
