@@ -52,6 +52,7 @@ mod assemble;
 mod candidates;
 mod certified;
 mod distance;
+mod families;
 mod held;
 mod least;
 mod matches;
@@ -65,6 +66,7 @@ mod trigonometric;
 
 pub use crate::manipulator::NoClosedForm;
 pub use certified::{Certificate, Proof};
+pub use families::Family;
 pub use least::LeastChange;
 pub use near::{NearError, NearStop, NotFound};
 pub use newton::NearBuffer;

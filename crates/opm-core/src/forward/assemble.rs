@@ -63,6 +63,20 @@ impl Manipulator {
     }
 }
 
+impl Manipulator {
+    /// The independent coordinates of a displacement.
+    pub(super) fn pose_at(&self, g: &Isometry3<f64>) -> Vec<f64> {
+        self.independent_at(g, None)
+    }
+
+    fn independent_at(&self, g: &Isometry3<f64>, mode: Option<Mode>) -> Vec<f64> {
+        let ([v, b], rise) = self.task().factors(g);
+        let (mut all, mut pose) = (self.task().pose(&v, &b, rise), Vec::new());
+        self.write_independent(mode, &mut all, &mut pose);
+        pose
+    }
+}
+
 impl Assembler<'_> {
     /// An assembly in home's mode near a place where solutions meet, which Newton's method finds.
     fn near(&self, g: &Isometry3<f64>) -> Option<Assembly> {
@@ -73,11 +87,7 @@ impl Assembler<'_> {
 
     /// The independent coordinates of a displacement, with the angles of a mode if one is given.
     fn pose(&self, g: &Isometry3<f64>, mode: Option<Mode>) -> Vec<f64> {
-        let m = self.manipulator;
-        let ([v, b], rise) = m.task().factors(g);
-        let (mut all, mut pose) = (m.task().pose(&v, &b, rise), Vec::new());
-        m.write_independent(mode, &mut all, &mut pose);
-        pose
+        self.manipulator.independent_at(g, mode)
     }
 
     /// The values of the actuated joints.

@@ -20,7 +20,7 @@ use crate::manipulator::Manipulator;
 use crate::numeric::Quantity;
 use crate::numeric::svd::{Svd, rank};
 use fastrand::Rng;
-use legs::Legs;
+pub(super) use legs::Legs;
 use nalgebra::{DMatrix, DVector, Isometry3};
 use std::f64::consts::TAU;
 
@@ -128,7 +128,7 @@ impl Manipulator {
     }
 
     /// For each leg, how many of its passive joints can move without the others, wherever the leg is.
-    fn idle(&self) -> Vec<usize> {
+    pub(super) fn idle(&self) -> Vec<usize> {
         let mut rng = Rng::with_seed(71);
         let mut drawn = |c: usize| {
             let off = ABOUT_HOME * (2.0 * rng.f64() - 1.0) / self.weight(c);
@@ -183,7 +183,7 @@ impl Manipulator {
 }
 
 /// The unknowns that are solved for: those of a leg that are idle are held, which are least independent of the others.
-fn free(legs: &Legs, idle: &[usize]) -> Vec<usize> {
+pub(super) fn free(legs: &Legs, idle: &[usize]) -> Vec<usize> {
     let still = DVector::zeros(legs.coordinates.len());
     let mut found = Vec::new();
     for (leg, (range, &idle)) in legs.unknowns.iter().zip(idle).enumerate() {

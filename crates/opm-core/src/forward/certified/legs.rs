@@ -188,6 +188,34 @@ impl Legs {
         DMatrix::from_fn(6, twists.len(), |i, j| twists[j].1[i / 3][i % 3].centre)
     }
 
+    /// The joints, radians and metres, after the unknowns have moved from these.
+    pub fn moved(&self, m: &Manipulator, joints: &[f64], by: &DVector<f64>) -> Vec<f64> {
+        let mut joints = joints.to_vec();
+        let (mut at, mut unknown) = (0, 0);
+        for joint in m.mechanism().joints() {
+            let count = joint.coordinates.len();
+            if !joint.actuated && joint.kind == JointKind::Spherical {
+                let home = Vector3::from_fn(|i, _| joint.coordinates[i].home);
+                let vector = Vector3::from_column_slice(&joints[at..at + 3]) - home;
+                let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+                let turns = axes.iter().enumerate();
+                let turned = turns.fold(UnitQuaternion::identity(), |turned, (i, axis)| {
+                    turned * UnitQuaternion::from_axis_angle(axis, by[unknown + i])
+                });
+                let turned = turned * UnitQuaternion::from_scaled_axis(vector);
+                let vector = turned.scaled_axis() + home;
+                joints[at..at + 3].copy_from_slice(vector.as_slice());
+            } else if !joint.actuated {
+                for i in 0..count {
+                    joints[at + i] += by[unknown + i] / m.weight(at + i);
+                }
+            }
+            unknown += if joint.actuated { 0 } else { count };
+            at += count;
+        }
+        joints
+    }
+
     fn end(&self, leg: &[Part], boxes: [&DVector<f64>; 2]) -> LegEnd {
         let (place, screws) = walk(leg, boxes);
         let at = place.moved(&self.platform);
