@@ -11,8 +11,8 @@ target=wasm32-unknown-unknown
 folder=$(realpath -m "${CARGO_TARGET_DIR:-target}/web")
 wasm=$folder/$target/release/opm_web.wasm
 build=(cargo rustc --locked --release --target "$target" --target-dir "$folder" -p opm-web --lib --crate-type cdylib)
-# Files are read once, and messages are written by hand: small is better there than fast.
-for package in opm-mechanism opm-analysis opm-accuracy opm-study opm-web toml toml_parser winnow serde_json; do
+# Files are read once, messages are written by hand, distances are those of one pose at a time: small is better there than fast.
+for package in opm-mechanism opm-interference opm-analysis opm-accuracy opm-study opm-web parry3d-f64 toml toml_parser winnow serde_json; do
   build+=(--config "profile.release.package.$package.opt-level=\"s\"")
 done
 # The names of functions are a twentieth of the code, and nobody reads them in a page.

@@ -490,6 +490,87 @@ def test_a_link_with_a_wrong_change_says_so_and_shows_the_file(explore):
     assert re.fullmatch(r"\d+ of 40401", explorer.count())
 
 
+def ink(explorer, canvas):
+    """How many pixels of a canvas are drawn, and how many have the colour of the marks."""
+    return explorer.page.evaluate("""async id => {
+        await new Promise(requestAnimationFrame);
+        await new Promise(requestAnimationFrame);
+        const canvas = document.getElementById(id);
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        let [drawn, marked] = [0, 0];
+        for (let i = 0; i < data.length; i += 4) {
+            if (data[i + 3] > 100) drawn++;
+            if (data[i + 3] > 200 && data[i] > 150 && data[i + 1] < 80 && data[i + 2] < 80) marked++;
+        }
+        return [drawn, marked];
+    }""", canvas)
+
+
+def test_joints_are_named_and_marked_in_the_view(explore):
+    explorer = explore()
+    named, marked = ink(explorer, "marks")
+    assert marked == 0
+    row = explorer.page.locator("#joints tr:has(#joint-phi21)")
+    row.hover()
+    assert row.get_attribute("class") == "pointed"
+    assert ink(explorer, "marks")[1] > 50
+    # Both ways: a joint that is pointed at in the view marks its row.
+    explorer.page.mouse.move(5, 5)
+    assert ink(explorer, "marks")[1] == 0
+    assert explorer.page.locator("#joints tr.pointed").count() == 0
+    # Axes and scale stay without the names.
+    explorer.page.uncheck("#names")
+    assert 0 < ink(explorer, "marks")[0] < named
+
+
+def test_slices_have_equal_scales_and_a_bar_of_colours(explore, tmp_path):
+    explorer = explore()
+    explorer.choose("slice-colour", "lti")
+    with explorer.page.expect_download() as download:
+        explorer.page.select_option("#save", "slice-svg")
+    svg = download.value.path().read_text()
+    [(_, _, across, upwards), (_, _, bar, high)] = re.findall(r'<image x="([^"]*)" y="([^"]*)" width="([^"]*)" height="([^"]*)"', svg)
+    xmin, xmax, ymin, ymax = (float(explorer.value(f"slice-{end}")) for end in ("xmin", "xmax", "ymin", "ymax"))
+    # A cell for each of the 201 values.
+    assert float(across) / float(upwards) == pytest.approx((xmax - xmin) / (ymax - ymin), rel=0.01)
+    assert float(high) == float(upwards) and float(bar) < 20
+    assert ">lti</text>" in svg and ">0.8</text>" in svg
+    with explorer.page.expect_download() as download:
+        explorer.page.select_option("#save", "slice-csv")
+    head, first, *_ = download.value.path().read_text().splitlines()
+    assert head.endswith(",lti") and 0 < float(first.rsplit(",", 1)[1]) < 1
+    explorer.choose("slice-colour", "clearance")
+    assert "slice.colour=clearance" in explorer.page.evaluate("location.hash")
+    # An angle and a length have no scale in common.
+    explorer.choose("slice-y", "zeta")
+    assert explorer.page.locator("#problems").is_hidden()
+
+
+def test_the_slice_of_a_phone_is_above_the_joints(explore):
+    explorer = explore(viewport={"width": 390, "height": 844})
+    places = {name: explorer.page.locator(f"#{name}").bounding_box()["y"] for name in ("pose", "slice-canvas", "joints")}
+    assert places["pose"] < places["slice-canvas"] < places["joints"]
+    explorer.page.set_viewport_size({"width": 1400, "height": 900})
+    assert explorer.page.locator("#slice-canvas").bounding_box()["x"] > 900
+
+
+def test_what_is_printed_is_the_picture_and_no_controls(explore):
+    explorer = explore()
+    assert explorer.page.locator("#printed").is_hidden()
+    explorer.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    explorer.page.emulate_media(media="print")
+    drawn = explorer.page.evaluate("""() => {
+        const canvas = document.querySelector("#printed canvas");
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return new Set(data.filter((_, i) => i % 4 === 0)).size;
+    }""")
+    assert drawn > 50
+    for control in ("#save", "#fit", "#home", "#slice-xmin", "#kind", "#clearance", "#pose input[type=range] >> nth=0"):
+        assert explorer.page.locator(control).is_hidden(), control
+    for shown in ("#printed canvas", "#pose-x", "#joint-S1", "#slice-canvas", "#slice-count", "#nearest"):
+        assert explorer.page.locator(shown).is_visible(), shown
+
+
 def test_a_click_into_the_slice_moves_the_platform(explore):
     explorer = explore()
     box = explorer.page.locator("#slice-canvas").bounding_box()

@@ -10,14 +10,16 @@ import type { Coordinate, Handles, Move } from "./types";
 import type { View } from "./view";
 
 /** Lengths, as shares of the size of the mechanism. */
-const REACH = 0.36;
-const THICK = 0.007;
+const REACH = 0.3;
+const THICK = 0.005;
+/** They are seen through, but for the one that the pointer is over. */
+const OPACITY = 0.55;
 
 const UP = new Vector3(0, 1, 0);
 const shaft = new CylinderGeometry(1, 1, 1, 8).translate(0, 0.5, 0);
 const tip = new ConeGeometry(1, 1, 12);
 const knob = new SphereGeometry(1, 14, 10);
-const ring = new TorusGeometry(1, 0.017, 5, 40);
+const ring = new TorusGeometry(1, 0.012, 5, 40);
 const wideRing = new TorusGeometry(1, 0.1, 6, 24);
 
 interface Handle {
@@ -79,7 +81,7 @@ export class HandleSet {
     this.handles.forEach((handle, number) => {
       handle.moves = wanted[number]!.moves;
       const { move } = handle.moves[0]!;
-      if (handle.moves.length > 1) handle.object.scale.setScalar(size * 0.03);
+      if (handle.moves.length > 1) handle.object.scale.setScalar(size * 0.022);
       else {
         const axis = new Vector3(...(handle.turns ? move.turn : move.shift));
         if (axis.length() > 0) handle.object.quaternion.copy(new Quaternion().setFromUnitVectors(handle.turns ? new Vector3(0, 0, 1) : UP, axis.normalize()));
@@ -97,13 +99,14 @@ export class HandleSet {
     const material = lit("#e69f00");
     // They are seen through everything else.
     [material.depthTest, material.transparent] = [false, true];
+    material.uniforms["opacity"]!.value = OPACITY;
     const object = new Group();
     object.renderOrder = 2;
     let target: Mesh;
     if (moves.length > 1) {
       object.add(new Mesh(knob, material));
       target = new Mesh(knob);
-      target.scale.setScalar(1.5);
+      target.scale.setScalar(1.8);
     } else if (turns) {
       object.add(new Mesh(ring, material));
       target = new Mesh(wideRing);
@@ -161,7 +164,8 @@ export class HandleSet {
     const names = handle?.moves.map(({ coordinate }) => coordinate.name).join(", ");
     this.view.canvas.style.cursor = handle ? "grab" : "";
     this.view.canvas.title = names ? `Drag to change ${names}` : "";
-    for (const one of this.handles) one.material.uniforms["colour"]!.value.set(one === handle ? "#ffe08a" : "#e69f00");
+    for (const { material: { uniforms } } of this.handles) uniforms["opacity"]!.value = OPACITY;
+    if (handle) handle.material.uniforms["opacity"]!.value = 1;
     this.view.draw();
   }
 

@@ -9,6 +9,8 @@ import { halfTurn } from "./units";
 export interface JointEvents {
   /** An actuated joint is to have this value; it is final when the slider is let go, or a number is entered. */
   driven(name: string, value: number, final: boolean): void;
+  /** A joint is pointed at; nothing where none is. */
+  pointed(joint: string | null): void;
 }
 
 interface Row {
@@ -61,8 +63,15 @@ export class JointTable {
     const bar = element("div", { className: limits ? "" : "open" }, mark);
     const row = element("tr", {}, element("td", {}, dot, name), element("td", { className: "value" }, value),
       element("td", { className: "unit" }, unit), element("td", { className: "bar" }, slider ?? bar));
+    for (const event of ["pointerenter", "focusin"]) row.addEventListener(event, () => this.events.pointed(joint.joint));
+    for (const event of ["pointerleave", "focusout"]) row.addEventListener(event, () => this.events.pointed(null));
     this.rows.push({ joint, row, value, bar, mark, slider });
     return row;
+  }
+
+  /** Marks the rows of a joint; nothing marks none. */
+  point(name: string | null): void {
+    for (const { joint, row } of this.rows) row.classList.toggle("pointed", joint.joint === name);
   }
 
   /** Puts the value of a posture back into the field and the slider of a joint that cannot have what was entered. */

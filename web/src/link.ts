@@ -1,5 +1,6 @@
 // Links: the state of the page lives in its address, and what a link asks for may not be there.
 
+import { NUMBERS } from "./scale";
 import { countable, ENDS, initial, MOST_POINTS, POINTS, type State } from "./state";
 import type { Description, Kind, Problem } from "./types";
 
@@ -129,7 +130,7 @@ export function fitting(state: State, { coordinates, joints }: Description, kind
   const { slice, body, kind } = state;
   const x = one("slice.x", slice.x, names, "coordinate") ? slice.x : null;
   const y = one("slice.y", slice.y, names, "coordinate") ? slice.y : null;
-  const colours = ["none", "condition", ...joints.map(({ name }) => name)];
+  const colours = ["none", ...Object.keys(NUMBERS), ...joints.map(({ name }) => name)];
   const colour = one("slice.colour", slice.colour, colours, "joint") ? slice.colour : "none";
   const three = body.axes === null || (body.axes.length === 3 && new Set(body.axes).size === 3 && body.axes.every((name) => names.includes(name)));
   if (!three) wrong.push(`body.axes=${body.axes!.join(":")}: expected three coordinates of this mechanism`);

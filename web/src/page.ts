@@ -6,6 +6,7 @@ import { byId, element, short } from "./dom";
 import { Driver } from "./driver";
 import { Refused } from "./engine";
 import { Follower, Loop, type PageFile } from "./follower";
+import { connectLayout } from "./layout";
 import { fitting, fromAddress } from "./link";
 import { Panels } from "./panels";
 import { ProblemBox, type Source } from "./problems";
@@ -37,6 +38,7 @@ export class Page {
   private readonly driver: Driver;
   private readonly stage = new Stage({
     pose: () => this.fullPose(this.state.pose), moved: (values, final) => this.move(values, final),
+    pointed: (joint) => this.panels.joints.point(joint),
   });
   private readonly address = new Address((hash) => this.recall(hash));
   private readonly panels = new Panels({
@@ -44,6 +46,7 @@ export class Page {
     move: (values, final) => this.move(values, final),
     change: (name, values, final) => this.change({ ...this.state.changes, [name]: values }, final),
     drive: (name, value, final) => void this.driver.drive({ name, value, final }),
+    pointed: (joint) => this.stage.point(joint),
     assemble: (assembly, final) => this.assemble(assembly, final),
     follow: (pose, mode, final) => this.set({ pose, mode: this.asState(mode) }, final),
     refused: (why) => this.tell("field", why === null ? [] : [{ message: why }]),
@@ -390,6 +393,7 @@ export class Page {
 
   private connect(): void {
     this.stage.connect();
+    connectLayout(() => this.stage.picture());
     this.address.connect();
     byId("share").hidden = location.protocol === "about:";
     connectToolbar({
@@ -397,7 +401,10 @@ export class Page {
       undo: (back) => this.go(back),
       reset: () => this.change({}, true),
       share: () => void this.share(),
-      themed: () => this.panels.draw(),
+      themed: () => {
+        this.panels.draw();
+        this.stage.still(true);
+      },
       mode: (mode) => this.set({ mode: this.asState(mode) }, true),
       example: (name) => this.open({ kind: "example", name }),
       save: (entry) => {

@@ -27,6 +27,8 @@ export interface PanelEvents {
   change(name: string, values: number[], final: boolean): void;
   /** An actuated joint is to have a value. */
   drive(name: string, value: number, final: boolean): void;
+  /** A joint is pointed at in the table; nothing where none is. */
+  pointed(joint: string | null): void;
   /** The platform is to be in an assembly. */
   assemble(assembly: Assembly, final: boolean): void;
   /** A motion places the platform. */
@@ -56,7 +58,7 @@ export class Panels {
 
   constructor(events: PanelEvents) {
     this.pose = new PosePanel({ moved: (name, value, final) => events.move({ [name]: value }, final) });
-    this.joints = new JointTable({ driven: events.drive });
+    this.joints = new JointTable({ driven: events.drive, pointed: events.pointed });
     this.contacts = new ContactPanel((clearance) => events.set({ clearance }, true));
     this.dimensions = new DimensionPanel({ changed: events.change });
     this.slice = new SlicePanel({ sliced: (slice, final) => events.set({ slice }, final), placed: events.move, refused: events.refused });

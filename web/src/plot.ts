@@ -1,7 +1,7 @@
 // A joint over time, with its limits, a cursor, and where the mechanism cannot follow.
 
 import { short } from "./dom";
-import { nice } from "./slice";
+import { nice } from "./scale";
 
 export interface Curve {
   label: string;

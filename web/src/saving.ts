@@ -27,7 +27,7 @@ export async function saveEntry(entry: string, { description, engine, slice, sta
     save(`${name}-slice.csv`, sliceTable(description, slice.shown), "text/csv");
   } else if (entry === "slice-svg") save(`${name}-slice.svg`, slice.svg(), "image/svg+xml");
   else if (entry === "picture") {
-    const picture = await stage.picture();
+    const picture = await new Promise<Blob | null>((resolve) => stage.picture().toBlob(resolve));
     if (picture) save(`${name}.png`, picture, "image/png");
   } else if (entry === "pose" && posture) {
     save(`${name}-pose.csv`, poseTable(description, reached, posture), "text/csv");

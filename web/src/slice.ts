@@ -2,6 +2,7 @@
 
 import { beyond } from "./beyond";
 import { byId, element, grouped, numberIn, short, show } from "./dom";
+import { cividis, nice, NUMBERS, pixel, scaleColumn } from "./scale";
 import { countable, MOST_POINTS, POINTS, type SliceState } from "./state";
 import type { AxisRequest, Colours, Counted, Description, KindCount, Slice } from "./types";
 
@@ -29,6 +30,10 @@ export interface Shown {
 type End = "xmin" | "xmax" | "ymin" | "ymax";
 
 const MARGIN = { left: 52, right: 10, top: 8, bottom: 34 };
+/** The room of the bar of colours, to the right of a slice that has any. */
+const BAR = { room: 62, gap: 12, wide: 11 };
+/** The least and the most height of a slice, as a share of its width: with equal scales, it has its own. */
+const SHAPE = { least: 0.45, most: 1.25, other: 0.85 };
 
 export class SlicePanel {
   private readonly fields = new Map<string, HTMLInputElement | HTMLSelectElement>();
@@ -42,7 +47,6 @@ export class SlicePanel {
   private readonly whole = element("output", { id: "whole-count" });
   private readonly wholeShare = element("output", { id: "whole-share" });
   private readonly beyond = element("p", { className: "unit", id: "whole-beyond" });
-  private readonly scale = element("p", { className: "unit", id: "slice-scale" });
   private state!: SliceState;
   private description!: Description;
   /** What is drawn; nothing where it cannot be computed. */
@@ -101,7 +105,7 @@ export class SlicePanel {
       return input;
     };
     const colour = element("select", { id: "slice-colour" }, element("option", { value: "none" }, "in reach"),
-      element("option", { value: "condition" }, "1 / condition number"),
+      ...Object.entries(NUMBERS).map(([value, name]) => element("option", { value }, name)),
       ...description.joints.map(({ name, kind }) => element("option", { value: name }, `${name} (${kind})`)));
     colour.addEventListener("change", () => this.events.sliced({ ...this.state, colour: colour.value }, true));
     this.fields.set("slice-colour", colour);
@@ -119,7 +123,6 @@ export class SlicePanel {
           points("ny", "Number of values upwards")),
         this.canvas,
         element("p", { className: "row" }, element("label", { for: "slice-colour" }, "Colour"), colour),
-        this.scale,
         facts(fact("Poses of the slice", this.count), fact("Share", this.share), fact("Measure", this.area))),
       facts(fact("Poses of the whole", this.whole), fact("Size of the whole in coordinates", this.wholeShare)),
       this.beyond,
@@ -147,7 +150,6 @@ export class SlicePanel {
     this.shown = shown;
     if (!shown) {
       for (const one of [this.count, this.share, this.area]) one.textContent = "–";
-      this.scale.textContent = "";
       this.draw();
       return;
     }
@@ -155,9 +157,6 @@ export class SlicePanel {
     this.count.textContent = `${reachable} of ${poses}`;
     this.share.textContent = `${((100 * reachable) / poses).toPrecision(4)} %`;
     this.area.textContent = `${short(measure)} ${unit}`;
-    const { colours } = shown;
-    this.scale.textContent = colours && colours.range.min !== null && colours.range.max !== null
-      ? `dark ${short(colours.range.min)} to bright ${short(colours.range.max)} ${colours.range.unit}` : "";
     this.draw();
   }
 
@@ -177,30 +176,59 @@ export class SlicePanel {
     this.draw();
   }
 
-  /** The boundary of the slice as a picture. */
+  /** The slice as a picture: its pixels where they are coloured, its boundary, axes and the bar of colours. */
   svg(): string {
     if (!this.shown) return "";
     const { x, y, slice } = this.shown;
-    const [width, height] = [600, 500];
-    const across = (value: number) => 60 + ((value - x.min) / (x.max - x.min || 1)) * (width - 80);
-    const upwards = (value: number) => height - 50 - ((value - y.min) / (y.max - y.min || 1)) * (height - 70);
+    const bar = this.bar();
+    const [[xLow, xHigh], [yLow, yHigh]] = [this.ends(x), this.ends(y)];
+    const width = 600 - 60 - 20 - (bar ? BAR.room : 0);
+    const height = Math.round(width * this.shape());
+    const [all, below] = [60 + width + 20 + (bar ? BAR.room : 0), 20 + height];
+    const across = (value: number) => 60 + ((value - xLow) / (xHigh - xLow)) * width;
+    const upwards = (value: number) => below - ((value - yLow) / (yHigh - yLow)) * height;
     const path = slice.rings.map((ring) => {
       const corners: string[] = [];
       for (let i = 0; i + 1 < ring.length; i += 2) corners.push(`${across(ring[i]!).toFixed(2)},${upwards(ring[i + 1]!).toFixed(2)}`);
       return `M${corners.join("L")}Z`;
     });
-    const ticks = [
-      ...nice(x.min, x.max).map((value) => `<text x="${across(value).toFixed(1)}" y="${height - 30}" text-anchor="middle">${short(value)}</text>`),
-      ...nice(y.min, y.max).map((value) => `<text x="54" y="${(upwards(value) + 4).toFixed(1)}" text-anchor="end">${short(value)}</text>`),
+    const text = (at: number, from: number, anchor: string, content: string) => `<text x="${at.toFixed(1)}" y="${from.toFixed(1)}" text-anchor="${anchor}">${content}</text>`;
+    const box = (at: number, wide: number) => `<rect x="${at}" y="20" width="${wide}" height="${height}" fill="none" stroke="#59636e"/>`;
+    const image = (at: number, wide: number, pixels: HTMLCanvasElement) =>
+      `<image x="${at}" y="20" width="${wide}" height="${height}" preserveAspectRatio="none" style="image-rendering:pixelated" href="${pixels.toDataURL()}"/>`;
+    const marks = [
+      ...nice(x.min, x.max).map((value) => text(across(value), below + 20, "middle", short(value))),
+      ...nice(y.min, y.max).map((value) => text(54, upwards(value) + 4, "end", short(value))),
     ];
-    return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" font-family="sans-serif" font-size="12">
-<path d="${path.join("")}" fill="#8fc1e3" stroke="#0062a3" fill-rule="evenodd"/>
-<rect x="60" y="20" width="${width - 80}" height="${height - 70}" fill="none" stroke="#59636e"/>
-${ticks.join("\n")}
-<text x="${width / 2}" y="${height - 10}" text-anchor="middle">${x.name} (${this.unit(x.name)})</text>
-<text x="14" y="${height / 2}" text-anchor="middle" transform="rotate(-90 14 ${height / 2})">${y.name} (${this.unit(y.name)})</text>
+    if (bar) {
+      const from = 60 + width + BAR.gap;
+      marks.push(image(from, BAR.wide, scaleColumn()), box(from, BAR.wide), text(from + BAR.wide, 13, "end", escaped(bar.title)));
+      for (const value of bar.ticks) marks.push(text(from + BAR.wide + 5, below - bar.place(value) * height + 4, "start", short(value)));
+    }
+    return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${all} ${below + 50}" font-family="sans-serif" font-size="12">
+${bar ? image(60, width, this.picture("#8fc1e3")) : ""}
+<path d="${path.join("")}" fill="${bar ? "none" : "#8fc1e3"}" stroke="#0062a3" fill-rule="evenodd"/>
+${box(60, width)}
+${marks.join("\n")}
+${text(60 + width / 2, below + 40, "middle", `${x.name} (${this.unit(x.name)})`)}
+<text x="14" y="${20 + height / 2}" text-anchor="middle" transform="rotate(-90 14 ${20 + height / 2})">${y.name} (${this.unit(y.name)})</text>
 </svg>
 `;
+  }
+
+  /** The height of the slice as a share of its width: both axes have one scale where they are of one unit. */
+  private shape(): number {
+    const { x, y } = this.shown!;
+    const [wide, high] = [x, y].map((axis) => this.ends(axis)).map(([low, top]) => top - low) as [number, number];
+    return this.unit(x.name) === this.unit(y.name) && wide > 0 && high > 0 ? Math.min(10, Math.max(0.1, high / wide)) : SHAPE.other;
+  }
+
+  /** The numbers beside the bar of colours; nothing where there are no colours. */
+  private bar() {
+    const { by, range: { min, max, unit } } = this.shown?.colours ?? { by: "", range: { min: null, max: null, unit: "" } };
+    if (min === null || max === null) return null;
+    const place = (value: number) => (value - min) / (max - min || 1);
+    return { title: unit ? `${by} (${unit})` : by, ticks: nice(min, max), place };
   }
 
   private unit(name: string): string {
@@ -223,11 +251,21 @@ ${ticks.join("\n")}
     this.events.sliced(state, true);
   }
 
+  /** What is left free above the slice and beside it: colours have a bar with a title. */
+  private margins() {
+    const bar = this.bar() !== null;
+    return { above: MARGIN.top + (bar ? 12 : 0), beside: MARGIN.left + MARGIN.right + (bar ? BAR.room : 0) };
+  }
+
   /** The rectangle of the canvas that the slice is drawn in: a cell for each pose. */
   private frame() {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    const { left, right, top, bottom } = MARGIN;
-    return { left, top, width: Math.max(1, width - left - right), height: Math.max(1, height - top - bottom) };
+    const { clientWidth, clientHeight } = this.canvas;
+    const { above: top, beside } = this.margins();
+    const { left, bottom } = MARGIN;
+    const most = { width: Math.max(1, clientWidth - beside), height: Math.max(1, clientHeight - top - bottom) };
+    const shape = this.shape();
+    const width = Math.min(most.width, most.height / shape);
+    return { left: left + (most.width - width) / 2, top, width, height: width * shape };
   }
 
   private ends(axis: AxisRequest): [number, number] {
@@ -271,6 +309,13 @@ ${ticks.join("\n")}
 
   private render(): void {
     this.drawing = false;
+    if (this.shown) {
+      // A slice takes no more room than it needs.
+      const high = Math.min(SHAPE.most, Math.max(SHAPE.least, this.shape()));
+      const { above, beside } = this.margins();
+      const { clientWidth: wide } = this.canvas;
+      this.canvas.style.height = `${Math.round((wide - beside) * high + above + MARGIN.bottom)}px`;
+    }
     const { clientWidth, clientHeight } = this.canvas;
     const context = this.canvas.getContext("2d");
     if (!context || !clientWidth) return;
@@ -340,11 +385,20 @@ ${ticks.join("\n")}
     context.textAlign = "right";
     for (const value of nice(y.min, y.max)) context.fillText(short(value), left - 5, upwards(value) + 4);
     context.save();
-    context.translate(11, top + height / 2);
+    context.translate(left - 41, top + height / 2);
     context.rotate(-Math.PI / 2);
     context.textAlign = "center";
     context.fillText(`${y.name} (${this.unit(y.name)})`, 0, 0);
     context.restore();
+    const bar = this.bar();
+    if (!bar) return;
+    const from = left + width + BAR.gap;
+    context.drawImage(scaleColumn(), from, top, BAR.wide, height);
+    context.strokeRect(from + 0.5, top + 0.5, BAR.wide - 1, height - 1);
+    context.textAlign = "right";
+    context.fillText(bar.title, from + BAR.wide + 34, top - 7);
+    context.textAlign = "left";
+    for (const value of bar.ticks) context.fillText(short(value), from + BAR.wide + 5, top + height - bar.place(value) * height + 4);
   }
 
   /** A pixel for each pose. */
@@ -362,7 +416,8 @@ ${ticks.join("\n")}
       for (let column = 0; column < x.count; column++) {
         const number = row * x.count + column;
         if (!mask[number]) continue;
-        const share = colours && min !== null && max !== null ? (colours.numbers[number]! - min) / (max - min || 1) : null;
+        const value = colours?.numbers[number] ?? NaN;
+        const share = min !== null && max !== null && !Number.isNaN(value) ? (value - min) / (max - min || 1) : null;
         // The first row of the picture is at the top.
         pixels[(y.count - 1 - row) * x.count + column] = share === null ? plain : pixel(cividis(share));
       }
@@ -373,32 +428,9 @@ ${ticks.join("\n")}
   }
 }
 
+/** A text as SVG has it: names of joints are those of a file. */
+const escaped = (name: string) => name.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
+
 function same(one: string[], other: string[]): boolean {
   return one.join() === other.join();
 }
-
-/** Red, green and blue as the pixel of a canvas. */
-function pixel([red = 0, green = 0, blue = 0]: number[]): number {
-  return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
-}
-
-/** Round numbers between two ends, about five of them. */
-export function nice(low: number, high: number): number[] {
-  if (!(high > low)) return [low];
-  const rough = (high - low) / 5;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 5, 10].find((times) => times * power >= rough) ?? 10);
-  const ticks: number[] = [];
-  for (let i = Math.ceil(low / step); i * step <= high * (1 + 1e-9) + 1e-12; i++) ticks.push(Number((i * step).toPrecision(10)));
-  return ticks;
-}
-
-/** Colours from dark to bright that everybody tells apart: points of the scale cividis (Nunez, Anderton, Renslow 2018). */
-const SCALE = [[0, 32, 77], [60, 77, 110], [124, 123, 120], [187, 173, 108], [255, 234, 70]];
-
-function cividis(share: number): number[] {
-  const place = Math.min(1, Math.max(0, share)) * (SCALE.length - 1);
-  const low = Math.min(SCALE.length - 2, Math.floor(place));
-  return SCALE[low]!.map((value, i) => Math.round(value + (SCALE[low + 1]![i]! - value) * (place - low)));
-}
-

@@ -15,7 +15,7 @@ const GEOMETRIES = {
 const UP = new Vector3(0, 1, 0);
 
 /** A solid of a body: its place among the instances of its mesh, and in its body. */
-interface Placed {
+export interface Placed {
   mesh: InstancedMesh;
   index: number;
   body: number;
@@ -49,6 +49,11 @@ export class Solids {
     if (key === [...this.near].join("\n")) return;
     this.near = new Set(names);
     this.sort();
+  }
+
+  /** Every solid, with its body and its place there. */
+  get all(): readonly Placed[] {
+    return this.solids;
   }
 
   /** The parts that there are. */

@@ -10,6 +10,11 @@ import { View } from "./view";
 
 type Pose = Record<string, number>;
 
+export interface StageEvents extends HandleEvents {
+  /** A joint is pointed at in the view; nothing where none is. */
+  pointed(joint: string | null): void;
+}
+
 export class Stage {
   private readonly view = new View(byId("view"));
   private readonly handles: HandleSet;
@@ -18,7 +23,7 @@ export class Stage {
   /** The posture that is shown. */
   private posture: Posture | null = null;
 
-  constructor(events: HandleEvents) {
+  constructor(private readonly events: StageEvents) {
     this.handles = new HandleSet(this.view, byId("view"), events);
     this.view.scene.add(this.body.mesh);
   }
@@ -29,11 +34,22 @@ export class Stage {
       orbit: (across, upwards, nearer) => this.view.orbit(across, upwards, nearer),
       highlight: (part) => this.view.highlight(part),
     });
+    byId("view").addEventListener("pointermove", (event) => {
+      if (!event.buttons) this.point(this.view.under(event));
+    });
+    byId("view").addEventListener("pointerleave", () => this.point(null));
+    byId("names").addEventListener("change", () => this.view.draw());
     const shown = byId<HTMLInputElement>("handles");
     shown.addEventListener("change", () => {
       this.handles.group.visible = shown.checked;
       this.view.draw();
     });
+  }
+
+  /** Marks a joint in the view and in the table. */
+  point(joint: string | null): void {
+    this.view.point(joint);
+    this.events.pointed(joint);
   }
 
   /** Shows a mechanism: another one, or the same one with other dimensions. */
@@ -74,6 +90,7 @@ export class Stage {
   /** Draws all of the body while nothing moves, and else its near side. */
   still(still: boolean): void {
     this.body.still(still);
+    this.view.still(still);
   }
 
   /** Puts the body beside the mechanism, if it is wanted and known: `pose` is that of the posture. */
@@ -90,7 +107,7 @@ export class Stage {
     view.draw();
   }
 
-  picture(): Promise<Blob | null> {
+  picture(): HTMLCanvasElement {
     return this.view.picture();
   }
 }

@@ -16,8 +16,8 @@ export function poseTable({ coordinates, dependent, joints }: Description, pose:
 }
 
 /** A row for each reachable pose of a slice, with all its coordinates and the number that colours it. */
-export function sliceTable({ coordinates, joints }: Description, { x, y, pose, mask, colours }: Shown): string {
-  const colour = colours ? [heading(colours.by === "condition" ? "inverse_condition" : colours.by, joints.find(({ name }) => name === colours.by)?.unit ?? "")] : [];
+export function sliceTable({ coordinates }: Description, { x, y, pose, mask, colours }: Shown): string {
+  const colour = colours ? [heading(colours.by === "condition" ? "inverse_condition" : colours.by, colours.range.unit)] : [];
   const rows: (string | number)[][] = [[...coordinates.map(({ name, unit }) => heading(name, unit)), ...colour]];
   mask.forEach((inside, number) => {
     if (!inside) return;

@@ -21,6 +21,8 @@ export interface Coordinate {
 
 export interface Joint {
   name: string;
+  /** The joint that it is a coordinate of. */
+  joint: string;
   leg: string;
   kind: "actuated" | "passive" | "imaginary";
   section: "lower" | "upper" | null;
@@ -62,6 +64,14 @@ export interface Body {
   origin: Vector;
   section: "lower" | "upper" | null;
   solids: Solid[];
+  seats: Seat[];
+}
+
+/** A joint in a body: its centre, and its axis unless it is a ball. */
+export interface Seat {
+  joint: string;
+  at: Vector;
+  axis: Vector | null;
 }
 
 export interface Description {

@@ -3,7 +3,9 @@
 import { AmbientLight, Box3, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { PartName } from "./colours";
+import { element } from "./dom";
 import { Materials } from "./materials";
+import { Marks } from "./marks";
 import { nameLinks, showParts } from "./legend";
 import { Motions } from "./motions";
 import { corners, rooms, sight, type Room } from "./sight";
@@ -11,7 +13,9 @@ import { Solids } from "./solids";
 import type { Description } from "./types";
 
 /** The direction from which a mechanism is seen first. */
-const FIRST = new Vector3(0.55, -0.75, 0.5).normalize();
+const FIRST = new Vector3(0.55, -0.75, 0.5);
+/** How high the eye is at most, for flat mechanisms: seen from the side, they would be small. */
+const HIGHEST = 1.1;
 
 /** The share of the width and the height of its room that what the view fits has. */
 const SHARE = 0.94;
@@ -24,6 +28,7 @@ export class View {
   private readonly materials = new Materials();
   private readonly solids = new Solids(this.materials);
   private readonly motions = new Motions(this.materials);
+  private readonly marks = new Marks();
   /** The radius of the mechanism, metres. */
   size = 1;
   private drawn = false;
@@ -34,9 +39,12 @@ export class View {
     this.renderer = new WebGLRenderer({ antialias: !drawnByProcessor(), alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     host.append(this.renderer.domElement);
+    host.after(this.marks.canvas);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("start", () => this.still(false));
+    this.controls.addEventListener("end", () => this.still(true));
     const sun = new DirectionalLight("#ffffff", 2);
     sun.position.set(0.4, -0.6, 1);
     this.camera.add(sun);
@@ -55,6 +63,7 @@ export class View {
   setMechanism(description: Description): void {
     this.solids.set(description.bodies);
     this.motions.set(description);
+    this.marks.set(description);
     nameLinks(!description.upper.dimension);
     showParts(this.solids.parts());
     this.draw();
@@ -75,7 +84,9 @@ export class View {
 
   /** Looks at the whole mechanism and these points from the first direction. */
   first(others: Vector3[]): void {
-    this.look(others, FIRST);
+    const { x, y, z } = new Box3().setFromPoints(this.corners()).getSize(new Vector3());
+    const height = Math.min(HIGHEST, Math.max(FIRST.z, (0.4 * Math.max(x, y)) / Math.max(z, 1e-9)));
+    this.look(others, FIRST.clone().setZ(height).normalize());
   }
 
   /** Looks at the whole mechanism and these points from the direction of the camera. */
@@ -142,10 +153,33 @@ export class View {
     this.draw();
   }
 
-  /** The picture, as a PNG. */
-  picture(): Promise<Blob | null> {
+  /** Whether nothing moves. */
+  still(still: boolean): void {
+    this.marks.moving = !still;
+    this.draw();
+  }
+
+  /** Marks a joint; nothing marks none. */
+  point(joint: string | null): void {
+    if (joint === this.marks.pointed) return;
+    this.marks.pointed = joint;
+    this.draw();
+  }
+
+  /** The joint under the pointer. */
+  under({ clientX, clientY }: PointerEvent): string | null {
+    const box = this.canvas.getBoundingClientRect();
+    return this.marks.near(clientX - box.left, clientY - box.top);
+  }
+
+  /** The picture, with what is written over it. */
+  picture(): HTMLCanvasElement {
     this.render();
-    return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
+    const { width, height } = this.canvas;
+    const both = element("canvas", { width, height });
+    const context = both.getContext("2d")!;
+    for (const one of [this.canvas, this.marks.canvas]) context.drawImage(one, 0, 0, width, height);
+    return both;
   }
 
   /** Draws at the next frame. */
@@ -159,6 +193,8 @@ export class View {
     this.drawn = false;
     const start = performance.now();
     this.renderer.render(this.scene, this.camera);
+    const { camera, size, controls: { target }, solids } = this;
+    this.marks.draw({ camera, target, size, body: (number) => solids.body(number), solids: solids.all });
     document.body.dataset["frameMs"] = (performance.now() - start).toFixed(2);
   }
 

@@ -65,6 +65,8 @@ struct Subspace {
 #[derive(Serialize)]
 struct Joint<'a> {
     name: &'a str,
+    /// The joint that it is a coordinate of, by which bodies name it.
+    joint: &'a str,
     leg: &'a str,
     kind: &'static str,
     section: Option<String>,
@@ -124,6 +126,7 @@ fn joints(explorer: &Explorer) -> Vec<Joint<'_>> {
             for (index, c) in joint.coordinates.iter().enumerate() {
                 all.push(Joint {
                     name: &c.name,
+                    joint: &joint.name,
                     leg: &leg.name,
                     kind,
                     section: scene::section(explorer, number, place, index)
@@ -138,6 +141,7 @@ fn joints(explorer: &Explorer) -> Vec<Joint<'_>> {
     let legs = &manipulator.mechanism().legs;
     all.extend(manipulator.imaginary().iter().map(|joint| Joint {
         name: &joint.name,
+        joint: &joint.name,
         leg: &legs[joint.leg].name,
         kind: "imaginary",
         section: None,

@@ -24,6 +24,7 @@
 
 mod body;
 mod changes;
+mod colours;
 mod description;
 mod explorer;
 #[cfg(target_arch = "wasm32")]

@@ -90,7 +90,8 @@ pub enum Request {
         pose: Coordinates,
         /// The working mode.
         mode: Option<String>,
-        /// `condition` for the condition number, or the name of a joint.
+        /// `condition` for the condition number, `lti` for the local transmission index, `clearance` for the distance of
+        /// the nearest two bodies, or the name of a joint.
         by: String,
     },
     /// The workspace as a body in three coordinates of the fitted grid.

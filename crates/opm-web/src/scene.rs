@@ -4,7 +4,7 @@ use crate::explorer::Explorer;
 use opm_core::Section;
 use opm_core::decomposition::Freedom;
 use opm_core::nalgebra::{Isometry3, Point3};
-use opm_core::skeleton::{Configuration, Solid};
+use opm_core::skeleton::{Configuration, SeatMotion, Solid};
 use opm_interference::member::names_of_parts;
 use serde::Serialize;
 
@@ -19,6 +19,16 @@ pub struct Body<'a> {
     origin: [f64; 3],
     section: Option<String>,
     solids: Vec<Shape>,
+    seats: Vec<Seat<'a>>,
+}
+
+/// Where a body has a joint, in the body's frame.
+#[derive(Serialize)]
+struct Seat<'a> {
+    joint: &'a str,
+    at: [f64; 3],
+    /// The direction of its axis; none for a ball.
+    axis: Option<[f64; 3]>,
 }
 
 /// A solid, with what decides its colour.
@@ -45,6 +55,7 @@ pub fn bodies(explorer: &Explorer) -> Vec<Body<'_>> {
             origin: body.origin.coords.into(),
             section: section_of_body(explorer, &body.name).map(|section| section.to_string()),
             solids: parts.map(|(part, of)| shape(&part.solid, part.material.name(), of)).collect(),
+            seats: seats(body).collect(),
         }
     });
     let mechanism = explorer.manipulator().mechanism();
@@ -56,9 +67,21 @@ pub fn bodies(explorer: &Explorer) -> Vec<Body<'_>> {
             origin: [0.0; 3],
             section: None,
             solids: solids.iter().map(|solid| shape(solid, OBSTACLE, of())).collect(),
+            seats: vec![],
         }
     });
     bodies.chain(obstacles).collect()
+}
+
+/// The joints that a body has a part of. Each is in two bodies: the one on the platform side comes last, with which a
+/// slider's block moves.
+fn seats(body: &opm_core::skeleton::Body) -> impl Iterator<Item = Seat<'_>> {
+    let seats = body.seats.iter().filter(|seat| seat.motion != SeatMotion::Weld);
+    seats.map(|seat| Seat {
+        joint: &seat.joint,
+        at: seat.centre.coords.into(),
+        axis: (seat.motion != SeatMotion::Ball).then(|| seat.axis.into_inner().into()),
+    })
 }
 
 /// The section that a joint's freedom belongs to.

@@ -3,7 +3,7 @@
 use crate::explorer::Explorer;
 use crate::problem::Problems;
 use crate::request::Request;
-use crate::{body, description, forward, kinds, motion, pose, workspace};
+use crate::{body, colours, description, forward, kinds, motion, pose, workspace};
 use opm_core::mechanism::examples::EXAMPLES;
 use opm_workspace::Axis;
 use serde::Serialize;
@@ -93,7 +93,7 @@ impl Session {
                 workspace::slice(self.explorer()?, [&x, &y], &pose, mode.as_deref())
             }
             Request::Colours { x, y, pose, mode, by } => {
-                workspace::colours(self.explorer()?, [&x, &y], &pose, mode.as_deref(), &by)
+                colours::colours(self.explorer()?, [&x, &y], &pose, mode.as_deref(), &by)
             }
             Request::Body { axes, others, pose, mode } => {
                 let (explorer, mode) = (self.explorer()?, mode.as_deref());

@@ -1,23 +1,17 @@
 //! Workspaces: plane slices, and the whole on a fitted grid.
 
 use crate::explorer::Explorer;
-use crate::pose::quantities;
 use crate::problem::{Problem, Problems};
 use crate::request::{AxisRequest, Coordinates};
 use crate::session::Reply;
 use crate::units::{shown, shown_range};
 use opm_core::Quantity;
 use opm_study::{Workspace, WorkspaceKind, WorkspaceRequest};
-use opm_workspace::{
-    Axis, Conditioned, Count, GridSet, Modes, PoseLimit, Progress, boundary, default_grid,
-};
+use opm_workspace::{Axis, Count, GridSet, Modes, Progress, boundary, default_grid};
 use serde::Serialize;
 
 /// Most points of a slice: more than a screen has.
 const MOST_POINTS: u64 = 1 << 24;
-
-/// The colour that is the local conditioning index.
-const CONDITION: &str = "condition";
 
 /// The answer to a fit.
 #[derive(Serialize)]
@@ -57,15 +51,6 @@ struct Slice {
     imaginary: Vec<Option<[f64; 2]>>,
     /// The boundary as closed polylines: x and y of one corner after the other.
     rings: Vec<Vec<f64>>,
-}
-
-/// The range of the numbers that colour a slice. The bytes are a 32-bit number for each pose, in the order of those of
-/// the slice; NaN where it is not reachable.
-#[derive(Serialize)]
-struct Colours {
-    unit: &'static str,
-    min: Option<f64>,
-    max: Option<f64>,
 }
 
 /// Fits a grid to the workspace in a mode.
@@ -130,61 +115,10 @@ pub fn slice(
     Ok(Reply::with_bytes(&Slice { poses, reachable, measure, unit, imaginary, rings }, mask))
 }
 
-/// A number for each reachable pose of a plane grid.
-pub fn colours(
-    explorer: &Explorer,
-    axes: [&AxisRequest; 2],
-    pose: &Coordinates,
-    mode: Option<&str>,
-    by: &str,
-) -> Result<Reply, Problems> {
-    let plane = Plane::new(explorer, axes, pose, mode)?;
-    let (manipulator, units) = (explorer.manipulator(), explorer.units());
-    let set = GridSet::reached(&plane.workspace.poses(), &Progress::default());
-    let set = set.map_err(|error| Problems::of(&error))?;
-    let (mut numbers, mut range) = (vec![f32::NAN; plane.points()], None);
-    let mut note = |number: u64, value: f64| {
-        let [min, max] = range.get_or_insert([value; 2]);
-        (*min, *max) = (min.min(value), max.max(value));
-        numbers[plane.place(number)] = value as f32;
-    };
-    let unit = if by == CONDITION {
-        let limit = PoseLimit::none(manipulator.characteristic_length()).with_condition(f64::MAX);
-        let mut conditioned = Conditioned::new(manipulator, limit);
-        let poses: Vec<f64> = set.numbers().flat_map(|number| set.point(number)).collect();
-        let mut indices = vec![0.0; set.count() as usize];
-        conditioned.local_indices(&poses, plane.workspace.modes(), &mut indices);
-        // A pose without a finite condition number is singular.
-        let indices = indices.into_iter().map(|index| if index.is_nan() { 0.0 } else { index });
-        set.numbers().zip(indices).for_each(|(number, index)| note(number, index));
-        ""
-    } else {
-        let names = manipulator.coordinates().iter().map(|c| &c.name);
-        let mut names = names.chain(manipulator.imaginary().iter().map(|joint| &joint.name));
-        let joint = names.position(|name| name == by);
-        let quantity = joint.and_then(|joint| quantities(manipulator).nth(joint));
-        let (Some(joint), Some(quantity)) = (joint, quantity) else {
-            return Err(Problems::one(format!("{by:?} is not a joint, nor {CONDITION:?}")));
-        };
-        let (mode, mut buffer) = (explorer.mode(mode)?, manipulator.solution());
-        for number in set.numbers() {
-            let found = manipulator.inverse(&set.point(number), mode, &mut buffer);
-            if let Some(solution) = found.map_err(|error| Problems::of(&error))? {
-                let values = solution.joints().iter().chain(solution.imaginary());
-                let value = values.copied().nth(joint).unwrap_or(f64::NAN);
-                note(number, value / units.factor(quantity));
-            }
-        }
-        units.symbol(quantity)
-    };
-    let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-    let [min, max] = range.map_or([None; 2], |range| range.map(Some));
-    Ok(Reply::with_bytes(&Colours { unit, min, max }, bytes))
-}
-
 /// A plane grid.
-struct Plane {
-    workspace: Workspace,
+pub struct Plane {
+    /// Its poses.
+    pub workspace: Workspace,
     /// The numbers of values across and upwards.
     counts: [u64; 2],
     /// The numbers of both coordinates among those of the grid.
@@ -194,7 +128,8 @@ struct Plane {
 }
 
 impl Plane {
-    fn new(
+    /// The grid of two axes, with the other coordinates at a pose.
+    pub fn new(
         explorer: &Explorer,
         axes: [&AxisRequest; 2],
         pose: &Coordinates,
@@ -238,13 +173,14 @@ impl Plane {
         Ok(Self { workspace, counts, coordinates: [x, y], swapped: y < x })
     }
 
-    fn points(&self) -> usize {
+    /// The number of its points.
+    pub fn points(&self) -> usize {
         let [x, y] = self.counts;
         (x * y) as usize
     }
 
     /// The place of a pose among the points, row by row.
-    fn place(&self, number: u64) -> usize {
+    pub fn place(&self, number: u64) -> usize {
         let [across, upwards] = self.counts;
         let place = match self.swapped {
             false => number,

@@ -1,5 +1,6 @@
 //! What a page is answered, compared with the library asked directly, pose by pose.
 
+use opm_analysis::{Index, Indices, Setup};
 use opm_core::mechanism::examples::{EXAMPLES, find};
 use opm_core::mechanism::file;
 use opm_core::{Manipulator, Solution};
@@ -371,11 +372,17 @@ fn colours_are_numbers_of_the_reachable_poses() {
     let (mut buffer, mut jacobians) = (manipulator.solution(), manipulator.jacobians());
     let by_condition = numbers(&ask(&mut session, &plane("colours", Some("condition"))));
     let by_joint = numbers(&ask(&mut session, &plane("colours", Some("theta11"))));
+    let by_transmission = numbers(&ask(&mut session, &plane("colours", Some("lti"))));
+    let by_clearance = numbers(&ask(&mut session, &plane("colours", Some("clearance"))));
+    let setup = Setup::new(manipulator.characteristic_length());
+    let mut indices = Indices::new(&manipulator, &setup, [Index::Lti, Index::Clearance]).unwrap();
     let length = manipulator.characteristic_length();
     let mut reached = 0;
     for (number, &inside) in mask.iter().enumerate() {
         assert_eq!(by_condition[number].is_nan(), inside == 0);
         assert_eq!(by_joint[number].is_nan(), inside == 0);
+        assert_eq!(by_transmission[number].is_nan(), inside == 0);
+        assert_eq!(by_clearance[number].is_nan(), inside == 0);
         if inside == 0 {
             continue;
         }
@@ -388,11 +395,22 @@ fn colours_are_numbers_of_the_reachable_poses() {
         manipulator.differentiate(solution, &mut jacobians).unwrap();
         let index = manipulator.conditioning(&jacobians, length).condition.recip();
         assert!((by_condition[number] - index).abs() < 1e-5);
+        let &[lti, clearance] = indices.evaluate(solution) else { unreachable!() };
+        assert!((by_transmission[number] - lti).abs() < 1e-6);
+        // Millimetres.
+        assert!((by_clearance[number] - 1e3 * clearance).abs() < 1e-4);
         reached += 1;
     }
     assert!(reached > 50);
     let unknown = problems(&mut session, &plane("colours", Some("w9")));
-    assert_eq!(unknown[0]["message"], "\"w9\" is not a joint, nor \"condition\"");
+    let message = "\"w9\" is not a joint, nor \"condition\", \"lti\" or \"clearance\"";
+    assert_eq!(unknown[0]["message"], message);
+    // A mechanism that has no such index says why.
+    let (mut session, _) = opened("planar-planar-5dof");
+    let mut request = plane("colours", Some("lti"));
+    request["pose"] = json!({});
+    let refused = problems(&mut session, &request);
+    assert!(refused[0]["message"].as_str().unwrap().starts_with("lti: "), "{refused:?}");
 }
 
 #[test]
