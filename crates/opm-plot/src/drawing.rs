@@ -117,8 +117,10 @@ impl Pen {
 pub struct Text {
     /// The text itself.
     pub text: String,
-    /// The start of its baseline.
+    /// The anchor's place on its baseline.
     pub at: [f64; 2],
+    /// The part of the text that is there.
+    pub anchor: Anchor,
     /// The size of the font, in pixels.
     pub size: f64,
     /// The font.
@@ -127,6 +129,20 @@ pub struct Text {
     pub color: Color,
     /// Whether it is read from bottom to top.
     pub turned: bool,
+}
+
+impl Text {
+    /// The start of its baseline.
+    pub fn start(&self) -> [f64; 2] {
+        let share = match self.anchor {
+            Anchor::Start => return self.at,
+            Anchor::Middle => 0.5,
+            Anchor::End => 1.0,
+        };
+        let before = share * self.face.width(&self.text, self.size);
+        let [x, y] = self.at;
+        if self.turned { [x, y + before] } else { [x - before, y] }
+    }
 }
 
 /// A box.
@@ -252,29 +268,18 @@ impl Style {
     }
 
     /// A text from left to right, with the anchor of its baseline at a point.
-    pub fn text(&self, text: impl Into<String>, [x, y]: [f64; 2], anchor: Anchor) -> Shape {
-        let text = shortened(&text.into(), LONGEST).into_owned();
-        let x = x - self.before(&text, anchor);
-        self.shape(text, [x, y], false)
+    pub fn text(&self, text: impl Into<String>, at: [f64; 2], anchor: Anchor) -> Shape {
+        self.shape(&text.into(), at, anchor, false)
     }
 
     /// A text from bottom to top, with the anchor of its baseline, which is on its right, at a point.
-    pub fn turned(&self, text: impl Into<String>, [x, y]: [f64; 2], anchor: Anchor) -> Shape {
-        let text = shortened(&text.into(), LONGEST).into_owned();
-        let y = y + self.before(&text, anchor);
-        self.shape(text, [x, y], true)
+    pub fn turned(&self, text: impl Into<String>, at: [f64; 2], anchor: Anchor) -> Shape {
+        self.shape(&text.into(), at, anchor, true)
     }
 
-    fn before(&self, text: &str, anchor: Anchor) -> f64 {
-        match anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => 0.5 * self.width(text),
-            Anchor::End => self.width(text),
-        }
-    }
-
-    fn shape(&self, text: String, at: [f64; 2], turned: bool) -> Shape {
+    fn shape(&self, text: &str, at: [f64; 2], anchor: Anchor, turned: bool) -> Shape {
         let Self { size, face, color } = *self;
-        Shape::Text(Text { text, at, size, face, color, turned })
+        let text = shortened(text, LONGEST).into_owned();
+        Shape::Text(Text { text, at, anchor, size, face, color, turned })
     }
 }

@@ -28,10 +28,8 @@ pub enum Stroke {
     Close,
 }
 
-static REGULAR: LazyLock<Option<Font>> =
-    LazyLock::new(|| Font::new(include_bytes!("../fonts/DejaVuSans.ttf").as_slice(), 0));
-static BOLD: LazyLock<Option<Font>> =
-    LazyLock::new(|| Font::new(include_bytes!("../fonts/DejaVuSans-Bold.ttf").as_slice(), 0));
+static REGULAR: LazyLock<Option<Font>> = LazyLock::new(|| Font::new(Face::Regular.bytes(), 0));
+static BOLD: LazyLock<Option<Font>> = LazyLock::new(|| Font::new(Face::Bold.bytes(), 0));
 
 /// The height of capitals above the baseline, as a share of the font's size.
 pub const CAPITALS: f64 = 0.73;
@@ -49,6 +47,19 @@ const NO_BREAK: char = '\u{a0}';
 impl Face {
     /// The number of font units in the font's size, the same for both fonts.
     pub const UNITS: f64 = 2048.0;
+
+    /// The font's file.
+    pub(crate) fn bytes(self) -> &'static [u8] {
+        match self {
+            Self::Regular => include_bytes!("../fonts/DejaVuSans.ttf"),
+            Self::Bold => include_bytes!("../fonts/DejaVuSans-Bold.ttf"),
+        }
+    }
+
+    /// The width of a glyph, in units of the font.
+    pub(crate) fn advance(self, glyph: u16) -> f64 {
+        self.font().map_or(0.0, |font| font.glyph_metrics().h_advance(glyph.into()).into())
+    }
 
     fn font(self) -> Option<&'static Font> {
         match self {
@@ -90,12 +101,7 @@ impl Face {
 
     /// The outline of a glyph; empty for a space.
     pub fn outline(self, glyph: u16) -> Vec<Stroke> {
-        let mut outline = Outline(Vec::new());
-        if let Some(shape) = self.font().and_then(|font| font.outline_glyphs().get(glyph.into())) {
-            // What is drawn before a contour that is damaged is kept; the fonts here are whole.
-            let _ = shape.draw(&DrawOptions::new(), DrawMemory::Scratch, &mut outline);
-        }
-        outline.0
+        self.font().map_or_else(Vec::new, |font| strokes(font, glyph))
     }
 
     /// The text, or as much of it as fits in `room` together with an ellipsis.
@@ -163,6 +169,16 @@ impl Face {
             at > room
         })
     }
+}
+
+/// The outline of a glyph of a font.
+pub(crate) fn strokes(font: &Font, glyph: u16) -> Vec<Stroke> {
+    let mut outline = Outline(Vec::new());
+    if let Some(shape) = font.outline_glyphs().get(glyph.into()) {
+        // What is drawn before a contour that is damaged is kept; the fonts here are whole.
+        let _ = shape.draw(&DrawOptions::new(), DrawMemory::Scratch, &mut outline);
+    }
+    outline.0
 }
 
 /// A text with at most so many characters; what is cut off is an ellipsis.

@@ -47,8 +47,9 @@
 //! | the shapes of a figure | [`Drawing`], modules [`drawing`], [`color`], [`font`] |
 //! | files | [`Drawing::to_svg`], [`Drawing::to_png`], [`Drawing::to_pdf`], modules [`svg`], [`png`], [`pdf`] |
 //!
-//! Texts are outlines of fonts that come with the crate, and are measured with the same fonts: nothing depends
-//! on the fonts of the machine. The same figure gives the same bytes.
+//! Texts are measured with fonts that come with the crate: nothing depends on the fonts of the machine. SVG and PDF have them
+//! as text; a PDF carries what it uses of the fonts, and a viewer of an SVG without them takes others that are like them. The
+//! same figure gives the same bytes.
 //!
 //! A figure stays small, however much there is to draw: curves are thinned out to their extremes ([`Curve`]),
 //! and more than [`MOST_SHAPES`] cells or dots become an image.
@@ -62,6 +63,7 @@ mod frame;
 mod heading;
 pub mod pdf;
 pub mod png;
+mod subset;
 pub mod svg;
 mod tiles;
 mod time;

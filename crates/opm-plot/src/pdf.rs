@@ -1,13 +1,15 @@
-//! Writes a drawing as PDF, one page as large as the drawing. Shapes stay shapes, for print at any size; texts are
-//! outlines, as in SVG.
+//! Writes a drawing as PDF, one page as large as the drawing. Shapes stay shapes, for print at any size; texts are text, with
+//! what is used of the fonts in the file.
 
 use crate::color::{Color, WHITE};
 use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
-use crate::font::{Face, LONGEST, Stroke, shortened};
+use crate::font::{CAPITALS, Face, LONGEST, shortened};
+use crate::subset::subset;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use pdf_writer::types::LineJoinStyle;
-use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect as PageBox, Ref, TextStr};
+use pdf_writer::types::{CidFontType, FontFlags, LineJoinStyle, SystemInfo, UnicodeCmap};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect as PageBox, Ref, Str, TextStr};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// The points of a pixel: 72 points are an inch, and 96 pixels.
@@ -19,7 +21,7 @@ const POINTS: f32 = 0.75;
 /// The bytes cannot be compressed.
 pub fn write(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [width, height] = [drawing.size.width, drawing.size.height].map(|side| side as f32);
-    let mut page = Page { content: Content::new(), images: Vec::new() };
+    let mut page = Page { content: Content::new(), images: Vec::new(), glyphs: BTreeMap::new() };
     // From pixels, with y down, to points, with y up.
     page.content.transform([POINTS, 0.0, 0.0, -POINTS, 0.0, POINTS * height]);
     page.fill(WHITE).rect(0.0, 0.0, width, height).fill_nonzero();
@@ -36,6 +38,7 @@ pub fn write(drawing: &Drawing) -> io::Result<Vec<u8>> {
     pdf.document_info(info).title(TextStr(&shortened(&drawing.title, LONGEST))).finish();
     pdf.pages(tree).kids([only]).count(1);
     let images: Vec<Ref> = page.images.iter().map(|_| number()).collect();
+    let fonts: Vec<Ref> = page.glyphs.keys().map(|_| number()).collect();
     let mut written = pdf.page(only);
     written.parent(tree).contents(stream);
     written.media_box(PageBox::new(0.0, 0.0, POINTS * width, POINTS * height));
@@ -45,10 +48,18 @@ pub fn write(drawing: &Drawing) -> io::Result<Vec<u8>> {
         names.pair(Name(image_name(i).as_bytes()), image);
     }
     names.finish();
+    let mut names = resources.fonts();
+    for (&face, &font) in page.glyphs.keys().zip(&fonts) {
+        names.pair(Name(font_name(face).as_bytes()), font);
+    }
+    names.finish();
     resources.finish();
     written.finish();
     for (image, at) in page.images.iter().zip(images) {
         embed(&mut pdf, image, at, number())?;
+    }
+    for ((&face, glyphs), at) in page.glyphs.iter().zip(fonts) {
+        embed_font(&mut pdf, (face, glyphs), at, std::array::from_fn(|_| number()))?;
     }
     pdf.stream(stream, &packed(&page.content.finish())?).filter(Filter::FlateDecode);
     Ok(pdf.finish())
@@ -56,6 +67,68 @@ pub fn write(drawing: &Drawing) -> io::Result<Vec<u8>> {
 
 fn image_name(number: usize) -> String {
     format!("Im{number}")
+}
+
+fn font_name(face: Face) -> &'static str {
+    match face {
+        Face::Regular => "F0",
+        Face::Bold => "F1",
+    }
+}
+
+/// Writes what is used of a font: its glyphs by their numbers, and the characters that they stand for (ISO 32000-1, 9.7).
+fn embed_font(
+    pdf: &mut Pdf,
+    (face, glyphs): (Face, &BTreeMap<u16, char>),
+    at: Ref,
+    [cid, descriptor, file, characters]: [Ref; 4],
+) -> io::Result<()> {
+    // A subset has six letters before its name.
+    let (name, weight) = match face {
+        Face::Regular => ("OPMPLT+DejaVuSans", 400),
+        Face::Bold => ("OPMPLT+DejaVuSans-Bold", 700),
+    };
+    let name = Name(name.as_bytes());
+    let system = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
+    // Of a thousandth of the font's size.
+    let thousandths = (1000.0 / Face::UNITS) as f32;
+    let mut font = pdf.type0_font(at);
+    font.base_font(name).encoding_predefined(Name(b"Identity-H"));
+    font.descendant_font(cid).to_unicode(characters);
+    font.finish();
+    let mut font = pdf.cid_font(cid);
+    font.subtype(CidFontType::Type2).base_font(name).system_info(system);
+    font.font_descriptor(descriptor)
+        .default_width(0.0)
+        .cid_to_gid_map_predefined(Name(b"Identity"));
+    let mut widths = font.widths();
+    for &glyph in glyphs.keys() {
+        widths.consecutive(glyph, [face.advance(glyph) as f32 * thousandths]);
+    }
+    widths.finish();
+    font.finish();
+    let mut font = pdf.font_descriptor(descriptor);
+    font.name(name).flags(FontFlags::SYMBOLIC).font_file2(file);
+    // Those of DejaVu Sans, in its units.
+    let [left, below, right, above] = [-2090.0, -948.0, 3673.0, 2524.0].map(|v| v * thousandths);
+    font.bbox(PageBox::new(left, below, right, above)).italic_angle(0.0);
+    font.ascent(1901.0 * thousandths).descent(-483.0 * thousandths);
+    font.cap_height(1000.0 * CAPITALS as f32).stem_v(0.1 * weight as f32 + 40.0);
+    font.finish();
+    let used = glyphs.keys().copied().collect();
+    let bytes = subset(face.bytes(), &used).unwrap_or_else(|| face.bytes().to_vec());
+    let mut stream_bytes = packed(&bytes)?;
+    let mut stream = pdf.stream(file, &stream_bytes);
+    stream.filter(Filter::FlateDecode);
+    stream.pair(Name(b"Length1"), bytes.len() as i32);
+    stream.finish();
+    let mut map = UnicodeCmap::new(Name(b"Custom"), system);
+    for (&glyph, &character) in glyphs.iter().filter(|(glyph, _)| **glyph != 0) {
+        map.pair(glyph, character);
+    }
+    stream_bytes = packed(&map.finish())?;
+    pdf.stream(characters, &stream_bytes).filter(Filter::FlateDecode);
+    Ok(())
 }
 
 fn packed(bytes: &[u8]) -> io::Result<Vec<u8>> {
@@ -84,25 +157,37 @@ fn embed(pdf: &mut Pdf, image: &Image, at: Ref, mask: Ref) -> io::Result<()> {
     Ok(())
 }
 
-/// The content of the page, and the images in it.
+/// The content of the page, the images in it, and the glyphs with the characters that they stand for.
 struct Page<'a> {
     content: Content,
     images: Vec<&'a Image>,
+    glyphs: BTreeMap<Face, BTreeMap<u16, char>>,
 }
 
 impl<'a> Page<'a> {
-    fn shapes(&mut self, shapes: &'a [Shape]) {
-        for shape in shapes {
-            match shape {
-                Shape::Area(path, color) => {
+    fn shapes(&mut self, mut shapes: &'a [Shape]) {
+        while let [shape, rest @ ..] = shapes {
+            shapes = rest;
+            match (shape, rest) {
+                // An area and its outline are one path.
+                (Shape::Area(path, color), [Shape::Line(outline, pen), rest @ ..])
+                    if path == outline =>
+                {
+                    self.fill(*color);
+                    self.line(path, pen).fill_nonzero_and_stroke();
+                    shapes = rest;
+                }
+                (Shape::Area(path, color), _) => {
                     self.fill(*color);
                     self.trace(path);
                     self.content.fill_nonzero();
                 }
-                Shape::Line(path, pen) => self.line(path, pen),
-                Shape::Text(text) => self.text(text),
-                Shape::Image { place, image } => self.image(*place, image),
-                Shape::Group { shapes, .. } => self.shapes(shapes),
+                (Shape::Line(path, pen), _) => {
+                    self.line(path, pen).stroke();
+                }
+                (Shape::Text(text), _) => self.text(text),
+                (Shape::Image { place, image }, _) => self.image(*place, image),
+                (Shape::Group { shapes, .. }, _) => self.shapes(shapes),
             }
         }
     }
@@ -122,57 +207,36 @@ impl<'a> Page<'a> {
         }
     }
 
-    fn line(&mut self, path: &Path, pen: &Pen) {
+    /// A path, ready to be drawn with a pen.
+    fn line(&mut self, path: &Path, pen: &Pen) -> &mut Content {
         let [r, g, b] = shares(pen.color);
         self.content.set_stroke_rgb(r, g, b).set_line_width(pen.width as f32);
         self.content.set_line_join(LineJoinStyle::RoundJoin);
         self.content.set_dash_pattern(pen.dashes.iter().map(|&length| length as f32), 0.0);
         self.trace(path);
-        self.content.stroke();
+        &mut self.content
     }
 
     fn text(&mut self, text: &Text) {
-        let size = (text.size / Face::UNITS) as f32;
-        let [x, y] = text.at.map(|value| value as f32);
-        self.content.save_state();
+        let [x, y] = text.start().map(|value| value as f32);
+        let used = self.glyphs.entry(text.face).or_default();
+        let mut glyphs = Vec::with_capacity(2 * text.text.len());
+        for ((glyph, _), character) in text.face.glyphs(&text.text).zip(text.text.chars()) {
+            used.entry(glyph).or_insert(character);
+            glyphs.extend(glyph.to_be_bytes());
+        }
         // Glyphs have y upwards; a text from bottom to top is turned.
-        let turned = [0.0, -size, -size, 0.0, x, y];
-        self.content.transform(if text.turned { turned } else { [size, 0.0, 0.0, -size, x, y] });
+        let turned = [0.0, -1.0, -1.0, 0.0, x, y];
         self.fill(text.color);
-        for (glyph, at) in text.face.glyphs(&text.text) {
-            self.glyph(&text.face.outline(glyph), at as f32);
-        }
-        self.content.restore_state();
-    }
-
-    fn glyph(&mut self, outline: &[Stroke], at: f32) {
-        if outline.is_empty() {
-            return;
-        }
-        let mut from = [0.0; 2];
-        for stroke in outline {
-            match *stroke {
-                Stroke::Move([x, y]) => {
-                    self.content.move_to(at + x, y);
-                    from = [x, y];
-                }
-                Stroke::Line([x, y]) => {
-                    self.content.line_to(at + x, y);
-                    from = [x, y];
-                }
-                Stroke::Quad(control, to) => {
-                    // The cubic curve with the same shape.
-                    let toward = |end: [f32; 2]| [0, 1].map(|i| (end[i] + 2.0 * control[i]) / 3.0);
-                    let ([a, b], [c, d]) = (toward(from), toward(to));
-                    self.content.cubic_to(at + a, b, at + c, d, at + to[0], to[1]);
-                    from = to;
-                }
-                Stroke::Close => {
-                    self.content.close_path();
-                }
-            }
-        }
-        self.content.fill_nonzero();
+        self.content.begin_text();
+        self.content.set_font(Name(font_name(text.face).as_bytes()), text.size as f32);
+        self.content.set_text_matrix(if text.turned {
+            turned
+        } else {
+            [1.0, 0.0, 0.0, -1.0, x, y]
+        });
+        self.content.show(Str(&glyphs));
+        self.content.end_text();
     }
 
     fn image(&mut self, place: Rect, image: &'a Image) {

@@ -151,7 +151,7 @@ fn text(canvas: &mut Pixmap, text: &Text) {
             }
         }
     }
-    let [x, y] = text.at.map(|v| v as f32);
+    let [x, y] = text.start().map(|v| v as f32);
     let size = (text.size / Face::UNITS) as f32;
     let place = scale().pre_translate(x, y);
     let place = if text.turned { place.pre_rotate(-90.0) } else { place };

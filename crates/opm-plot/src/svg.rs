@@ -1,11 +1,14 @@
-//! Writes a drawing as SVG. Texts are outlines, so that it looks the same everywhere.
+//! Writes a drawing as SVG. Texts are text, which can be searched and edited: a viewer without the font in which they were laid
+//! out takes one that is like it.
 
 use crate::color::Color;
-use crate::drawing::{Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
-use crate::font::{Face, LONGEST, Stroke, shortened};
+use crate::drawing::{Anchor, Drawing, Image, Path, Pen, Rect, Shape, Step, Text};
+use crate::font::{Face, LONGEST, shortened};
 use crate::png;
-use std::collections::BTreeSet;
 use std::fmt::Write;
+
+/// The font in which texts are laid out, one of nearly its widths, and what every viewer has.
+const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// Writes a drawing as the text of an SVG file; see also [`Drawing::to_svg`].
 ///
@@ -13,88 +16,69 @@ use std::fmt::Write;
 /// An image in the drawing cannot be encoded.
 pub fn write(drawing: &Drawing) -> Result<String, png::Error> {
     let [width, height] = [drawing.size.width, drawing.size.height].map(number);
-    let mut svg = Svg::default();
-    let mut body = String::new();
-    svg.shapes(&mut body, &drawing.shapes)?;
     let mut out = String::new();
     let title = escape(&drawing.title);
     let _ = write!(
         out,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
          width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
-         aria-label=\"{title}\">\n<title>{title}</title>\n<defs>\n"
+         aria-label=\"{title}\" font-family=\"{FAMILY}\" stroke-linejoin=\"round\">\n<title>{title}</title>\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
     );
-    for (face, glyph) in svg.glyphs {
-        let _ = writeln!(
-            out,
-            "<path id=\"{}\" d=\"{}\"/>",
-            glyph_id(face, glyph),
-            outline(&face.outline(glyph))
-        );
-    }
-    let _ = write!(
-        out,
-        "</defs>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
-    );
+    shapes(&mut out, &drawing.shapes)?;
+    out.push_str("</svg>\n");
     Ok(out)
 }
 
-/// The glyphs that were used so far.
-#[derive(Default)]
-struct Svg {
-    glyphs: BTreeSet<(Face, u16)>,
-}
-
-impl Svg {
-    fn shapes(&mut self, out: &mut String, shapes: &[Shape]) -> Result<(), png::Error> {
-        shapes.iter().try_for_each(|shape| self.shape(out, shape))
-    }
-
-    fn shape(&mut self, out: &mut String, shape: &Shape) -> Result<(), png::Error> {
-        match shape {
-            Shape::Area(path, color) => {
+fn shapes(out: &mut String, mut shapes: &[Shape]) -> Result<(), png::Error> {
+    while let [shape, rest @ ..] = shapes {
+        shapes = rest;
+        match (shape, rest) {
+            // An area and its outline are one element.
+            (Shape::Area(path, color), [Shape::Line(outline, pen), rest @ ..])
+                if path == outline =>
+            {
+                line(out, path, pen, &hex(*color));
+                shapes = rest;
+            }
+            (Shape::Area(path, color), _) => {
                 let _ = writeln!(out, "<path d=\"{}\" fill=\"{}\"/>", steps(path), hex(*color));
             }
-            Shape::Line(path, pen) => line(out, path, pen),
-            Shape::Text(text) => self.text(out, text),
-            Shape::Image { place, image } => picture(out, *place, image)?,
-            Shape::Group { kind, label, shapes } => {
+            (Shape::Line(path, pen), _) => line(out, path, pen, "none"),
+            (Shape::Text(one), _) => text(out, one),
+            (Shape::Image { place, image }, _) => picture(out, *place, image)?,
+            (Shape::Group { kind, label, shapes: inner }, _) => {
                 let label = escape(label);
                 let _ = writeln!(out, "<g class=\"{kind}\" aria-label=\"{label}\">");
-                self.shapes(out, shapes)?;
+                self::shapes(out, inner)?;
                 out.push_str("</g>\n");
             }
         }
-        Ok(())
     }
-
-    fn text(&mut self, out: &mut String, text: &Text) {
-        let scale = text.size / Face::UNITS;
-        let [x, y] = text.at.map(number);
-        let rotation = if text.turned { " rotate(-90)" } else { "" };
-        let _ = write!(
-            out,
-            "<g class=\"text\" aria-label=\"{}\" fill=\"{}\" \
-             transform=\"translate({x} {y}){rotation} scale({scale:.6} -{scale:.6})\">",
-            escape(&text.text),
-            hex(text.color)
-        );
-        for ((glyph, at), character) in text.face.glyphs(&text.text).zip(text.text.chars()) {
-            if !character.is_whitespace() {
-                self.glyphs.insert((text.face, glyph));
-                let id = glyph_id(text.face, glyph);
-                let _ = write!(out, "<use xlink:href=\"#{id}\" x=\"{at}\"/>");
-            }
-        }
-        out.push_str("</g>\n");
-    }
+    Ok(())
 }
 
-fn line(out: &mut String, path: &Path, pen: &Pen) {
+fn text(out: &mut String, text: &Text) {
+    let [x, y] = text.at.map(number);
+    let _ = write!(out, "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"", number(text.size));
+    if text.face == Face::Bold {
+        out.push_str(" font-weight=\"bold\"");
+    }
+    match text.anchor {
+        Anchor::Start => {}
+        Anchor::Middle => out.push_str(" text-anchor=\"middle\""),
+        Anchor::End => out.push_str(" text-anchor=\"end\""),
+    }
+    if text.turned {
+        let _ = write!(out, " transform=\"rotate(-90 {x} {y})\"");
+    }
+    let _ = writeln!(out, " fill=\"{}\">{}</text>", hex(text.color), escape(&text.text));
+}
+
+fn line(out: &mut String, path: &Path, pen: &Pen, fill: &str) {
     let _ = write!(
         out,
-        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" \
-         stroke-linejoin=\"round\"",
+        "<path d=\"{}\" fill=\"{fill}\" stroke=\"{}\" stroke-width=\"{}\"",
         steps(path),
         hex(pen.color),
         number(pen.width)
@@ -117,26 +101,6 @@ fn picture(out: &mut String, place: Rect, image: &Image) -> Result<(), png::Erro
         base64(&png::image(image)?)
     );
     Ok(())
-}
-
-fn glyph_id(face: Face, glyph: u16) -> String {
-    match face {
-        Face::Regular => format!("r{glyph}"),
-        Face::Bold => format!("b{glyph}"),
-    }
-}
-
-fn outline(strokes: &[Stroke]) -> String {
-    let mut out = String::new();
-    for stroke in strokes {
-        let _ = match stroke {
-            Stroke::Move([x, y]) => write!(out, "M{x} {y}"),
-            Stroke::Line([x, y]) => write!(out, "L{x} {y}"),
-            Stroke::Quad([a, b], [x, y]) => write!(out, "Q{a} {b} {x} {y}"),
-            Stroke::Close => write!(out, "Z"),
-        };
-    }
-    out
 }
 
 fn steps(path: &Path) -> String {

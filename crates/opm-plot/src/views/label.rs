@@ -108,20 +108,35 @@ impl Drawn {
         drawn
     }
 
-    /// Marks the cells of the smallest box around a path. Pieces of solids are small.
+    /// Marks the cells that a convex path comes near to. Those are the cells whose middle is inside of it, or not much farther
+    /// out of any of its sides.
     fn add(&mut self, path: &Path) {
+        let corners = path.0.iter().filter_map(|step| match step {
+            Step::Move(point) | Step::Line(point) => Some(*point),
+            Step::Close => None,
+        });
+        let corners: Vec<[f64; 2]> = corners.collect();
         let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for step in &path.0 {
-            if let Step::Move(point) | Step::Line(point) = step {
-                for (range, value) in range.iter_mut().zip(point) {
-                    *range = [range[0].min(*value), range[1].max(*value)];
-                }
+        for point in &corners {
+            for (range, value) in range.iter_mut().zip(point) {
+                *range = [range[0].min(*value), range[1].max(*value)];
             }
         }
         let [[left, right], [top, bottom]] = range;
         let place = Rect { x: left, y: top, width: right - left, height: bottom - top };
+        let next = |i: usize| corners[(i + 1) % corners.len()];
+        let doubled: f64 = (0..corners.len())
+            .map(|i| corners[i][0] * next(i)[1] - corners[i][1] * next(i)[0])
+            .sum();
         for cell in self.cells_of(&place) {
-            self.cells[cell] = true;
+            let [column, row] = [cell % self.columns, cell / self.columns].map(|n| n as f64 + 0.5);
+            let [x, y] = [self.view.x + CELL * column, self.view.y + CELL * row];
+            let near = (0..corners.len()).all(|i| {
+                let ([ax, ay], [bx, by]) = (corners[i], next(i));
+                let inward = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) * doubled.signum();
+                inward >= -0.7 * CELL * (bx - ax).hypot(by - ay)
+            });
+            self.cells[cell] |= near;
         }
     }
 

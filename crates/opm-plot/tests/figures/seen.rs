@@ -12,14 +12,19 @@ pub fn text(drawing: &Drawing) -> String {
     svg::write(drawing).expect("an SVG")
 }
 
-/// Elements of a class, in the order of the file.
+/// Elements of a class, or all texts, in the order of the file.
 pub fn class<'a>(node: Node<'a, 'a>, class: &str) -> Vec<Node<'a, 'a>> {
-    node.descendants().filter(|n| n.attribute("class") == Some(class)).collect()
+    let is = |n: &Node<'a, 'a>| match class {
+        "text" => n.has_tag_name("text"),
+        _ => n.attribute("class") == Some(class),
+    };
+    node.descendants().filter(is).collect()
 }
 
-/// What an element is called.
+/// What an element is called, or what a text says.
 pub fn label<'a>(node: Node<'a, 'a>) -> &'a str {
-    node.attribute("aria-label").unwrap_or("")
+    let text = node.has_tag_name("text").then(|| node.text()).flatten();
+    text.or_else(|| node.attribute("aria-label")).unwrap_or("")
 }
 
 /// The element of a class that is called so.
@@ -100,19 +105,21 @@ fn scale<'a>(panel: Node<'a, 'a>, axis: &str, along: usize) -> impl Fn(f64) -> f
 fn boxes<'a>(document: &'a Document<'a>) -> Vec<(&'a str, [f64; 4])> {
     let texts = class(document.root(), "text");
     let place = |node: &Node<'a, 'a>| {
-        let transform = node.attribute("transform").expect("a place");
-        let numbers = |after: &str| -> Vec<f64> {
-            let (_, rest) = transform.split_once(after).expect("a number");
-            let (inside, _) = rest.split_once(')').expect("an end");
-            inside.split_whitespace().map(|n| n.parse().expect("a number")).collect()
-        };
-        let (at, size) = (numbers("translate("), numbers("scale(")[0] * Face::UNITS);
-        let glyph = node.first_element_child().and_then(|n| n.attributes().next());
-        let bold = glyph.is_some_and(|id| id.value().starts_with("#b"));
+        let number = |name| node.attribute(name).and_then(|n| n.parse::<f64>().ok());
+        let (at, size) = (["x", "y"].map(number), number("font-size").expect("a size"));
+        let mut at = at.map(|n| n.expect("a place"));
+        let bold = node.attribute("font-weight") == Some("bold");
         let face = if bold { Face::Bold } else { Face::Regular };
+        let turned = node.attribute("transform").is_some_and(|t| t.contains("rotate(-90"));
         // Of letters with descenders, without accents.
         let (width, above, below) = (face.width(label(*node), size), 0.76 * size, 0.24 * size);
-        let edges = if transform.contains("rotate(-90)") {
+        let share = match node.attribute("text-anchor") {
+            None => 0.0,
+            Some("middle") => 0.5,
+            _ => 1.0,
+        };
+        at[usize::from(turned)] += share * if turned { width } else { -width };
+        let edges = if turned {
             [at[0] - above, at[1] - width, at[0] + below, at[1]]
         } else {
             [at[0], at[1] - above, at[0] + width, at[1] + below]
