@@ -565,7 +565,7 @@ def test_what_is_printed_is_the_picture_and_no_controls(explore):
         return new Set(data.filter((_, i) => i % 4 === 0)).size;
     }""")
     assert drawn > 50
-    for control in ("#save", "#fit", "#home", "#slice-xmin", "#kind", "#clearance", "#pose input[type=range] >> nth=0"):
+    for control in ("#save", "#marks", "#fit", "#home", "#slice-xmin", "#kind", "#clearance", "#pose input[type=range] >> nth=0"):
         assert explorer.page.locator(control).is_hidden(), control
     for shown in ("#printed canvas", "#pose-x", "#joint-S1", "#slice-canvas", "#slice-count", "#nearest"):
         assert explorer.page.locator(shown).is_visible(), shown

@@ -177,7 +177,8 @@ export class View {
     this.render();
     const { width, height } = this.canvas;
     const both = element("canvas", { width, height });
-    const context = both.getContext("2d")!;
+    // What is drawn by a graphics card is not always printed.
+    const context = both.getContext("2d", { willReadFrequently: true })!;
     for (const one of [this.canvas, this.marks.canvas]) context.drawImage(one, 0, 0, width, height);
     return both;
   }
