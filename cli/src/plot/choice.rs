@@ -7,6 +7,8 @@ use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::text::short;
 use opm_core::Quantity;
+use opm_core::task::CoordinateKind;
+use opm_workspace::Axis;
 
 /// Largest number of slices that --slice may request.
 const MOST: usize = 36;
@@ -27,6 +29,21 @@ pub fn fast(layout: &Layout) -> [usize; 2] {
     }
     order.extend(layout.axes.iter().filter(|number| !varies(number)));
     [order.first().copied().unwrap_or(0), order.get(1).copied().unwrap_or(0)]
+}
+
+/// The direction and the tilt of a wrist, if both vary and no position does: it is drawn in polar form.
+pub fn tilts(layout: &Layout, source: &Source<'_>) -> Option<[usize; 2]> {
+    let of = |kinds: [CoordinateKind; 2]| {
+        let known = source.manipulator()?.task_coordinates();
+        let name = known.iter().find(|c| kinds.contains(&c.kind()))?.name;
+        layout.find(name).filter(|number| several(&layout.coordinates[*number]))
+    };
+    let direction = of([CoordinateKind::Zeta, CoordinateKind::Azimuth])?;
+    let tilt = of([CoordinateKind::Xi, CoordinateKind::Tilt])?;
+    let is_place =
+        |(quantity, axis): &(Quantity, Axis)| *quantity == Quantity::Length && axis.count > 1;
+    let from = layout.coordinates[tilt].axis.as_ref()?.min;
+    (from >= 0.0 && !layout.grid.iter().any(is_place)).then_some([direction, tilt])
 }
 
 /// The value nearest to home, or the middle value if the coordinate has no home.

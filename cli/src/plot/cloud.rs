@@ -67,7 +67,7 @@ impl JointCloud {
             match content {
                 Content::Cloud(cloud) => x.iter().zip(y).for_each(|(x, y)| cloud.push(*x, *y)),
                 Content::Histogram(histogram) => x.iter().for_each(|x| histogram.push(*x)),
-                Content::Cells(..) => {}
+                Content::Cells(..) | Content::Polar(..) => {}
             }
         }
         self.points += cloud.len() as u64;

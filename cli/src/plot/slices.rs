@@ -4,7 +4,7 @@ mod notes;
 mod points;
 mod section;
 
-use super::choice::{fast, home, selected, several, varied};
+use super::choice::{fast, home, selected, several, tilts, varied};
 use super::inscribed::Shape;
 use super::layout::{Layout, ValueSource};
 use super::source::{Rate, ReadStop, Source};
@@ -19,6 +19,7 @@ use opm_study::recording::class_color;
 use opm_study::{ASPECT, WorkspaceKind};
 pub use points::In;
 pub use section::rounded;
+use std::collections::BTreeMap;
 
 /// Largest number of slices that are chosen without --slice.
 const CHOSEN: u64 = 8;
@@ -30,6 +31,8 @@ type Lines = Vec<Vec<[f64; 2]>>;
 pub struct Slices<'a> {
     layout: &'a Layout,
     view: [Seen; 2],
+    /// A whole turn, in the unit of the picture, where these are a direction and a tilt.
+    polar: Option<f64>,
     /// Coordinates that are held, each at a value of its grid.
     held: Vec<(usize, u64)>,
     /// The coordinate that has another value in each tile.
@@ -48,6 +51,8 @@ pub struct Slices<'a> {
     chosen: bool,
     /// The number of tiles that are left out, because nothing is in them.
     empty: usize,
+    /// The values whose slices are equal to that of a tile, and its own, in ascending order, by the value of the tile.
+    equal: BTreeMap<u64, Vec<u64>>,
     /// The largest shape inside, if the recording has it.
     shape: Option<Shape>,
     /// What rejects the points, if those that are rejected are shown.
@@ -76,7 +81,8 @@ impl<'a> Slices<'a> {
         args: &PlotArgs,
         view: Option<[usize; 2]>,
     ) -> Result<Self, Failure> {
-        let view = view.unwrap_or_else(|| fast(layout));
+        let tilts = tilts(layout, source);
+        let view = view.or(tilts).unwrap_or_else(|| fast(layout));
         let bar = view[0] == view[1];
         if bar && layout.coordinates.get(view[0]).is_none_or(|c| c.axis.is_none()) {
             let name = layout.coordinates.get(view[0]).map_or("one coordinate", |c| &*c.name);
@@ -115,9 +121,12 @@ impl<'a> Slices<'a> {
         let color = color.filter(|_| layout.kind != WorkspaceKind::Dexterous);
         let aspects = layout.kind == WorkspaceKind::Aspects
             && color.as_ref().is_some_and(|color| color.field == ASPECT);
+        let view_of = view.map(seen);
+        let turn = std::f64::consts::TAU / view_of[0].factor;
         let mut slices = Self {
             layout,
-            view: view.map(seen),
+            polar: (tilts == Some(view)).then_some(turn),
+            view: view_of,
             held,
             varied,
             tiles: vec![],
@@ -127,6 +136,7 @@ impl<'a> Slices<'a> {
             home: None,
             chosen: false,
             empty: 0,
+            equal: BTreeMap::new(),
             shape: Shape::of(source),
             causes: None,
         };
@@ -154,6 +164,7 @@ impl<'a> Slices<'a> {
         let seen = |seen: &Seen| Seen { measure: seen.measure.clone(), ..*seen };
         let mut rejected = Self {
             layout: self.layout,
+            polar: self.polar,
             view: self.view.each_ref().map(seen),
             held: self.held.clone(),
             varied: self.varied,
@@ -164,6 +175,7 @@ impl<'a> Slices<'a> {
             home: self.home,
             chosen: self.chosen,
             empty: 0,
+            equal: BTreeMap::new(),
             shape: None,
             causes: Some(causes),
         };
@@ -174,7 +186,7 @@ impl<'a> Slices<'a> {
 
     /// Whether the slices are cells of a grid, and not clouds of points.
     pub fn are_cells(&self) -> bool {
-        self.tiles.iter().all(|tile| matches!(tile.1, Content::Cells(..)))
+        self.tiles.iter().all(|tile| cells(&tile.1).is_some())
     }
 
     /// Keeps only the slices that others keep, too.
@@ -227,7 +239,7 @@ impl<'a> Slices<'a> {
             false => spacing(b),
         };
         if let (Some(x), Some(y)) = (spacing(a), across) {
-            return match (&self.causes, &self.color) {
+            let content = match (&self.causes, &self.color) {
                 (Some(causes), _) => {
                     let most = causes.iter().map(|cause| cause.number).max().unwrap_or(0);
                     let mut colors = vec![INK; 1 + most.min(MAX_CAUSES)];
@@ -249,6 +261,10 @@ impl<'a> Slices<'a> {
                 }
                 (None, None) => Content::Cells(Cells::plain(x, y), Paint::Plain([0; 3])),
             };
+            return match (content, self.polar) {
+                (Content::Cells(cells, paint), Some(turn)) => Content::Polar(cells, paint, turn),
+                (content, _) => content,
+            };
         }
         let range = |seen: &Seen| {
             let (field, scale) = match &self.layout.coordinates[seen.number].place {
@@ -262,10 +278,35 @@ impl<'a> Slices<'a> {
         Content::Cloud(Cloud::new(range(a), range(b)))
     }
 
+    /// Leaves one tile of those that hold the same, unless they were asked for: that of home, or the first.
+    pub fn merge_equal(&mut self) {
+        // What is drawn over the cells depends on the value.
+        if !self.chosen || self.aspects || self.shape.is_some() {
+            return;
+        }
+        let mut kept: Vec<(u64, Content)> = Vec::new();
+        for (value, content) in std::mem::take(&mut self.tiles) {
+            let same = kept.iter_mut().find(|(_, known)| {
+                cells(known).zip(cells(&content)).is_some_and(|(known, cells)| known == cells)
+            });
+            let Some((first, _)) = same else {
+                kept.push((value, content));
+                continue;
+            };
+            let mut values = self.equal.remove(first).unwrap_or_else(|| vec![*first]);
+            values.push(value);
+            if self.mark(value).is_some() {
+                *first = value;
+            }
+            self.equal.insert(*first, values);
+        }
+        self.tiles = kept;
+    }
+
     /// Leaves tiles out that hold nothing, unless they were asked for. One stays.
     pub fn drop_empty(&mut self) {
         let empty = |content: &Content| match content {
-            Content::Cells(cells, _) => cells.extent().is_none(),
+            Content::Cells(cells, _) | Content::Polar(cells, ..) => cells.extent().is_none(),
             Content::Cloud(cloud) => cloud.points() == 0,
             Content::Histogram(_) => false,
         };
@@ -274,5 +315,13 @@ impl<'a> Slices<'a> {
             self.empty = self.tiles.len() - held;
             self.tiles.retain(|tile| !empty(&tile.1));
         }
+    }
+}
+
+/// The cells of a tile, if it has any.
+fn cells(content: &Content) -> Option<&Cells> {
+    match content {
+        Content::Cells(cells, _) | Content::Polar(cells, ..) => Some(cells),
+        Content::Cloud(_) | Content::Histogram(_) => None,
     }
 }

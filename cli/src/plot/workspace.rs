@@ -107,6 +107,10 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs, output: &Output) -> Result<Dra
     let mut sections = vec![];
     if let Some(mut slices) = slices {
         slices.drop_empty();
+        // What is rejected may differ where what is reached does not.
+        if rejected.is_none() {
+            slices.merge_equal();
+        }
         slices.find_singularities(source)?;
         if let Some(rejected) = &mut rejected {
             rejected.keep_those_of(&slices);

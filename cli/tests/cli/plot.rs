@@ -403,6 +403,38 @@ fn the_largest_disc_inside_is_drawn() {
     assert!((said.unwrap() - radius).abs() < 0.06, "{said:?} {radius}");
 }
 
+/// A plane mechanism shows its plane at held angles, a wrist directions and tilts in polar form; slices that are equal are drawn
+/// once.
+#[test]
+fn slices_are_those_that_papers_print() {
+    let folder = Folder::new();
+    let draw = |mechanism: &str, grid: &[&str]| {
+        let file = folder.arg(&format!("{mechanism}.mcap"));
+        let grid: Vec<&str> = grid.iter().flat_map(|axis| ["--grid", axis]).collect();
+        opm(&[&["workspace", mechanism, "-o", &file, "--quiet"], &grid[..]].concat()).text();
+        plot(&folder, &file, &[]).1
+    };
+    let axes = |svg: &str| {
+        let document = Document::parse(svg).unwrap();
+        let name = |kind| class(document.root(), kind).first().map(|axis| label(*axis).to_owned());
+        let titles: Vec<String> = titles(&document).into_iter().map(str::to_owned).collect();
+        (name("x-axis"), name("y-axis"), titles)
+    };
+    let millimetres = ["x=-200mm:200mm:21", "y=-200mm:200mm:21", "theta=-60deg:60deg:3"];
+    let (x, y, found) = axes(&draw("planar-3rrr", &millimetres));
+    assert_eq!((x.as_deref(), y.as_deref()), (Some("x (mm)"), Some("y (mm)")));
+    assert_eq!(found, ["theta = −60 deg", "theta = 0 deg", "theta = 60 deg"]);
+
+    // Agile Eye reaches every orientation, in every slice the same.
+    let all = ["zeta=-180deg:180deg:37", "xi=0:180deg:19", "psi=-120deg:120deg:5"];
+    let svg = draw("agile-eye", &all);
+    let (x, y, found) = axes(&svg);
+    assert_eq!((x.as_deref(), y), (Some("zeta (deg) around, xi (deg) outwards"), None));
+    assert_eq!(found, ["psi = −120 … 120 deg"]);
+    assert!(svg.contains("Slices that are equal are drawn once."));
+    assert_legible(&svg);
+}
+
 /// The value of the colour is stored with other values, and colours the slices.
 #[test]
 fn a_recorded_colour_is_drawn_with_other_values() {

@@ -5,6 +5,7 @@ mod cells;
 mod cloud;
 mod histogram;
 mod legend;
+mod polar;
 
 pub use bar::Bar;
 pub use cells::{Cells, Paint, Spacing};
@@ -16,11 +17,12 @@ use crate::color::Color;
 use crate::color::{FAINT, INK, WHITE};
 use crate::drawing::{Anchor, Drawing, Path, Pen, Rect, Shape, Size, Style};
 use crate::font::{Face, label};
-use crate::frame::{BELOW, Frame, NAME, fits, left_of, ticks_in};
+use crate::frame::{BELOW, Frame, NAME, TICK, fits, left_of, ticks_in};
 use crate::heading::{Heading, MARGIN};
 use crate::{MOST, TooSmall};
 use cloud::Density;
 use legend::Legend;
+use polar::Polar;
 
 /// A figure of tiles, in sections from top to bottom.
 ///
@@ -135,6 +137,9 @@ impl Measure {
 pub enum Content {
     /// Cells of a grid, and how they are coloured.
     Cells(Cells, Paint),
+    /// The same where the first value is a direction and the second one a tilt: in polar form, with the tilt from the middle
+    /// outwards. The number is a whole turn, in the unit of the direction.
+    Polar(Cells, Paint, f64),
     /// Points anywhere in the plane.
     Cloud(Cloud),
     /// A histogram of values.
@@ -258,7 +263,9 @@ impl<'a> Laid<'a> {
         // Lengths, and angles, are as long one way as the other.
         let slope = |number: usize| {
             let ([x, y], tile) = (ranges[number], &section.tiles[number]);
+            let polar = matches!(tile.content, Content::Polar(..));
             let same = !tile.x.unit.symbol.is_empty() && tile.x.unit.symbol == tile.y.unit.symbol;
+            let same = same || polar;
             if tile.y.is_nothing() {
                 FLAT_BAR
             } else if histogram {
@@ -360,15 +367,36 @@ impl<'a> Laid<'a> {
     fn tile(&self, tile: &Tile, range: [[f64; 2]; 2], place: Rect, sides: Sides) -> Shape {
         let [x, y] = range;
         let most = (place.width / 44.0).clamp(2.0, 10.0) as usize;
-        let x = Axis::linear(x, tile.x.unit.steps, most, fits(place.width));
+        let mut x = Axis::linear(x, tile.x.unit.steps, most, fits(place.width));
         let mut y = Axis::linear(y, tile.y.unit.steps, ticks_in(place.height), |_, _| true);
         if tile.y.is_nothing() {
             y.ticks.clear();
         }
         // Tiles of the other shapes in the section keep theirs inside the common box.
+        let half = 0.5 * self.left[1] - 1.0;
+        let [low, high] = x.range;
+        for tick in &mut x.ticks {
+            // Numbers of neighbours keep apart.
+            let at = place.x + place.width * (tick.value - low) / (high - low);
+            let wide = 0.5 * TICK.width(&tick.label);
+            if at - wide < place.x - half || at + wide > place.right() + half {
+                tick.label.clear();
+            }
+        }
         let frame = Frame { place, x: &x, y: &y };
+        if let Content::Polar(cells, paint, turn) = &tile.content {
+            let polar = Polar { cells, turn: *turn };
+            let mut shapes = polar.tile(tile, paint, &frame);
+            if sides.below {
+                shapes.extend(polar.named(tile, &frame));
+            }
+            shapes.extend(above(tile, place));
+            let label = tile.title.clone();
+            return Shape::Group { kind: "panel", label, shapes };
+        }
         let mut shapes = vec![frame.grid()];
         let content = match &tile.content {
+            Content::Polar(..) => vec![],
             Content::Cells(cells, paint) => cells.draw(&frame, paint),
             Content::Cloud(cloud) => cloud.draw(&frame, self.density),
             Content::Histogram(histogram) => histogram.draw(&frame),
@@ -393,11 +421,7 @@ impl<'a> Laid<'a> {
         if sides.below {
             shapes.push(frame.below(Some(&name)));
         }
-        if !tile.title.is_empty() {
-            let middle = [place.x + 0.5 * place.width, place.y - 6.0];
-            let text = NAME.face.fit(&tile.title, NAME.size, place.width + BETWEEN);
-            shapes.push(NAME.text(text, middle, Anchor::Middle));
-        }
+        shapes.extend(above(tile, place));
         let label = match &*tile.title {
             "" if tile.y.is_nothing() => tile.x.name.clone(),
             "" => format!("{} over {}", tile.y.name, tile.x.name),
@@ -405,6 +429,13 @@ impl<'a> Laid<'a> {
         };
         Shape::Group { kind: "panel", label, shapes }
     }
+}
+
+/// The title above a tile.
+fn above(tile: &Tile, place: Rect) -> Option<Shape> {
+    let middle = [place.x + 0.5 * place.width, place.y - 6.0];
+    let text = NAME.face.fit(&tile.title, NAME.size, place.width + BETWEEN);
+    (!tile.title.is_empty()).then(|| NAME.text(text, middle, Anchor::Middle))
 }
 
 /// The sides at which a tile has numbers.
@@ -446,6 +477,7 @@ impl Section {
             match tile.content {
                 // Bars stand on the axis.
                 Content::Histogram(_) => [x, [0.0, y[1]]],
+                Content::Polar(..) => extent.unwrap_or([[-1.0, 1.0]; 2]),
                 _ => [x, y],
             }
         };
@@ -458,6 +490,7 @@ impl Content {
     pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
         match self {
             Self::Cells(cells, _) => cells.extent(),
+            Self::Polar(cells, ..) => cells.extent().map(|[_, tilts]| [Polar::range(tilts[1]); 2]),
             Self::Cloud(cloud) => cloud.extent(),
             Self::Histogram(histogram) => histogram.extent(),
         }

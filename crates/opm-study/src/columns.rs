@@ -391,17 +391,16 @@ impl PointColumns {
 }
 
 /// The coordinate that is vertical in a picture of the workspace: the tilt if it varies, else the
-/// slowest varying one of the upper section, else of the lower.
+/// slowest varying one of the upper section, else of the lower. A plane mechanism shows its plane so, at held angles.
 fn tallest(grid: &Grid) -> usize {
     let several = |axis: &Axis| axis.count > 1;
-    let upper = &grid.axes()[grid.lower()..];
-    let kinds = grid.coordinates()[grid.lower()..].iter().map(|coordinate| coordinate.kind);
+    let kinds = grid.coordinates().iter().map(|coordinate| coordinate.kind);
     let is_tilt = |kind| matches!(kind, Some(CoordinateKind::Xi | CoordinateKind::Tilt));
-    let tilt = kinds.zip(upper).position(|(kind, axis)| is_tilt(kind) && several(axis));
-    match tilt.or_else(|| upper.iter().rposition(several)) {
-        Some(number) => grid.lower() + number,
-        None => grid.axes().iter().position(several).unwrap_or(0),
-    }
+    let tilt = kinds.zip(grid.axes()).position(|(kind, axis)| is_tilt(kind) && several(axis));
+    let upper = || grid.axes()[grid.lower()..].iter().rposition(several);
+    tilt.or_else(|| upper().map(|number| grid.lower() + number))
+        .or_else(|| grid.axes().iter().rposition(several))
+        .unwrap_or(0)
 }
 
 #[cfg(all(test, feature = "recording"))]

@@ -46,7 +46,7 @@ impl Slices<'_> {
             let x = x.get(point) / a.factor;
             let y = if bar { 0.0 } else { y.get(point) / b.factor };
             match content {
-                Content::Cells(cells, _) => {
+                Content::Cells(cells, _) | Content::Polar(cells, ..) => {
                     let value = color.as_ref().map_or(0.0, |color| color[point]);
                     cells.push(x, y, value);
                 }

@@ -1,6 +1,6 @@
 //! Tiles with their titles, their lines and their legend: a section of a picture.
 
-use super::{Lines, Seen, Slices};
+use super::{Lines, Seen, Slices, cells as cells_of};
 use crate::failure::Failure;
 use crate::plot::choice::columns;
 use crate::plot::grid::is_home;
@@ -13,6 +13,8 @@ use opm_plot::{Bar, Cells, Content, Measure, Paint, Scale, Section, Tile};
 use opm_study::recording::class_color;
 use opm_workspace::{Axis, mask_boundary};
 
+/// Largest number of values that a title lists.
+const MOST_LISTED: usize = 3;
 /// Largest number of aspects that a legend names.
 const MOST_NAMED: usize = 12;
 /// Share of the colour scale that the slices take: the brightest colours are not used.
@@ -24,18 +26,28 @@ impl Slices<'_> {
     /// The finished tiles.
     pub fn section(mut self, source: &Source<'_>) -> Section {
         let coordinates = &self.layout.coordinates;
-        let name = |number: usize, value: u64| {
+        // A coordinate with its value, or with the values of slices that are equal: the first and the last of many.
+        let named = |number: usize, values: &[u64]| {
             let c = &coordinates[number];
             let (measure, factor) = source.measure(&c.name, c.quantity, Rate::Position);
-            let value = c.axis.as_ref().map_or(0.0, |axis| rounded(axis, value)) / factor;
-            format!("{} = {} {}", c.name, value_label(value), measure.unit.symbol)
+            let value = |value: &u64| {
+                let value = c.axis.as_ref().map_or(0.0, |axis| rounded(axis, *value)) / factor;
+                value_label(value)
+            };
+            let listed = match values {
+                [first, .., last] if values.len() > MOST_LISTED => {
+                    format!("{} … {}", value(first), value(last))
+                }
+                all => all.iter().map(value).collect::<Vec<_>>().join(", "),
+            };
+            format!("{} = {listed} {}", c.name, measure.unit.symbol)
         };
         let kind = self.layout.kind;
         let reached = if self.causes.is_some() { "rejected" } else { kind.member_name() };
         let reached = format!("{}{}", reached[..1].to_uppercase(), &reached[1..]);
         let mut title = format!("{reached} {}", kind.point_name());
         if !self.held.is_empty() {
-            let held: Vec<_> = self.held.iter().map(|&(n, value)| name(n, value)).collect();
+            let held: Vec<_> = self.held.iter().map(|&(n, value)| named(n, &[value])).collect();
             title = format!("{reached} at {}", held.join(", "));
         }
         let positions = self.view.iter().all(|seen| coordinates[seen.number].axis.is_some());
@@ -51,13 +63,13 @@ impl Slices<'_> {
         let marks: Vec<Option<[f64; 2]>> =
             self.tiles.iter().map(|(value, _)| self.mark(*value)).collect();
         let total = self.varied.and_then(|v| coordinates[v].axis.as_ref()).map_or(1, |a| a.count);
-        let cells = self.tiles.iter().any(|tile| matches!(tile.1, Content::Cells(..)));
+        let cells = self.tiles.iter().any(|tile| cells_of(&tile.1).is_some());
         let mut curves = std::mem::take(&mut self.curves).into_iter();
         let tiles = std::mem::take(&mut self.tiles);
         let tile = |((value, content), mark): ((u64, Content), Option<[f64; 2]>)| {
             let share = COLORS * value as f64 / (total - 1).max(1) as f64;
             let content = match content {
-                Content::Cells(mut cells, paint) => {
+                Content::Cells(mut cells, paint) | Content::Polar(mut cells, paint, _) => {
                     if let Some(lines) = self.boundary(&cells) {
                         cells.surround(lines);
                     }
@@ -69,12 +81,17 @@ impl Slices<'_> {
                         Paint::Plain(_) => Paint::Plain(Map::Viridis.color(share)),
                         values => values,
                     };
-                    Content::Cells(cells, paint)
+                    match self.polar {
+                        Some(turn) => Content::Polar(cells, paint, turn),
+                        None => Content::Cells(cells, paint),
+                    }
                 }
                 other => other,
             };
             Tile {
-                title: self.varied.map_or_else(String::new, |number| name(number, value)),
+                title: self.varied.map_or_else(String::new, |number| {
+                    named(number, self.equal.get(&value).map_or(&[value], |values| values))
+                }),
                 x: a.measure.clone(),
                 y: if bar { Measure::nothing() } else { b.measure.clone() },
                 content,
@@ -114,7 +131,7 @@ impl Slices<'_> {
         let most = columns(self.tiles.len());
         let [a, b] = self.view.each_ref().map(|seen| &self.layout.coordinates[seen.number]);
         let (Some(x), Some(y)) = (&a.axis, &b.axis) else { return most };
-        if a.quantity != b.quantity {
+        if a.quantity != b.quantity || self.polar.is_some() {
             return most;
         }
         let steep = (y.max - y.min) / (x.max - x.min).max(f64::MIN_POSITIVE);
@@ -225,8 +242,5 @@ pub fn rounded(axis: &Axis, number: u64) -> f64 {
 
 /// The classes of the cells of a tile.
 fn classes(content: &Content) -> Option<Vec<Option<usize>>> {
-    match content {
-        Content::Cells(cells, _) => cells.classes(),
-        _ => None,
-    }
+    cells_of(content)?.classes()
 }

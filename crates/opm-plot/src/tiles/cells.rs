@@ -44,7 +44,7 @@ impl Spacing {
 }
 
 /// The cells of a plane grid that were hit by points. [`TileFigure`](crate::TileFigure) has an example.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cells {
     spacing: [Spacing; 2],
     /// The number of grid values that share a cell, along both axes.
@@ -61,7 +61,7 @@ pub struct Cells {
 }
 
 /// The values that colour cells.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum CellValues {
     None,
     /// The sum over the hits of each cell.
@@ -199,6 +199,19 @@ impl Cells {
             },
             Paint::Values(..) | Paint::Classes(_) => vec![self.image(frame, hit, paint)],
         };
+        shapes.extend(self.lines_over(|line, closed| {
+            let mut path = Path::through(line.iter().map(|&[x, y]| frame.at(x, y)));
+            if closed {
+                path.0.push(Step::Close);
+            }
+            path
+        }));
+        shapes
+    }
+
+    /// The lines over the cells, each drawn as a path by `draw`, which is told whether it is closed.
+    pub(super) fn lines_over(&self, draw: impl Fn(&[[f64; 2]], bool) -> Path) -> Vec<Shape> {
+        let mut shapes = Vec::new();
         // Two lines each, which are seen on every background.
         let all = [
             (&self.lines, INK, 1.1, true),
@@ -206,20 +219,44 @@ impl Cells {
             (&self.curves, ALARM, 1.6, false),
         ];
         for (lines, color, width, closed) in all {
-            if lines.is_empty() {
+            let steps: Vec<Step> = lines.iter().flat_map(|line| draw(line, closed).0).collect();
+            if steps.is_empty() {
                 continue;
             }
-            let mut path = Path::default();
-            for line in lines {
-                path.0.extend(Path::through(line.iter().map(|&[x, y]| frame.at(x, y))).0);
-                if closed {
-                    path.0.push(Step::Close);
-                }
-            }
+            let path = Path(steps);
             shapes.push(Shape::Line(path.clone(), Pen::new(WHITE, width + 1.5)));
             shapes.push(Shape::Line(path, Pen::new(color, width)));
         }
         shapes
+    }
+
+    /// The edges of cells that were hit, along both axes, with one for neighbours in a row.
+    pub(super) fn runs(&self) -> Vec<[[f64; 2]; 2]> {
+        let mut found = Vec::new();
+        for (j, row) in self.counts.chunks(self.cells[0]).enumerate() {
+            let mut start = 0;
+            for run in row.chunk_by(|a, b| (*a > 0) == (*b > 0)) {
+                let end = start + run.len();
+                if run[0] > 0 {
+                    let ends = [(0, [start, end]), (1, [j, j + 1])];
+                    found.push(ends.map(|(axis, ends)| ends.map(|i| self.edge(axis, i))));
+                }
+                start = end;
+            }
+        }
+        found
+    }
+
+    /// The colour at a point; `None` outside of what was hit.
+    pub(super) fn color_at(&self, at: [f64; 2], paint: &Paint) -> Option<Color> {
+        let [i, j] = [0, 1].map(|axis| self.spacing[axis].nearest(at[axis]));
+        self.color(j? / self.together[1] * self.cells[0] + i? / self.together[0], paint)
+    }
+
+    /// The first and the last value along the first axis.
+    pub(super) fn first_range(&self) -> [f64; 2] {
+        let spacing = self.spacing[0];
+        [spacing.first, spacing.value(spacing.count.saturating_sub(1))]
     }
 
     /// The cells as boxes, with one box for neighbours in a row; `None` if there are too many.

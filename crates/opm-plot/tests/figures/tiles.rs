@@ -92,6 +92,65 @@ fn cells_are_where_the_axes_say() {
     }
 }
 
+/// The direction is the angle around the middle, and the tilt the distance from it, in pictures of one colour and of many. A
+/// boundary along the first and last direction, which are the same, is none.
+#[test]
+fn directions_go_around_and_tilts_outwards() {
+    let grid = || [Spacing::between([-180.0, 180.0], 73), Spacing::between([0.0, 60.0], 31)];
+    let hit = |mut cells: Cells| {
+        for (direction, tilt) in (70..=110).step_by(5).flat_map(|d| (20..=40).map(move |t| (d, t)))
+        {
+            cells.push(f64::from(direction), f64::from(tilt), 1.0);
+        }
+        // What the circles reach to.
+        cells.push(-90.0, 60.0, 1.0);
+        cells.surround(vec![vec![[-180.0, 10.0], [-180.0, 50.0], [180.0, 50.0], [180.0, 10.0]]]);
+        cells
+    };
+    let drawn = |content: Content| {
+        let tile = Tile { mark: Some([0.0, 0.0]), ..tile("tilts", content) };
+        figure(vec![section(vec![tile])]).draw(None).unwrap()
+    };
+    let [x, y] = grid();
+    let plain = drawn(Content::Polar(hit(Cells::plain(x, y)), Paint::Plain([0, 114, 178]), 360.0));
+    let svg = text(&plain);
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let cross = pieces(paths(class(document.root(), "mark")[0])[0]);
+    let middle = [0, 1].map(|i| 0.5 * (cross[0][0][i] + cross[0][1][i]));
+    let all = pieces(paths(class(document.root(), "points")[0])[0]);
+    let polar = |[x, y]: [f64; 2]| {
+        let [right, up] = [x - middle[0], middle[1] - y];
+        [up.atan2(right).to_degrees(), right.hypot(up)]
+    };
+    // The upper edge of the last cell is at a tilt of 61.
+    let furthest = all.iter().flatten().map(|p| polar(*p)[1]).fold(0.0, f64::max);
+    let scale = 61.0 / furthest;
+    for [direction, radius] in all.iter().flatten().map(|p| polar(*p)).filter(|p| p[0] > 0.0) {
+        assert!((67.3..=112.7).contains(&direction), "{direction}");
+        assert!((18.8..=41.2).contains(&(scale * radius)), "{}", scale * radius);
+    }
+    // Once around at a tilt of 50, and once at 10, without a line between them.
+    let line = pieces(paths(class(document.root(), "points")[0])[1]).concat();
+    let tilts: Vec<f64> = line.iter().map(|p| scale * polar(*p)[1]).collect();
+    assert!(tilts.iter().all(|t| (t - 50.0).abs() < 0.2 || (t - 10.0).abs() < 0.2), "{tilts:?}");
+    assert!(tilts.len() > 200);
+
+    // The same in a PNG of cells with values.
+    let values = Paint::Values(Map::Viridis, [0.0, 1.0]);
+    let values = drawn(Content::Polar(hit(Cells::with_values(x, y)), values, 360.0));
+    let png = decoded(&values.to_png().unwrap());
+    let at = |direction: f64, tilt: f64| {
+        let (sin, cos) = direction.to_radians().sin_cos();
+        let [x, y] = [middle[0] + tilt / scale * cos, middle[1] - tilt / scale * sin];
+        let [column, row] = [x, y].map(|v| (2.0 * v).round() as usize);
+        png.pixels[row * png.size[0] as usize + column]
+    };
+    let yellow = Map::Viridis.color(1.0);
+    assert_eq!(at(97.0, 27.0), yellow);
+    assert_eq!([at(55.0, 27.0), at(97.0, 45.0), at(-97.0, 27.0)], [[255; 3]; 3]);
+}
+
 #[test]
 fn too_many_cells_become_an_image() {
     let wide = Spacing { first: 0.0, step: 1.0, count: 300 };
