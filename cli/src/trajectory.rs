@@ -1,5 +1,6 @@
 //! `opm trajectory`: a motion as the joints follow it.
 
+mod overshoot;
 mod summary;
 mod table;
 
@@ -141,6 +142,7 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     let manipulator = loaded.compile()?;
     let (motion, given_duration) = motion(args, (&loaded, &manipulator))?;
     motion.note_doubts(output);
+    overshoot::note(&motion, (&loaded, &manipulator), output);
     let mut setup = args.setup.options(None)?;
     if args.efforts {
         // Motors carry the mechanism.

@@ -699,3 +699,23 @@ fn columns_of_one_name_are_refused() {
         opm(&["ik", &file, "--pose", "x=0.01"]).text();
     }
 }
+
+/// Points that turn sharply: the platform goes lower than any of them, and that is told. Between gentle points it is not.
+#[test]
+fn a_spline_beyond_its_points_is_told() {
+    let folder = Folder::new();
+    let told = |values: &str| {
+        let text = format!("t,z [mm]\n{values}");
+        let file = folder.write("pick.csv", &text);
+        let run = opm(&["trajectory", "delta", "--motion", &file]);
+        run.text();
+        run.stderr.clone()
+    };
+    let sharp = told("0,-1000\n0.2,-1000\n0.4,-1100\n0.6,-1100\n0.8,-1000\n1,-1000\n");
+    assert!(
+        sharp.contains("z goes to -11") && sharp.contains("mm below its lowest point"),
+        "{sharp}"
+    );
+    let gentle = told("0,-1000\n0.5,-1050\n1,-1100\n");
+    assert!(!gentle.contains("goes to"), "{gentle}");
+}
