@@ -2,6 +2,7 @@
 
 mod choice;
 mod cloud;
+mod demand;
 pub mod ending;
 mod grid;
 mod inscribed;
@@ -14,6 +15,7 @@ mod singular;
 mod sized;
 mod slices;
 mod source;
+mod titles;
 mod traces;
 mod violations;
 mod workspace;

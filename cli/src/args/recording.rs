@@ -14,14 +14,16 @@ use std::path::PathBuf;
 /// A mechanism that does not decompose is drawn, too, at home.
 ///
 /// The picture of a motion shows poses, imaginary joints, actuated joints and their velocities over time;
-/// each value is beside its velocity. Spans in which the mechanism cannot follow are shaded. The picture of
-/// a workspace shows slices, and the values that the imaginary joints take if they were recorded
-/// (`opm workspace --scalars`). Numbers are in the units of the mechanism file, which is part of the
-/// recording. An unfinished .partial file can be drawn too, as far as it was written.
+/// each value is beside its velocity, and its acceleration where one is too large. Limits are dashed, and spans
+/// in which the mechanism cannot follow are shaded. The picture of a workspace shows slices, each that is equal
+/// to others once: positions at held angles, and the tilts of a wrist in polar form. It also shows the values
+/// that the imaginary joints take if they were recorded (`opm workspace --scalars`). Numbers are in the units of
+/// the mechanism file, which is part of the recording. An unfinished .partial file can be drawn too, as far as
+/// it was written.
 ///
 /// Pictures stay small: curves of more than 32768 samples are drawn by their extremes in 4096 spans of
-/// time, and a panel of more than 5000 cells or dots becomes an image within the picture. Fonts are part of
-/// the program.
+/// time, and a panel of more than 5000 cells or dots becomes an image within the picture. Texts are
+/// text; a PDF carries what it uses of the fonts, which are part of the program.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -49,7 +49,7 @@ pub fn draw(
         unit: of.0.unit,
         scale: Scale::Linear,
         curves: vec![(0, curve)],
-        levels: vec![],
+        limits: vec![],
     };
     let front = TimeFigure {
         heading: Heading { title: loaded.file.mechanism.name.clone(), lines, notes: vec![] },

@@ -1,9 +1,11 @@
 //! The picture of a motion: all values over time, or over the input of a linkage.
 
+use super::demand;
 use super::label::value_label;
 use super::options::PanelName;
 use super::sized::drawn;
 use super::source::{Rate, ReadStop, Source};
+use super::titles::{axis, shown, title};
 use super::traces::{Group, TOPICS, TopicKind, Trace, skipped, traces};
 use super::violations::{count_of, listed, violations};
 use crate::args::PlotArgs;
@@ -50,7 +52,7 @@ pub fn draw(source: &Source<'_>, args: &PlotArgs) -> Result<Drawing, Failure> {
     if motion.instants == 0 {
         return Err(Failure::work(format!("{}: no sample to draw", source.label)));
     }
-    let figure = motion.figure(&wanted, args)?;
+    let figure = motion.figure(wanted, args)?;
     drawn(args, |size| figure.draw(size))
 }
 
@@ -263,7 +265,7 @@ impl<'a> Motion<'a> {
         self.valid = valid;
     }
 
-    fn figure(self, wanted: &Wanted, args: &PlotArgs) -> Result<TimeFigure, Failure> {
+    fn figure(self, mut wanted: Wanted, args: &PlotArgs) -> Result<TimeFigure, Failure> {
         let heading = self.heading();
         let Self { source, input, over, range, traces, mut invalid, .. } = self;
         let mut all: Vec<Trace> = traces.into_iter().flatten().flatten().collect();
@@ -274,6 +276,11 @@ impl<'a> Motion<'a> {
         });
         let violations = violations(source);
         let mut notes = listed(&violations, count_of(source, &violations));
+        // What is wrong is shown.
+        if args.panels.is_empty() && violations.iter().any(|violation| violation.accelerates) {
+            wanted.rates.push(Rate::Acceleration);
+        }
+        notes.extend(demand::notes(source, &all));
         // Violations between samples are marked too, if they are recorded.
         invalid.extend(violations.iter().map(|violation| [violation.start, violation.end]));
         if !invalid.is_empty() {
@@ -293,7 +300,7 @@ impl<'a> Motion<'a> {
         }
         let held: BTreeSet<Group> = all.iter().map(|trace| trace.group).collect();
         // Rows in order, one for each unit; each has the positions and then their derivatives.
-        let mut rows: BTreeMap<(Group, u8, String), Vec<Trace>> = BTreeMap::new();
+        let mut rows: BTreeMap<(Group, u8, String, &str), Vec<Trace>> = BTreeMap::new();
         for trace in all {
             let named = args.values.is_empty() || args.values.contains(&trace.name);
             if named && wanted.has(trace.group, args) && wanted.takes(&trace) {
@@ -302,7 +309,7 @@ impl<'a> Motion<'a> {
                     Some(Quantity::Angle) => 1,
                     None => 2,
                 };
-                let key = (trace.group, order, trace.unit.clone());
+                let key = (trace.group, order, trace.unit.clone(), shown(&trace));
                 rows.entry(key).or_default().push(trace);
             }
         }
@@ -403,60 +410,19 @@ fn row(source: &Source<'_>, group: Group, traces: Vec<Trace>, rates: &[Rate]) ->
         let (Measure { name, mut unit }, _) =
             source.measure(axis(group, quantity, rate), quantity, rate);
         unit.symbol = symbol.unwrap_or(unit.symbol);
-        let limits = traces.iter().map(|trace| (number(&trace.name), trace.limit));
-        let levels = levels(&limits.collect::<Vec<_>>());
+        let title = title(&traces);
+        let limits = traces.iter().flat_map(|trace| {
+            let limits = demand::limits(source, trace).into_iter().flatten();
+            limits.map(|limit| (number(&trace.name), limit))
+        });
+        let limits = limits.collect();
         let curves = traces.into_iter().map(|trace| (number(&trace.name), trace.curve)).collect();
         let scale = match group {
             Group::Condition => Scale::Logarithmic,
             _ => Scale::Linear,
         };
-        Some(Panel { title: title(group, quantity, rate), name, unit, scale, curves, levels })
+        Some(Panel { title, name, unit, scale, curves, limits })
     };
     let panels = columns.into_iter().map(panel).collect();
     PanelRow { names, panels }
-}
-
-/// The limits of curves in both directions, each once: in the colour of its curve, or in none if several have it.
-fn levels(limits: &[(usize, Option<f64>)]) -> Vec<(Option<usize>, f64)> {
-    let given = || limits.iter().filter_map(|&(curve, limit)| Some((curve, limit?)));
-    let first = |curve: usize, limit: f64| given().find(|of| of.1 == limit) == Some((curve, limit));
-    let each = given().filter(|&(curve, limit)| first(curve, limit)).flat_map(|(curve, limit)| {
-        let alone = given().filter(|of| of.1 == limit).count() == 1;
-        [limit, -limit].map(|level| (alone.then_some(curve), level))
-    });
-    each.collect()
-}
-
-/// The label of an axis.
-fn axis(group: Group, quantity: Option<Quantity>, rate: Rate) -> &'static str {
-    match (rate, quantity) {
-        (Rate::Position, Some(Quantity::Angle)) => "angle",
-        (Rate::Position, Some(Quantity::Length)) => "length",
-        (Rate::Position, None) if group == Group::Condition => "condition",
-        (Rate::Position, None) if group == Group::Efforts => "effort",
-        (Rate::Position, None) => "value",
-        (Rate::Velocity, _) => "velocity",
-        (Rate::Acceleration, _) => "acceleration",
-    }
-}
-
-fn title(group: Group, quantity: Option<Quantity>, rate: Rate) -> String {
-    let what = match (group, quantity) {
-        (Group::Pose, Some(Quantity::Length)) if rate == Rate::Position => "Platform position",
-        (Group::Pose, Some(Quantity::Length)) => "Platform",
-        (Group::Pose, _) => "Platform orientation",
-        (Group::Imaginary, _) => "Imaginary joints",
-        (Group::Actuated, _) => "Actuated joints",
-        (Group::Passive, _) => "Passive joints",
-        (Group::Joints, _) => "Joints",
-        (Group::Condition, _) => "Condition number",
-        (Group::Singularity, _) => "Singularity measures",
-        (Group::Indices, _) => "Indices",
-        (Group::Efforts, _) => "Efforts",
-    };
-    match rate {
-        Rate::Position => what.to_owned(),
-        Rate::Velocity => format!("{what}, velocity"),
-        Rate::Acceleration => format!("{what}, acceleration"),
-    }
 }

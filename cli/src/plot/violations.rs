@@ -13,6 +13,8 @@ const LISTED: usize = 8;
 pub struct Violation {
     pub start: f64,
     pub end: f64,
+    /// Whether a joint's acceleration is too large.
+    pub accelerates: bool,
     /// The violation and its size, in words.
     text: String,
 }
@@ -52,7 +54,8 @@ impl Violation {
             let (measure, factor) = source.measure("", Some(quantity), rate);
             format!(" by {} {}", value_label(amount / factor), measure.unit.symbol)
         });
-        Some(Self { start, end, text: format!("{leg}{what}{by}") })
+        let accelerates = word("kind") == Some("acceleration");
+        Some(Self { start, end, accelerates, text: format!("{leg}{what}{by}") })
     }
 }
 
@@ -75,7 +78,7 @@ pub fn count_of(source: &Source<'_>, violations: &[Violation]) -> usize {
 /// Notes that explain the marks; `all` is the number of all violations.
 pub fn listed(violations: &[Violation], all: usize) -> Vec<String> {
     let note = |(number, violation): (usize, &Violation)| {
-        let Violation { start, end, text } = violation;
+        let Violation { start, end, text, .. } = violation;
         let [start, end] = [*start, *end].map(|time| label(time, 3));
         match start == end {
             true => format!("{number}: at {start} s, {text}"),

@@ -220,7 +220,12 @@ fn indices_are_drawn_by_their_units() {
     assert_legible(&svg);
     let document = Document::parse(&svg).unwrap();
     let panels = class(document.root(), "panel");
-    assert!(titles(&document).iter().all(|title| ["Indices", "Efforts"].contains(title)));
+    // Each panel is named by what it shows.
+    let found = titles(&document);
+    for title in ["Transmission indices", "Efforts of joints", "Distance of the nearest bodies"] {
+        assert!(found.contains(&title), "{title:?} in {found:?}");
+    }
+    assert!(!found.contains(&"Indices"));
     let axes: Vec<&str> = class(document.root(), "y-axis").into_iter().map(label).collect();
     let table = folder.arg("table.csv");
     opm(&[&["trajectory", PLANO, "-o", &table], &of[..]].concat()).text();
@@ -233,7 +238,9 @@ fn indices_are_drawn_by_their_units() {
         ("rotational_stiffness", "value (N m/rad)"),
         ("clearance", "length (mm)"),
     ] {
-        let place = axes.iter().position(|found| *found == axis).expect(axis);
+        let has = |panel| class(panel, "curve").into_iter().any(|curve| label(curve) == name);
+        let place = panels.iter().position(|panel| has(*panel)).expect(name);
+        assert_eq!(axes[place], axis, "{name}");
         let curve = named(panels[place], "curve", name);
         let points = pieces(paths(curve)[0]).concat();
         let column = rows[0].iter().position(|found| *found == name).expect(name);
@@ -252,9 +259,9 @@ fn indices_are_drawn_by_their_units() {
     // With everything else they are below it, and a name selects one.
     let (_, svg) = plot(&folder, &file, &[]);
     let document = Document::parse(&svg).unwrap();
-    assert_eq!(titles(&document).last(), Some(&"Efforts"));
+    assert!(titles(&document).ends_with(&found));
     let (_, svg) = plot(&folder, &file, &["--values", "effort.S1"]);
-    assert_eq!(titles(&Document::parse(&svg).unwrap()), ["Efforts"]);
+    assert_eq!(titles(&Document::parse(&svg).unwrap()), ["Efforts of joints"]);
     let without = motion(&folder, &["--motion", MOTION, "--rate", "10"]);
     let none = opm(&["plot", &without, "-o", &folder.arg("none.svg"), "--panels", "indices"]);
     none.fails_with_one_line(2, &["--panels: indices: ", "record with `opm trajectory --indices`"]);
@@ -270,7 +277,7 @@ fn efforts_are_drawn_with_their_limits() {
     let (_, svg) = plot(&folder, &file, &["--panels", "efforts"]);
     assert_legible(&svg);
     let document = Document::parse(&svg).unwrap();
-    assert!(titles(&document).iter().all(|title| *title == "Efforts"));
+    assert!(titles(&document).iter().all(|title| *title == "Efforts of joints"));
     let axes: Vec<&str> = class(document.root(), "y-axis").into_iter().map(label).collect();
     let place = axes.iter().position(|axis| *axis == "effort (N)").unwrap();
     let panel = class(document.root(), "panel")[place];
@@ -286,8 +293,8 @@ fn efforts_are_drawn_with_their_limits() {
         let value: f64 = row[column].parse().unwrap();
         assert!((up(y) - value).abs() < 0.05, "{} {value}", up(y));
     }
-    let levels = class(panel, "level").into_iter().map(|level| {
-        let ends = pieces(paths(level)[0]).concat();
+    let levels = paths(class(panel, "limits")[0]).into_iter().map(|level| {
+        let ends = pieces(level).concat();
         assert_eq!(ends.len(), 2);
         assert!((ends[0][1] - ends[1][1]).abs() < 1e-9);
         up(ends[0][1]).round() as i32
@@ -433,6 +440,39 @@ fn slices_are_those_that_papers_print() {
     assert_eq!(found, ["psi = −120 … 120 deg"]);
     assert!(svg.contains("Slices that are equal are drawn once."));
     assert_legible(&svg);
+}
+
+/// Limits are dashed in every panel that has any, what is used of them is told, and accelerations are drawn where they are too
+/// large.
+#[test]
+fn demands_are_shown_against_limits() {
+    let folder = Folder::new();
+    let limits = |acceleration: &str| {
+        let file = motion(
+            &folder,
+            &["--motion", MOTION, "--set", "leg1.max_rate.S=100mm", "--set", acceleration],
+        );
+        plot(&folder, &file, &[]).1
+    };
+    let svg = limits("leg1.max_acceleration.S=100mm");
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    // The motion reaches 75.4 mm/s and 136.4 mm/s².
+    let told = texts(&document).into_iter().find(|text| text.starts_with("S1: ")).unwrap();
+    assert!(told.ends_with(", 75 % of its max_rate, 136 % of its max_acceleration"), "{told}");
+    for title in ["Actuated joints, velocity", "Actuated joints, acceleration"] {
+        let panel = named(document.root(), "panel", title);
+        let up = up(panel);
+        let lines = class(panel, "limits");
+        let lines = paths(lines[0]).into_iter().map(|line| up(pieces(line)[0][0][1]));
+        let mut found: Vec<f64> = lines.map(f64::round).collect();
+        found.sort_by(f64::total_cmp);
+        assert_eq!(found, [-100.0, 100.0], "{title}");
+    }
+    // Where it is not, there is no third column.
+    let svg = limits("leg1.max_acceleration.S=200mm");
+    let document = Document::parse(&svg).unwrap();
+    assert!(!titles(&document).contains(&"Actuated joints, acceleration"));
 }
 
 /// The value of the colour is stored with other values, and colours the slices.

@@ -19,7 +19,7 @@
 //!     unit: Unit { symbol: "deg".into(), steps: Steps::Degrees, resolution: 1e-6 },
 //!     scale: Scale::Linear,
 //!     curves: vec![(0, curve)],
-//!     levels: vec![],
+//!     limits: vec![(0, 45.0), (0, -45.0)],
 //! };
 //! let figure = TimeFigure {
 //!     heading: Heading { title: "A motion".into(), ..Heading::default() },

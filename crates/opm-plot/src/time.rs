@@ -48,9 +48,8 @@ pub struct Panel {
     pub scale: Scale,
     /// The curves, each with the number of its name in [`PanelRow::names`].
     pub curves: Vec<(usize, Curve)>,
-    /// Values that are marked by dashed lines from side to side, limits for instance: each in the colour of the curve with this
-    /// number, or in that of the frame.
-    pub levels: Vec<(Option<usize>, f64)>,
+    /// Limits of curves, by the number of the name: dashed lines, where they are no farther from the curves than these are high.
+    pub limits: Vec<(usize, f64)>,
 }
 
 /// How values are laid out along an axis.
@@ -220,18 +219,6 @@ impl TimeFigure {
             shapes.push(Shape::Area(area, SHADE));
         }
         shapes.push(frame.grid());
-        for (number, value) in &panel.levels {
-            let color = number.map_or(INK, |number| line(number).0);
-            let pen = Pen { color, width: 1.2, dashes: &[6.0, 4.0] };
-            let ends = x.range.map(|end| frame.at(end, *value));
-            let label = number.and_then(|number| row.names.get(number).cloned());
-            let shapes_of = vec![Shape::Line(Path::through(ends), pen)];
-            shapes.push(Shape::Group {
-                kind: "level",
-                label: label.unwrap_or_default(),
-                shapes: shapes_of,
-            });
-        }
         for (number, curve) in &panel.curves {
             let (color, dashes) = line(*number);
             let pen = Pen { color, width: 1.8, dashes };
@@ -239,6 +226,7 @@ impl TimeFigure {
             let label = row.names.get(*number).cloned().unwrap_or_default();
             shapes.push(Shape::Group { kind: "curve", label, shapes: shapes_of });
         }
+        shapes.extend(panel.limits(&frame));
         shapes.extend(self.marks(&frame, first));
         shapes.extend(frame.border());
         shapes.push(frame.beside(Some(&y.title(&panel.name, &panel.unit)), left));
@@ -295,12 +283,41 @@ fn share(height: f64, least: &[f64], natural: &[f64]) -> Vec<f64> {
 }
 
 impl Panel {
+    /// The range of the curves, and of the limits that are near.
+    fn range(&self) -> Option<[f64; 2]> {
+        let union = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let values = self.curves.iter().filter_map(|(_, curve)| curve.range()).reduce(union)?;
+        let span = values[1] - values[0];
+        let near = |limit: &f64| (values[0] - span..=values[1] + span).contains(limit);
+        let limits = self.limits.iter().map(|(_, limit)| *limit).filter(near);
+        Some(limits.fold(values, |range, limit| union(range, [limit; 2])))
+    }
+
+    /// The limits that are seen. One of several curves is neither's colour.
+    fn limits(&self, frame: &Frame<'_>) -> Option<Shape> {
+        const DASHES: &[f64] = &[5.0, 3.5];
+        let mut shapes: Vec<Shape> = Vec::new();
+        for (place, &(number, limit)) in self.limits.iter().enumerate() {
+            let same = |other: &(usize, f64)| other.1 == limit;
+            let [low, high] = frame.y.range;
+            let seen = (low..=high).contains(&limit) && frame.y.holds(limit);
+            if self.limits[..place].iter().any(same) || !seen {
+                continue;
+            }
+            let shared = self.limits[place..].iter().filter(|other| same(other)).count() > 1;
+            let color = if shared { INK } else { line(number).0 };
+            let [x, y] = frame.at(frame.x.range[0], limit);
+            let path = Path::through([[x, y], [frame.place.right(), y]]);
+            shapes.push(Shape::Line(path, Pen { color, width: 1.1, dashes: DASHES }));
+        }
+        let label = String::new();
+        (!shapes.is_empty()).then_some(Shape::Group { kind: "limits", label, shapes })
+    }
+
     /// The vertical axis in a panel of this height.
     fn axis(&self, height: f64) -> Axis {
-        let union = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         let curves = self.curves.iter().map(|(_, curve)| curve);
-        let levels = self.levels.iter().map(|(_, value)| [*value; 2]);
-        let values = curves.clone().filter_map(Curve::range).chain(levels).reduce(union);
+        let values = self.range();
         let positive = curves.filter_map(Curve::smallest_positive).reduce(f64::min);
         let most = ticks_in(height);
         match (self.scale, values, positive) {

@@ -31,7 +31,7 @@ fn unit(symbol: &str) -> Unit {
 
 fn panel(symbol: &str, curves: Vec<(usize, Curve)>) -> Panel {
     let (title, name) = (format!("Panel in {symbol}"), "value".to_owned());
-    Panel { title, name, unit: unit(symbol), scale: Scale::Linear, curves, levels: vec![] }
+    Panel { title, name, unit: unit(symbol), scale: Scale::Linear, curves, limits: vec![] }
 }
 
 fn row(names: &[&str], panels: Vec<Option<Panel>>) -> PanelRow {
@@ -157,6 +157,27 @@ fn gaps_part_a_curve_and_single_samples_are_seen() {
     let lengths: Vec<usize> = pieces(found[0]).iter().map(Vec::len).collect();
     assert_eq!(lengths, [50, 10, 128]);
     assert_eq!(pieces(found[1]).len(), 1, "sample 71 is a dot");
+}
+
+/// Limits that are near are dashed lines at their values; one that is far away would leave no room for the curves.
+#[test]
+fn limits_are_dashed_where_they_are_near() {
+    let mut limited = panel("mm", vec![(0, curve(|i| value(0, i))), (1, curve(|i| value(0, i)))]);
+    limited.limits = vec![(0, 60.0), (1, 75.0), (0, -45.0), (1, -45.0), (0, 4000.0)];
+    let svg = text(&figure(vec![row(&["x", "y"], vec![Some(limited)])]).draw(None).unwrap());
+    assert_legible(&svg);
+    let document = Document::parse(&svg).unwrap();
+    let panel = named(document.root(), "panel", "Panel in mm");
+    let (up, lines) = (up(panel), class(panel, "limits"));
+    let lines = paths(lines[0]);
+    let found: Vec<f64> = lines.iter().map(|line| up(pieces(*line)[0][0][1])).collect();
+    for (found, expected) in found.iter().zip([60.0, 75.0, -45.0]) {
+        assert!((found - expected).abs() < 0.5, "{found} {expected}");
+    }
+    assert_eq!(found.len(), 3);
+    let colors: Vec<_> = lines.iter().map(|line| line.attribute("stroke")).collect();
+    assert!(colors[0] != colors[1] && colors[2] != colors[0] && colors[2] != colors[1]);
+    assert!(lines.iter().all(|line| line.attribute("stroke-dasharray").is_some()));
 }
 
 #[test]
