@@ -138,6 +138,9 @@ def test_a_script_shows_the_recording_in_rerun(opm, recordings, name):
     recorded = Recorded(path)
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)]
     plotted = [tuple(map(ast.literal_eval, call.args)) for call in calls if call.func.id == "curves"]
+    colour = next(node for node in tree.body if isinstance(node, ast.Assign) and node.targets[0].id == "COLOURS")
+    colours = ast.literal_eval(colour.value)
+    assert len(set(colours)) == len(colours) >= 7
     for _, topic, schema, names in plotted:
         descriptor = recorded.topics[topic][0][1].DESCRIPTOR
         assert descriptor.full_name == schema
@@ -150,6 +153,10 @@ def test_a_script_shows_the_recording_in_rerun(opm, recordings, name):
     saved = path.with_suffix(".rrd")
     subprocess.run([sys.executable, script, saved], check=True)
     assert saved.stat().st_size > 1000
+    # Times are durations from the start on, not dates of 1970.
+    command = [sys.executable, "-m", "rerun_cli", "rrd", "print", "-vv", saved]
+    printed = subprocess.run(command, capture_output=True, text=True).stdout
+    assert "index_name: message_log_time" in printed and "Duration(ns)" in printed
 
 
 def test_what_has_no_layout(opm, recordings, tmp_path):

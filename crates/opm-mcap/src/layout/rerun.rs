@@ -12,7 +12,10 @@ const FROM: [f64; 3] = [1.7, -1.7, 1.2];
 
 /// The beginning of every script.
 const HEAD: &str = r#"
+import subprocess
 import sys
+import tempfile
+import uuid
 from pathlib import Path
 
 import rerun as rr
@@ -22,19 +25,23 @@ from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMa
 
 BOX = "/box"
 GREY = [140, 140, 140]
+# Those of Okabe and Ito, which people with any kind of colour vision tell apart; darker where there are more curves.
+COLOURS = [(0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (86, 180, 233), (230, 159, 0), (240, 228, 66)]
 
 
 def curves(title, topic, schema, names):
     """A plot of some fields of the messages of a topic."""
 
-    def line(field, name):
+    def line(number, field, name):
         source = ComponentSourceKind.SourceComponent
         value = VisualizerComponentMapping(
             "Scalars:scalars", source, source_component=f"{schema}:message", selector=f".{field}"
         )
-        return rr.SeriesLines(names=name).visualizer(mappings=[value])
+        dark = 0.6 ** (number // len(COLOURS))
+        colour = [round(dark * part) for part in COLOURS[number % len(COLOURS)]]
+        return rr.SeriesLines(names=name, colors=[colour]).visualizer(mappings=[value])
 
-    lines = [line(field, name) for field, name in names.items()]
+    lines = [line(number, *field) for number, field in enumerate(names.items())]
     return rrb.TimeSeriesView(name=title, origin="/", contents=topic, overrides={topic: lines})
 
 
@@ -43,6 +50,18 @@ def space(title, topics, eye, target):
     return rrb.Spatial3DView(
         name=title, origin="/", contents=topics, eye_controls=rrb.EyeControls3D(position=eye, look_target=target)
     )
+
+
+def load(recording, name, run):
+    """Loads a recording, whose times are durations from its start on; as times of day where Rerun cannot convert it."""
+    with tempfile.TemporaryDirectory() as folder:
+        converted = Path(folder) / "recording.rrd"
+        command = [sys.executable, "-m", "rerun_cli", "mcap", "convert", recording, "-o", converted]
+        options = ["--timeline-type", "duration", "--application-id", name, "--recording-id", run]
+        if subprocess.run([*command, *options], capture_output=True).returncode == 0:
+            rr.log_file_from_contents(converted, converted.read_bytes())
+        else:
+            rr.log_file_from_path(recording)
 
 
 "#;
@@ -55,12 +74,13 @@ blueprint = rrb.Blueprint(
     rrb.SelectionPanel(state="collapsed"),
     rrb.TimePanel(state="collapsed", timeline="message_log_time"),
 )
-rr.init(name)
+run = uuid.uuid4().hex
+rr.init(name, recording_id=run)
 if len(sys.argv) > 1:
     rr.save(sys.argv[1], default_blueprint=blueprint)
 else:
     rr.spawn(default_blueprint=blueprint)
-rr.log_file_from_path(recording)
+load(recording, name, run)
 for frame, low, high, labels in boxes:
     sizes = [b - a for a, b in zip(low, high)]
     box = rr.Boxes3D(mins=[low], sizes=[sizes], colors=[GREY], fill_mode="majorwireframe")
