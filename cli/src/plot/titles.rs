@@ -32,6 +32,7 @@ pub fn shown(trace: &Trace) -> &'static str {
         Some(Index::Payload | Index::PayloadMoment | Index::PayloadBall) => "Payload",
         Some(Index::Stiffness | Index::RotationalStiffness) => "Least stiffness",
         Some(Index::NaturalFrequency) => "Lowest natural frequency",
+        Some(Index::Acceleration | Index::AngularAcceleration) => "Acceleration in every direction",
         Some(Index::Clearance) => "Distance of the nearest bodies",
         None => "Indices",
     }
