@@ -56,6 +56,7 @@ impl<'a> Target<'a> {
         };
         if let Self::Recording(_) = target {
             let options = [
+                ("--reactions", args.reactions, "a recording has none"),
                 ("--rates", args.rates, "a recording has them anyway"),
                 ("--accelerations", args.accelerations, "a recording has them anyway"),
                 ("--units", args.units == TableUnits::File, "a recording is in metres and radians"),
@@ -144,15 +145,19 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     motion.note_doubts(output);
     overshoot::note(&motion, (&loaded, &manipulator), output);
     let mut setup = args.setup.options(None)?;
-    if args.efforts {
+    if args.reactions && setup.springs.is_none() {
+        let problem = "legs share a load by how much they give way; give --link-stiffness";
+        return Err(Failure::flag("--reactions", problem));
+    }
+    if args.efforts || args.reactions {
         // Motors carry the mechanism.
         setup.gravity = setup.gravity.or(Some(Gravity::default()));
     }
     let limited = |&c: &usize| manipulator.coordinates()[c].max_effort.is_some();
     let pushed = args.time_optimal && manipulator.actuated().iter().any(limited);
-    let used = args.indices || args.efforts || pushed && setup.springs.is_none();
+    let used = args.indices || args.efforts || args.reactions || pushed && setup.springs.is_none();
     if setup != SetupOptions::default() && !used {
-        let problem = "nothing uses it; --indices and --efforts do, and --time-optimal uses loads where joints have a max_effort";
+        let problem = "nothing uses it; --indices, --efforts and --reactions do, and --time-optimal uses loads where joints have a max_effort";
         return Err(Failure::flag(given_setup(&setup), problem));
     }
     let setup = setup.check(&manipulator)?;
@@ -164,6 +169,9 @@ pub fn run(args: &TrajectoryArgs, output: &Output) -> Result<(), Failure> {
     }
     if args.efforts {
         request = request.efforts(&setup);
+    }
+    if args.reactions {
+        request = request.reactions(&setup);
     }
     let trajectory = request.trajectory()?;
     if let Some(path) = target.path() {

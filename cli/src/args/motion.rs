@@ -89,11 +89,13 @@ pub struct LinkageArgs {
 /// as fast as the limits of rates, accelerations and efforts (max_effort) in the mechanism file let it. Every actuated joint needs a
 /// max_acceleration or a max_effort. Efforts are those of --efforts, with the same gravity and --wrench.
 ///
-/// --indices needs -o. --wrench, --gravity and --link-stiffness are those of `opm analyze`, and need --indices or --efforts.
+/// --indices needs -o. --wrench, --gravity and --link-stiffness are those of `opm analyze`, and need --indices, --efforts or
+/// --reactions.
 ///
 /// --efforts gives what a motor is bought by: the peak and the root mean square of each actuator's effort along the motion, and its
 /// power, with the inertia and the weight of all bodies (docs/dynamics.md). Masses are those of [bodies] in the file, or follow from
-/// the shapes; gravity is 9.81 m/s² along -z if --gravity does not say otherwise.
+/// the shapes; gravity is 9.81 m/s² along -z if --gravity does not say otherwise. --reactions gives what bearings and links are bought by: what
+/// passes through each joint, also of overconstrained legs, which share it by their stiffness (--link-stiffness, --joint-stiffness).
 ///
 /// The recording (.mcap) has joints, rates, accelerations, imaginary joints, pose and condition number to plot,
 /// and the mechanism as solid bodies: /scene and /tf in Foxglove and Lichtblick, the points of /bodies in
@@ -139,7 +141,11 @@ pub struct TrajectoryArgs {
     /// table or the recording
     #[arg(help_heading = heading::WRITTEN, long, conflicts_with = "indices")]
     pub efforts: bool,
-    /// What indices and efforts are computed with.
+    /// What passes through each joint in the motion, with --link-stiffness: its largest force and moment, and reaction.NAME.FX
+    /// ... MZ in the table
+    #[arg(help_heading = heading::WRITTEN, long)]
+    pub reactions: bool,
+    /// What indices, efforts and reactions are computed with.
     #[command(flatten)]
     pub setup: SetupArgs,
     /// Units of the table: SI and radians, or those of the mechanism file, which the header then names

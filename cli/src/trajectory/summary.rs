@@ -8,10 +8,12 @@ use opm_core::mechanism::joint::DriveLimit;
 use opm_core::trajectory::{Violation, ViolationReport};
 use opm_interference::Contact;
 use opm_study::recording::violation_fields;
-use opm_study::{Contacts, CoordinateRanges, Duty, MotionRequest, MotionSummary};
+use opm_study::{Bearing, Contacts, CoordinateRanges, Duty, MotionRequest, MotionSummary};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
+/// The share of the largest force or moment that is rounding.
+const ROUNDING: f64 = 1e-9;
 /// Number of violations in text; nobody reads more.
 const MOST_SHOWN: usize = 20;
 
@@ -85,6 +87,17 @@ impl Report<'_> {
             };
             json["efforts"] = self.motors().map(motor).collect::<Map<_, _>>().into();
         }
+        if request.reactions.is_some() {
+            let largest = |found: Option<[f64; 2]>| {
+                found.map(|[largest, time]| json!({ "largest": largest, "time": time }))
+            };
+            let bearing = |(name, found): (&str, &Bearing)| {
+                let both =
+                    json!({ "force": largest(found.force), "moment": largest(found.moment) });
+                (name.to_owned(), both)
+            };
+            json["reactions"] = self.bearings().map(bearing).collect::<Map<_, _>>().into();
+        }
         if let Some(given) = given_duration {
             json["given_duration"] = json!(given);
         }
@@ -147,6 +160,7 @@ impl Report<'_> {
             let _ = writeln!(text, "\ncondition number at most {worst}, at t = {} s", short(time));
         }
         text += &self.motors_text();
+        text += &self.bearings_text();
         for violation in summary.violations.iter().take(MOST_SHOWN) {
             let _ = writeln!(text, "{}", self.line(violation));
         }
@@ -206,6 +220,37 @@ impl Report<'_> {
                 short(duty.power[0]),
                 short(0.0 - duty.power[1]),
             ]);
+        }
+        format!("\n{table}")
+    }
+
+    /// What each joint has to bear.
+    fn bearings(&self) -> impl Iterator<Item = (&str, &Bearing)> {
+        let joints = self.request.manipulator.mechanism().joints();
+        joints.map(|joint| &*joint.name).zip(&self.summary.bearings)
+    }
+
+    /// The table from which bearings are bought; nothing without reactions.
+    fn bearings_text(&self) -> String {
+        if self.request.reactions.is_none() {
+            return String::new();
+        }
+        let mut table =
+            Table::new(["joint", ">force [N]", ">at t [s]", ">moment [N m]", ">at t [s]"]);
+        // What is far below the largest is rounding: a ball passes no moment on.
+        let most = |of: fn(&Bearing) -> Option<[f64; 2]>| {
+            let sizes = self.summary.bearings.iter().filter_map(of).map(|[size, _]| size);
+            sizes.fold(0.0, f64::max)
+        };
+        let most = [most(|of| of.force), most(|of| of.moment)];
+        for (name, Bearing { force, moment }) in self.bearings() {
+            let cells =
+                [force, moment].into_iter().zip(most).flat_map(|(found, most)| match found {
+                    Some([size, _]) if *size <= ROUNDING * most => ["0".to_owned(), "-".to_owned()],
+                    Some(found) => found.map(short),
+                    None => ["-", "-"].map(str::to_owned),
+                });
+            table.row(std::iter::once(name.to_owned()).chain(cells));
         }
         format!("\n{table}")
     }

@@ -99,6 +99,51 @@ fn a_lift_needs_newtons_second_law() {
     assert!((takes + gives).abs() < 1e-9 * gives, "{takes} {gives}");
 }
 
+/// The three arms of a Delta bear its platform: its weight, and what accelerates it.
+#[test]
+fn joints_bear_what_moves_the_platform() {
+    let folder = Folder::new();
+    let delta = opm(&["examples", "delta"]).stdout;
+    let delta =
+        folder.write("delta.toml", format!("{delta}\n[bodies]\nmasses = {{ platform = 3 }}\n"));
+    let motion = MOTION.replace("z = [0, 100]", "x = [0, 60]");
+    let motion = folder.write("along.toml", motion.replace("t = [0, 1]", "t = [0, 0.2]"));
+    let table = folder.arg("along.csv");
+    let soft = ["--link-stiffness", "1e6,1e4", "--joint-stiffness", "A1=1e4,A2=2e4,A3=3e4"];
+    let of = ["trajectory", &delta, "--motion", &motion, "--reactions"];
+    let more = ["-o", &table, "--accelerations", "--format", "json"];
+    let json = opm(&[&of[..], &soft, &more].concat()).json();
+    let text = folder.read("along.csv");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|known| *known == name).expect(name);
+    let mut largest = 0.0_f64;
+    for row in &rows[1..] {
+        let number = |name: &str| row[column(name)].parse::<f64>().unwrap();
+        let sum = |part: &str| -> f64 {
+            (1..=3).map(|leg| number(&format!("reaction.C{leg}.{part}"))).sum()
+        };
+        // What passes on to the arms is the weight, downwards, and against the acceleration.
+        for (part, expected) in [
+            ("FX", -3.0 * number("dd.x")),
+            ("FY", -3.0 * number("dd.y")),
+            ("FZ", -3.0 * (9.81 + number("dd.z"))),
+        ] {
+            assert!((sum(part) - expected).abs() < 1e-6, "{part}: {} {expected}", sum(part));
+        }
+        let force = ["FX", "FY", "FZ"].map(|part| number(&format!("reaction.A1.{part}")));
+        largest = largest.max(force.iter().map(|part| part * part).sum::<f64>().sqrt());
+    }
+    let found = json["reactions"]["A1"]["force"]["largest"].as_f64().unwrap();
+    assert!((found - largest).abs() < 1e-9 && largest > 10.0, "{found} {largest}");
+    assert_eq!(json["reactions"].as_object().unwrap().len(), 9);
+    let text = opm(&[&of[..], &soft].concat()).stdout;
+    assert!(text.contains("moment [N m]"), "{text}");
+    opm(&of).fails_with_one_line(2, &["--reactions", "give --link-stiffness"]);
+    let recording = folder.arg("up.mcap");
+    opm(&[&of[..], &soft, &["-o", &recording]].concat())
+        .fails_with_one_line(2, &["--reactions", "a recording has none"]);
+}
+
 #[test]
 fn wrong_drives_and_flags_are_told() {
     let folder = Folder::new();

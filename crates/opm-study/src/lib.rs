@@ -104,8 +104,8 @@ pub use kind::{PosePart, UnknownKind, WorkspaceKind};
 pub use linkage::{LinkageRound, RoundSummary, input_intervals};
 pub use measure::{Measure, unit_product};
 pub use motion::{
-    Contacts, CoordinateRanges, DEFAULT_RATE, Duty, MOST_LISTED, MotionRequest, MotionSummary,
-    Range,
+    Bearing, Contacts, CoordinateRanges, DEFAULT_RATE, Duty, MOST_LISTED, MotionRequest,
+    MotionSummary, Range,
 };
 pub use names::{ASPECT, INVERSE_CONDITION, NO_AXIS, SHARE, TIP};
 pub use poses::PoseSource;

@@ -2,10 +2,13 @@
 
 mod batch;
 mod driven;
+mod reacting;
 mod summary;
 
 pub(crate) use driven::Driven;
 pub use driven::Duty;
+pub use reacting::Bearing;
+pub(crate) use reacting::Reacting;
 pub use summary::{Contacts, CoordinateRanges, MOST_LISTED, MotionSummary, Range};
 
 use crate::error::StudyError;
@@ -40,6 +43,8 @@ pub struct MotionRequest<'a> {
     pub indices: Option<&'a Setup>,
     /// What acts on the mechanism, if the efforts are asked for that move it.
     pub efforts: Option<&'a Setup>,
+    /// What acts on the mechanism, and how it gives way, if the reactions at joints are asked for.
+    pub reactions: Option<&'a Setup>,
 }
 
 impl<'a> MotionRequest<'a> {
@@ -48,8 +53,8 @@ impl<'a> MotionRequest<'a> {
     pub fn new(manipulator: &'a Manipulator, motion: &'a PlatformMotion, label: &'a str) -> Self {
         let mode = motion.mode.unwrap_or_else(|| manipulator.home_mode());
         let rate = motion.rate.unwrap_or(DEFAULT_RATE);
-        let (clearance, indices, efforts) = (None, None, None);
-        Self { manipulator, motion, label, mode, rate, clearance, indices, efforts }
+        let (clearance, indices, efforts, reactions) = (None, None, None, None);
+        Self { manipulator, motion, label, mode, rate, clearance, indices, efforts, reactions }
     }
 
     /// Selects another working mode.
@@ -82,6 +87,14 @@ impl<'a> MotionRequest<'a> {
     #[must_use]
     pub fn efforts(self, setup: &'a Setup) -> Self {
         Self { efforts: Some(setup), ..self }
+    }
+
+    /// Adds what passes through each joint, with the springs of a setup, the inertia of all bodies and everything that acts, as
+    /// `reaction.NAME.FX` ... `MZ` to tables, and the largest force and moment of each joint to the summary. Nothing is known without
+    /// springs.
+    #[must_use]
+    pub fn reactions(self, setup: &'a Setup) -> Self {
+        Self { reactions: Some(setup), ..self }
     }
 
     /// The trajectory, checked, before its first sample.
@@ -122,12 +135,16 @@ impl<'a> MotionRequest<'a> {
                 Watch::new(of, Distances::new(interference))
             });
         let mut driven = self.efforts.map(|setup| Driven::new(self.manipulator, setup));
+        let mut reacting = self.reactions.and_then(|setup| Reacting::new(self.manipulator, setup));
         let mut number = 0;
         let open = self.each_batch(trajectory, |batch| {
             for (sample, changes) in batch {
                 summary.add(sample);
                 if let Some(driven) = &mut driven {
                     summary.add_efforts(sample, driven.values(sample), self.manipulator);
+                }
+                if let Some(reacting) = &mut reacting {
+                    summary.add_reactions(sample, reacting.values(sample));
                 }
                 if let Some(watch) = &mut watch {
                     let solution = Some(&sample.solution).filter(|_| sample.reached);

@@ -33,8 +33,8 @@ const NAMES: &[&str] = &[
     "clearance",
 ];
 
-/// What is before the name of a joint or a coordinate in the column of its rate, acceleration or effort.
-const PREFIXES: [&str; 3] = ["d.", "dd.", "effort."];
+/// What is before the name of a joint or a coordinate in the column of its rate, acceleration, effort or reaction.
+const PREFIXES: [&str; 4] = ["d.", "dd.", "effort.", "reaction."];
 
 /// Whether a name is that of such a column.
 pub(super) fn is_column(name: &str) -> bool {

@@ -13,9 +13,28 @@ pub struct Driven<'a> {
     statics: Statics<'a>,
     loads: Option<Loads<'a>>,
     values: Vec<f64>,
+    senses: Senses,
+}
+
+/// Which way the joints move, for their dry friction, in the order of time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Senses {
     /// For each joint coordinate.
     senses: Vec<Sense>,
     rates: Vec<f64>,
+}
+
+impl Senses {
+    /// How the joints move at the next sample, with rates that have a sign where friction has one.
+    pub(super) fn next<'b>(&'b mut self, sample: &'b Sample) -> JointMotion<'b> {
+        let (rates, accelerations) =
+            (&sample.motion.joint_rates, &*sample.motion.joint_accelerations);
+        self.senses.resize(rates.len(), Sense::default());
+        let moved = self.senses.iter_mut().zip(rates).zip(accelerations);
+        self.rates.clear();
+        self.rates.extend(moved.map(|((sense, &rate), &own)| sense.next(rate, own)));
+        JointMotion { rates: &self.rates, accelerations }
+    }
 }
 
 /// Which way a joint moves, for its dry friction, also where it only just begins or ends to move.
@@ -54,8 +73,7 @@ impl<'a> Driven<'a> {
             statics: Statics::new(manipulator, setup.length),
             loads: Loads::new(manipulator, setup),
             values: vec![f64::NAN; manipulator.actuated().len()],
-            senses: Vec::new(),
-            rates: Vec::new(),
+            senses: Senses::default(),
         }
     }
 
@@ -74,13 +92,7 @@ impl<'a> Driven<'a> {
         let moving = sample.reached && sample.regular;
         let regular = moving && self.statics.update(&sample.solution).unwrap_or(false);
         if let Some(loads) = self.loads.as_mut().filter(|_| regular) {
-            let (rates, accelerations) =
-                (&sample.motion.joint_rates, &*sample.motion.joint_accelerations);
-            self.senses.resize(rates.len(), Sense::default());
-            let moved = self.senses.iter_mut().zip(rates).zip(accelerations);
-            self.rates.clear();
-            self.rates.extend(moved.map(|((sense, &rate), &own)| sense.next(rate, own)));
-            let motion = JointMotion { rates: &self.rates, accelerations };
+            let motion = self.senses.next(sample);
             let efforts = loads.efforts_in(&self.statics, &sample.solution, Some(motion));
             for (value, effort) in self.values.iter_mut().zip(efforts.actuated) {
                 *value = effort.unwrap_or(f64::NAN);

@@ -1,6 +1,7 @@
 //! The summary of a motion: ranges of all joints, the worst condition number, violations.
 
 use super::driven::Duty;
+use super::reacting::Bearing;
 use opm_core::manipulator::Manipulator;
 use opm_core::trajectory::{Sample, Violation};
 use opm_interference::{Contact, Interference, Nearest};
@@ -55,6 +56,8 @@ pub struct MotionSummary {
     pub contacts: Option<Contacts>,
     /// What each motor has to do, if that was asked for, in the order of the actuated coordinates; else nothing.
     pub motors: Vec<Duty>,
+    /// What each joint has to bear, if that was asked for, leg by leg; else nothing.
+    pub bearings: Vec<Bearing>,
 }
 
 /// The contacts of a motion.
@@ -82,6 +85,7 @@ impl MotionSummary {
             violation_count: 0,
             contacts: None,
             motors: Vec::new(),
+            bearings: Vec::new(),
         }
     }
 
@@ -96,6 +100,12 @@ impl MotionSummary {
         for ((motor, &effort), &joint) in each {
             motor.add(effort, sample.motion.joint_rates[joint], sample.time);
         }
+    }
+
+    pub(super) fn add_reactions(&mut self, sample: &Sample, wrenches: &[f64]) {
+        self.bearings.resize(wrenches.len() / 6, Bearing::default());
+        let each = self.bearings.iter_mut().zip(wrenches.chunks(6));
+        each.for_each(|(bearing, wrench)| bearing.add(wrench, sample.time));
     }
 
     pub(super) fn add(&mut self, sample: &Sample) {

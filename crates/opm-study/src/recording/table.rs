@@ -3,7 +3,7 @@
 use super::judged::Judged;
 use super::{create, refuse_standard_output};
 use crate::error::{RequestError, StudyError};
-use crate::motion::{Driven, MotionRequest, MotionSummary};
+use crate::motion::{Driven, MotionRequest, MotionSummary, Reacting};
 use opm_core::Quantity;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::trajectory::{Sample, Trajectory};
@@ -31,13 +31,14 @@ enum Format {
 }
 
 /// The columns of a table: `t`, task coordinates, dependent coordinates, joints, imaginary joints; then the rates of
-/// all of them but `t`, in the same order, and their accelerations; then efforts, and indices.
+/// all of them but `t`, in the same order, and their accelerations; then efforts, reactions, and indices.
 struct Columns<'a> {
     options: TableOptions,
     indices: Option<Judged<'a>>,
     efforts: Option<Driven<'a>>,
-    /// The actuated joints, with the units of their efforts.
-    motors: Vec<(String, &'static str)>,
+    reactions: Option<Reacting<'a>>,
+    /// The columns of efforts, then of reactions, with their units.
+    forces: Vec<(String, &'static str)>,
     /// Names and quantities, without `t`.
     coordinates: Vec<(String, Quantity)>,
 }
@@ -53,8 +54,11 @@ impl<'a> Columns<'a> {
         let coordinates =
             tasks.map(|c| (c.name.to_owned(), c.quantity)).chain(joints).chain(imaginary).collect();
         let efforts = request.efforts.map(|setup| Driven::new(manipulator, setup));
-        let motors = Driven::columns(manipulator).collect();
-        Self { options, indices, efforts, motors, coordinates }
+        let reactions = request.reactions.and_then(|setup| Reacting::new(manipulator, setup));
+        let own = efforts.iter().flat_map(|_| Driven::columns(manipulator));
+        let through = reactions.iter().flat_map(|_| Reacting::columns(manipulator));
+        let forces = own.chain(through).collect();
+        Self { options, indices, efforts, reactions, forces, coordinates }
     }
 
     /// The prefix of the name and the suffix of the unit of each derivative that is asked for.
@@ -78,12 +82,10 @@ impl<'a> Columns<'a> {
                 None => format!("{prefix}{name}"),
             }));
         }
-        if self.efforts.is_some() {
-            names.extend(self.motors.iter().map(|(name, unit)| match units {
-                Some(_) => format!("{name} [{unit}]"),
-                None => name.clone(),
-            }));
-        }
+        names.extend(self.forces.iter().map(|(name, unit)| match units {
+            Some(_) => format!("{name} [{unit}]"),
+            None => name.clone(),
+        }));
         for (name, unit) in self.indices.iter().flat_map(Judged::columns) {
             names.push(match (units, unit) {
                 (None, _) | (_, "") => name.to_owned(),
@@ -130,6 +132,9 @@ impl<'a> Columns<'a> {
         }
         if let Some(efforts) = &mut self.efforts {
             row.extend(efforts.values(sample));
+        }
+        if let Some(reactions) = &mut self.reactions {
+            row.extend(reactions.values(sample));
         }
         if let Some(indices) = &mut self.indices {
             row.extend(indices.values(reached.then_some(solution)));
