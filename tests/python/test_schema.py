@@ -166,6 +166,7 @@ UNSAYABLE = [
     "expected a length of at least 0",
     "expected an arc between 0 and",
     # several values together
+    "is the inertia of no body",
     "two (joints|legs|obstacles) are called",
     "is .* for two legs, expected different names",
     "is the name of that leg's imaginary joint",
@@ -398,7 +399,9 @@ def damaged(document, path, random):
         for other in rest:
             yield f"{path} is called {other}", changed(lambda table: table.__setitem__(other, table.pop(key)))
     if isinstance(value, dict):
-        yield f"{path} has one key more", changed(lambda table: table[key].__setitem__("surplus", 1))
+        # A value that others of the table have.
+        more = copy.deepcopy(next(iter(value.values()), 1))
+        yield f"{path} has one key more", changed(lambda table: table[key].__setitem__("surplus", more))
     if isinstance(value, list) and value:
         yield f"{path} has one item more", changed(lambda table: table[key].append(copy.deepcopy(value[0])))
     if isinstance(value, str):
