@@ -1,6 +1,7 @@
 //! `opm fk`: forward kinematics.
 
 mod aspects;
+mod families;
 mod least;
 mod not_found;
 mod poses;
@@ -15,12 +16,14 @@ use crate::pose::Pose;
 use crate::text::{self, Table, reason};
 use crate::unitless;
 use opm_core::forward::{
-    Assemblies, Assembly, Certificate, Completeness, ForwardMethod, LeastChange, NearError, Unmet,
+    Assemblies, Assembly, Certificate, Completeness, Family, ForwardMethod, LeastChange, NearError,
+    Unmet,
 };
 use opm_core::group::JointDisplacement;
 use opm_core::manipulator::{Manipulator, Mode, Section};
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::joint::JointCoordinate;
+use opm_workspace::{HomeAspect, home_aspects};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::Write;
@@ -39,7 +42,7 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             return poses::run(args, input, output, (&loaded, &manipulator));
         }
     };
-    let FoundAssemblies { actuated, found, only, method } =
+    let FoundAssemblies { actuated, mut found, only, method } =
         solve(args, given, output, (&loaded, &manipulator))?;
     for (&coordinate, &value) in manipulator.actuated().iter().zip(&actuated) {
         let (c, limits) =
@@ -51,21 +54,39 @@ pub fn run(args: &FkArgs, output: &Output) -> Result<(), Failure> {
             output.note(text::beyond_limits(&c.name, value, range, c.quantity, units));
         }
     }
-    let aspects = match args.aspects {
-        true => Some(aspects::of(args, &found.list, &loaded, output)?),
-        false => None,
-    };
     let least = match found.unmet.is_empty() {
         true => None,
         false => manipulator.least_change(&actuated).ok().flatten(),
     };
-    let certificates = manipulator.certify(&found.list);
+    let mut certificates = manipulator.certify(&found.list);
+    // Newton's method looks for one assembly.
+    let families = match method {
+        Method::Newton => vec![],
+        _ => manipulator.families(&actuated, &found, &certificates),
+    };
+    // Members of a family are told with it, unless only a leg moves.
+    let moves = |number| {
+        families.iter().any(|family| family.platform > 0 && family.members.contains(&number))
+    };
+    for number in (0..found.list.len()).rev() {
+        if moves(number) {
+            found.list.remove(number);
+            certificates.remove(number);
+        }
+    }
+    let aspects = match args.aspects {
+        true => Some(aspects::of(args, &found.list, &loaded, output)?),
+        false => None,
+    };
+    let of_home = home_aspects(&manipulator, &found.list);
     let answer = Answer {
         loaded: &loaded,
         manipulator: &manipulator,
         actuated,
         found,
         certificates,
+        families,
+        of_home,
         least,
         only,
         method,
@@ -226,6 +247,9 @@ struct Answer<'a> {
     found: Assemblies,
     /// What is proven of each assembly.
     certificates: Vec<Certificate>,
+    families: Vec<Family>,
+    /// Whether each assembly shares the aspect of home.
+    of_home: Vec<HomeAspect>,
     /// The least change of the joints that closes, where there is no assembly.
     least: Option<LeastChange>,
     only: Option<Mode>,
@@ -246,6 +270,9 @@ struct Json {
     /// The least change of the joints that closes, null if there is an assembly or if none was found.
     least_change: Option<least::Json>,
     loose: Vec<String>,
+    /// Motions with the joints held; not there if none was met.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    families: Vec<families::Json>,
 }
 
 #[derive(Serialize)]
@@ -264,6 +291,8 @@ struct JsonAssembly {
     residual: f64,
     #[serde(flatten)]
     proof: proofs::Json,
+    /// "shared" or "apart": whether it is in the aspect of home; null if that is not known.
+    home_aspect: Option<&'static str>,
     /// The number of the aspect, null if the grid does not tell; only with --aspects.
     #[serde(skip_serializing_if = "Option::is_none")]
     aspect: Option<Value>,
@@ -284,6 +313,11 @@ impl Answer<'_> {
             imaginary: pair(m.imaginary().iter().map(|j| &*j.name).collect(), &a.imaginary),
             residual: a.residual,
             proof: proofs::Json::new(&self.certificates[number]),
+            home_aspect: match self.of_home[number] {
+                HomeAspect::Shared => Some("shared"),
+                HomeAspect::Apart => Some("apart"),
+                HomeAspect::Unknown => None,
+            },
             aspect: self.aspects.as_ref().map(|aspects| aspects[number].into()),
         };
         Json {
@@ -294,6 +328,7 @@ impl Answer<'_> {
             unmet: self.unmet(FileUnits::SI),
             least_change: self.least.as_ref().map(|least| least::Json::new(m, least)),
             loose: self.found.loose.iter().map(Section::to_string).collect(),
+            families: self.families.iter().map(|family| families::Json::new(m, family)).collect(),
         }
     }
 
@@ -310,7 +345,8 @@ impl Answer<'_> {
         let in_mode =
             self.only.map_or(String::new(), |mode| format!(" in mode {}", shown(m, mode)));
         if list.is_empty() {
-            let single = if self.found.loose.is_empty() { "" } else { "single " };
+            let alone = self.found.loose.is_empty() && self.families.is_empty();
+            let single = if alone { "" } else { "single " };
             let _ = writeln!(text, "no {single}assembly{in_mode}");
             for unmet in self.unmet(units) {
                 let _ = writeln!(text, "  {unmet}");
@@ -353,6 +389,9 @@ impl Answer<'_> {
                  are not listed"
             );
         }
+        for family in &self.families {
+            let _ = writeln!(text, "\n{}", families::line(m, family, units));
+        }
         text
     }
 
@@ -375,6 +414,7 @@ impl Answer<'_> {
         let dependent = m.dependent_coordinates();
         headers.extend(dependent.iter().map(|c| text::header(c.name, c.quantity, units)));
         headers.extend(m.imaginary().iter().map(|j| text::header(&j.name, j.quantity, units)));
+        headers.push("home's aspect".to_owned());
         if self.aspects.is_some() {
             headers.push(">aspect".to_owned());
         }
@@ -390,6 +430,12 @@ impl Answer<'_> {
             row.extend(pose.map(|(&value, c)| text::number(value, c.quantity, units)));
             let imaginary = a.imaginary.iter().zip(m.imaginary());
             row.extend(imaginary.map(|(&value, j)| text::number(value, j.quantity, units)));
+            let of_home = match self.of_home[number] {
+                HomeAspect::Shared => "shared",
+                HomeAspect::Apart => "apart",
+                HomeAspect::Unknown => "-",
+            };
+            row.push(of_home.to_owned());
             if let Some(aspects) = &self.aspects {
                 row.push(aspects[number].map_or_else(|| "-".to_owned(), |label| label.to_string()));
             }

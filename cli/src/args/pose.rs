@@ -159,6 +159,11 @@ pub struct VelocityArgs {
 /// assemblies nearly meet, or a body can move with these joints held; "redundant" where more joints are actuated than the
 /// platform has freedoms.
 ///
+/// Where the platform, or a leg, can move with the joints held, that self-motion is told once, with its dimension and one of its
+/// poses, and its assemblies are not listed (JSON: `families`, only where there is one). The column "home's aspect" (JSON:
+/// `home_aspect`) says "shared" where the straight way from home is clear of singularities and limits, "apart" where the working mode or the sign of a
+/// determinant is another, so that every way is singular, and "-" (null) where neither is known; --aspects knows more.
+///
 /// No assembly is an answer (exit status 0): it names what does not meet, and the least change of the joints
 /// with which the mechanism can be assembled, of all together (least sum of squares, lengths over the
 /// mechanism's size) and of each alone; in JSON `least_change`, null where none was found or there is no closed form. Angles count

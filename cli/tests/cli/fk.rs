@@ -56,7 +56,8 @@ fn the_pose_that_the_joints_came_from_is_among_the_assemblies() {
                 "residual",
                 "certificate",
                 "radius",
-                "distinct"
+                "distinct",
+                "home_aspect"
             ]
         );
         assert_eq!(keys(&at["imaginary"]), ["theta11", "theta12", "theta13"]);
@@ -371,4 +372,58 @@ fn wrong_tables_of_joints_are_told() {
     assert_eq!(folder.names(), ["joints.csv"]);
     opm(&["fk", HELICAL]).fails(2, &["--joints", "--poses"]);
     opm(&["fk", HELICAL, "--joints", "S1=0,S2=0,S3=0", "--all"]).fails(2, &["--all"]);
+}
+
+/// A platform that is congruent to its base moves along a circle while its legs, of one length, stay parallel.
+#[test]
+fn a_self_motion_is_told_once() {
+    let folder = Folder::new();
+    let mut file =
+        "format = 1\nname = \"congruent\"\nunits = { length = \"m\", angle = \"deg\" }\n\
+                    [platform]\npoint = [0, 0.3, 0]\n"
+            .to_owned();
+    for (i, [x, y]) in [[0.0, 0.0], [1.0, 0.0], [0.4, 0.7]].into_iter().enumerate() {
+        file += &format!(
+            "[[leg]]\nname = \"leg{i}\"\njoints = [\n\
+             {{ name = \"r{i}\", type = \"revolute\", axis = [0, 0, 1], point = [{x}, {y}, 0] }},\n\
+             {{ name = \"p{i}\", type = \"prismatic\", axis = [0, 1, 0], actuated = true }},\n\
+             {{ name = \"s{i}\", type = \"revolute\", axis = [0, 0, 1], point = [{x}, {}, 0] }},\n]\n",
+            y + 0.3
+        );
+    }
+    let path = folder.write("congruent.toml", &file);
+    let equal = "p0=0.1,p1=0.1,p2=0.1";
+    let found = json(&["fk", &path, "--joints", equal]);
+    assert_eq!(found["assemblies"].as_array().unwrap().len(), 0);
+    let [family] = &found["families"].as_array().unwrap()[..] else { panic!("{found}") };
+    assert_eq!((&family["dimension"], &family["platform_dimension"]), (&1.into(), &1.into()));
+    assert_eq!(family["closed"], true);
+    let [x, y] = ["x", "y"].map(|name| number(&family["pose"][name]));
+    assert!((x.hypot(y) - 0.4).abs() < 1e-8, "{x} {y}");
+    let text = opm(&["fk", &path, "--joints", equal]);
+    let told = "self-motion: with these joints held the platform moves along a closed curve of assemblies; one of them is x = ";
+    assert!(text.stdout.contains(told), "{}", text.stdout);
+    assert!(json(&["fk", &path, "--joints", "p0=0.01,p1=0,p2=0"]).get("families").is_none());
+}
+
+/// The aspects that a grid finds are those that are told without: M. Husty (2009) has three assemblies in each of two aspects.
+#[test]
+fn the_aspect_of_home_is_told() {
+    let joints = joints_at("planar-3rpr", "", "home");
+    let found = json(&["fk", "planar-3rpr", "--joints", &joints, "--aspects"]);
+    let assemblies = found["assemblies"].as_array().unwrap();
+    assert_eq!(assemblies[0]["home_aspect"], "shared");
+    let own = &assemblies[0]["aspect"];
+    let mut apart = 0;
+    for a in assemblies {
+        match a["home_aspect"].as_str() {
+            Some("shared") => assert_eq!(&a["aspect"], own),
+            Some("apart") => {
+                assert_ne!(&a["aspect"], own);
+                apart += 1;
+            }
+            other => assert!(other.is_none(), "{a}"),
+        }
+    }
+    assert_eq!(apart, 3, "{found}");
 }

@@ -21,6 +21,7 @@
 //! several aspects: a finer grid finds more connections. [`find_path`] watches every step of the way that it gives.
 
 mod curves;
+mod home;
 mod join;
 mod levels;
 mod path;
@@ -29,6 +30,7 @@ mod search;
 mod step;
 
 pub use curves::{SingularCurves, singular_curves};
+pub use home::{HomeAspect, home_aspects};
 pub use path::{AspectPath, BeyondLimits, NoPath, aspect_at, find_path};
 
 use crate::boundary::{Outline, boundary};

@@ -70,8 +70,8 @@ mod visits;
 pub use opm_core;
 
 pub use aspects::{
-    Aspect, AspectPath, Aspects, BeyondLimits, NoPath, SingularCurves, aspect_at, find_path,
-    singular_curves,
+    Aspect, AspectPath, Aspects, BeyondLimits, HomeAspect, NoPath, SingularCurves, aspect_at,
+    find_path, home_aspects, singular_curves,
 };
 pub use boundary::{MaskError, Outline, Ring, boundary, mask_boundary};
 pub use clearance::{ClearanceError, ClearanceLimit};
