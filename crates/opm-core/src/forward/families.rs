@@ -5,13 +5,15 @@
 //! only meet, closure stays wrong by the square of the step. At a place in general position on a family, its dimension is that of
 //! the kernel there (Sommese and Wampler, "The Numerical Solution of Systems of Polynomials", 2005, chapter 13).
 
-use super::certified::{Legs, free};
+mod spot;
+
 use super::{Assemblies, Assembly, Certificate, Completeness};
 use crate::decomposition::whole::end;
 use crate::manipulator::Manipulator;
-use crate::numeric::svd::{Svd, rank};
+use crate::numeric::svd::Svd;
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector, Isometry3};
+use spot::{Spot, damped};
 
 /// Below this share of the largest singular value a direction is in the kernel: where assemblies meet, they are known to half of their
 /// digits.
@@ -63,17 +65,6 @@ pub struct Family {
 struct Mover<'a> {
     manipulator: &'a Manipulator,
     idle: Vec<usize>,
-}
-
-/// A place on a family, with the directions along it and across.
-struct Spot {
-    joints: Vec<f64>,
-    legs: Legs,
-    free: Vec<usize>,
-    along: DMatrix<f64>,
-    across: DMatrix<f64>,
-    /// Whether some of the kernel is not along the family.
-    multiple: bool,
 }
 
 impl Manipulator {
@@ -345,16 +336,7 @@ impl Mover<'_> {
 
     /// Joints from which the legs can move, with the directions.
     fn spot(&self, joints: &[f64]) -> Option<Spot> {
-        let legs = Legs::new(self.manipulator, joints, &self.place(joints), 0.0);
-        let free = free(&legs, &self.idle);
-        let still = DVector::zeros(legs.coordinates.len());
-        let at = legs.at(&still, &still);
-        let svd = Svd::new(at.jacobian[0].select_columns(&free));
-        let rank = svd.rank(KERNEL);
-        let across = svd.right.columns(0, rank).into_owned();
-        let along = svd.right.columns(rank, free.len() - rank).into_owned();
-        let joints = joints.to_vec();
-        at.near.then_some(Spot { joints, legs, free, along, across, multiple: false })
+        Spot::new((self.manipulator, &self.idle), joints, &self.place(joints))
     }
 
     /// The displacement of the platform that the first leg tells.
@@ -414,71 +396,5 @@ impl Mover<'_> {
             joints = spot.moved(self.manipulator, &(step * shorter));
         }
         None
-    }
-}
-
-/// A step of Newton's method that is short where equations depend on each other (Levenberg and Marquardt).
-fn damped(jacobian: &DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f64>> {
-    let n = jacobian.ncols();
-    let damping = 1e-14 + 1e-3 * values.norm_squared();
-    let normal = jacobian.tr_mul(jacobian) + DMatrix::identity(n, n) * damping;
-    Some(-normal.cholesky()?.solve(&jacobian.tr_mul(values)))
-}
-
-impl Spot {
-    /// The equations and their derivatives where the free unknowns have moved.
-    fn at(&self, moved: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let all = self.all(moved);
-        let at = self.legs.at(&all, &DVector::zeros(all.len()));
-        let [values, _] = at.values;
-        let [jacobian, _] = at.jacobian;
-        (values, jacobian.select_columns(&self.free))
-    }
-
-    fn all(&self, moved: &DVector<f64>) -> DVector<f64> {
-        let mut all = DVector::zeros(self.legs.coordinates.len());
-        for (&unknown, value) in self.free.iter().zip(moved.iter()) {
-            all[unknown] = *value;
-        }
-        all
-    }
-
-    fn moved(&self, m: &Manipulator, moved: &DVector<f64>) -> Vec<f64> {
-        self.legs.moved(m, &self.joints, &self.all(moved))
-    }
-
-    /// The twist of the platform along the family.
-    fn twist(&self, way: &DVector<f64>) -> DVector<f64> {
-        let all = self.all(&(&self.along * way));
-        let own = all.rows_range(self.legs.unknowns[0].clone());
-        self.legs.twists(0, &DVector::zeros(all.len())) * own
-    }
-
-    /// Directions of the kernel to try, of this length.
-    fn ways(&self, length: f64) -> Vec<DVector<f64>> {
-        let mut rng = Rng::with_seed(77);
-        let kernel = self.along.ncols();
-        let units = DMatrix::<f64>::identity(kernel, kernel);
-        let mut ways: Vec<DVector<f64>> = units
-            .column_iter()
-            .flat_map(|unit| [length, -length].map(|length| unit * length))
-            .collect();
-        for _ in 0..6 * kernel {
-            let way = DVector::from_fn(kernel, |_, _| 2.0 * rng.f64() - 1.0);
-            ways.push(way.normalize() * length);
-        }
-        ways
-    }
-
-    /// The freedoms of the platform along the family.
-    fn platform(&self) -> usize {
-        let n = self.along.ncols();
-        let unit = |i: usize| DVector::from_fn(n, |k, _| f64::from(u8::from(k == i)));
-        let twists: Vec<DVector<f64>> = (0..n).map(|i| self.twist(&unit(i))).collect();
-        let least = if self.multiple { BENT } else { KERNEL };
-        match twists.iter().all(|twist| twist.amax() < least) {
-            true => 0,
-            false => rank(DMatrix::from_columns(&twists), least),
-        }
     }
 }
