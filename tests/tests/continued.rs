@@ -91,10 +91,11 @@ fn random(rng: &mut Rng, flat: bool) -> [[f64; 3]; 6] {
     std::array::from_fn(|_| [number(), number(), if flat { 0.0 } else { 0.3 * number() }])
 }
 
+/// The solutions that were found, and how many there are; of a closed form, which has the real ones alone, those.
 fn solutions(found: &Assemblies) -> [usize; 2] {
     match found.completeness {
         Completeness::Continuation { found, of } => [found, of],
-        Completeness::ClosedForm => panic!("it has no closed form"),
+        Completeness::ClosedForm => [found.list.len(); 2],
     }
 }
 
@@ -279,7 +280,7 @@ fn joints_out_of_reach_have_no_assembly() {
     let m = Manipulator::example("linear-delta").unwrap();
     let found = m.forward(&[2.0, -2.0, 2.0]).unwrap();
     assert!(found.list.is_empty() && !found.unmet.is_empty(), "{found:?}");
-    assert_eq!(solutions(&found), [2, 2]);
+    assert_eq!(found.completeness, Completeness::ClosedForm);
     let bad = m.forward(&[f64::NAN, 0.0, 0.0]).unwrap_err();
     assert!(bad.to_string().contains("NaN"), "{bad}");
 }

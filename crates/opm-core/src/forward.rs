@@ -15,7 +15,8 @@
 //! assemblies. Where displacements commute in both sections, the whole problem is one linear system
 //! (`manipulator/plan/flat.rs`).
 //!
-//! Where there is no such order, as of a hexapod, all legs are equations in the platform's Study parameters, and all solutions,
+//! Where there is no such order, but the platform only translates, as that of a Delta, legs are spheres or planes
+//! (`manipulator/continued/translations.rs`). Elsewhere, as of a hexapod, all legs are equations in the platform's Study parameters, and all solutions,
 //! complex ones too, are found by continuation (`manipulator/continued.rs`). [`Manipulator::forward_near`] finds the one near a pose
 //! in every mechanism.
 //!
@@ -230,7 +231,10 @@ impl Manipulator {
     pub fn forward_method(&self) -> Result<ForwardMethod, NoClosedForm> {
         match &self.plan {
             Ok(_) => Ok(ForwardMethod::ClosedForm),
-            Err(why) => self.continued(*why).map(|_| ForwardMethod::Continuation),
+            Err(why) => self.continued(*why).map(|continued| match continued.is_closed() {
+                true => ForwardMethod::ClosedForm,
+                false => ForwardMethod::Continuation,
+            }),
         }
     }
 

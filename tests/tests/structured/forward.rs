@@ -30,12 +30,14 @@ fn check(m: &Manipulator, pose: &[f64], mode: Mode) -> [usize; 2] {
         assert!(off < 10.0 * RESIDUAL, "{name} {pose:?}: {a:?} is {off:e} off");
     }
     let (meets, same) = match found.completeness {
-        Completeness::ClosedForm => (false, SAME),
+        Completeness::ClosedForm if m.forward_closed_form().is_ok() => (false, SAME),
+        // Spheres and planes that are fitted.
+        Completeness::ClosedForm => (is_singular(m, &at), SAME_FITTED),
         Completeness::Continuation { found, of } => (found < of, SAME_FITTED),
     };
     // Continuation finds isolated assemblies.
     let loose = match found.completeness {
-        Completeness::ClosedForm => !found.loose.is_empty(),
+        Completeness::ClosedForm => meets || !found.loose.is_empty(),
         Completeness::Continuation { .. } => {
             meets || is_singular(m, &at) || !is_told_by_coordinates(m, pose, mode)
         }

@@ -28,7 +28,7 @@ struct Assembler<'a> {
 impl Manipulator {
     /// Every assembly that continuation finds with these displacements of the actuated joints from home, radians and metres.
     pub(super) fn assemblies_by(&self, continued: &Continued, wanted: &[f64]) -> Assemblies {
-        let FoundDisplacements { real, near, found, of } = continued.solve(wanted);
+        let FoundDisplacements { real, near, found, of, closed } = continued.solve(wanted);
         let mut assembler = Assembler {
             manipulator: self,
             wanted,
@@ -58,7 +58,10 @@ impl Manipulator {
             (true, true) => vec![Unmet::Contradiction],
             (true, false) => vec![Unmet::Together],
         };
-        let completeness = Completeness::Continuation { found, of: of.max(found) };
+        let completeness = match closed {
+            true => Completeness::ClosedForm,
+            false => Completeness::Continuation { found, of: of.max(found) },
+        };
         Assemblies { list, unmet, loose: Vec::new(), completeness }
     }
 }

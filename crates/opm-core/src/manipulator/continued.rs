@@ -4,11 +4,14 @@
 //! joints that give complex numbers, in general position: from equations with known solutions, as many as the product of the
 //! degrees says (Bézout). The solutions for given joints are those to which these go: with probability one that is every isolated one
 //! (Sommese and Wampler, "The Numerical Solution of Systems of Polynomials", 2005, chapter 7).
+//!
+//! Where the platform only translates, the equations are spheres or planes, and have a [closed form](translations).
 
 mod conditions;
 mod fitted;
 mod quadrics;
 mod samples;
+mod translations;
 
 use super::Manipulator;
 use crate::numeric::Quantity;
@@ -17,6 +20,7 @@ use conditions::{Condition, Conditions, RealForm};
 use fastrand::Rng;
 use nalgebra::{Isometry3, Quaternion, SVector, Translation3, UnitQuaternion};
 use quadrics::{C, Form, Quadrics, Unknowns, translation};
+use translations::{Met, Translations};
 
 /// How solutions are followed, at first and where some are missing.
 const PACES: [Pace; 2] = [Pace { near: 1e-3 }, Pace { near: 1e-5 }];
@@ -31,6 +35,8 @@ const MEETING: f64 = 1e-6;
 const NEARLY: f64 = 0.1;
 /// So many round trips at most look for further solutions.
 const MOST_ROUNDS: usize = 8;
+/// Joints in general position, radians and metres.
+const SOMEWHERE: f64 = 0.7;
 
 /// The equations of a manipulator, and their solutions for joints in general position.
 #[derive(Clone, Debug)]
@@ -43,6 +49,8 @@ pub(crate) struct Continued {
     detour: Vec<Form>,
     /// How many solutions there are for joints in general position whose numbers are a cosine and a sine, or a value and its square.
     count: usize,
+    /// Where the solutions have a closed form.
+    translations: Option<Translations>,
 }
 
 /// The displacements that actuated joints allow.
@@ -56,6 +64,8 @@ pub(crate) struct FoundDisplacements {
     pub found: usize,
     /// How many there are in general.
     pub of: usize,
+    /// Whether they are all that there are, by a closed form.
+    pub closed: bool,
 }
 
 fn number(rng: &mut Rng) -> C {
@@ -86,17 +96,26 @@ impl Continued {
     pub fn new(manipulator: &Manipulator) -> Option<Self> {
         let conditions = Conditions::new(manipulator)?;
         let mut rng = Rng::with_seed(40);
-        let mut any = || -> Vec<Form> {
+        let any = |rng: &mut Rng| -> Vec<Form> {
             let mut forms = Vec::with_capacity(conditions.held.len());
             for condition in &conditions.held {
-                let weight = |i: usize| if i == 0 { C::ONE } else { number(&mut rng) };
+                let weight = |i: usize| if i == 0 { C::ONE } else { number(rng) };
                 forms.push(condition.mixed((0..condition.count()).map(weight)));
             }
             forms
         };
-        let (forms, others) = (any(), [any(), any()]);
+        let (forms, others) = (any(&mut rng), [any(&mut rng), any(&mut rng)]);
         let detour = others[0].clone();
-        let mut found = Self { starts: Vec::new(), forms, detour, conditions, count: 0 };
+        let starts = Vec::new();
+        let mut found = Self { starts, forms, detour, conditions, count: 0, translations: None };
+        let quantities = found.conditions.quantities.len();
+        let somewhere: Vec<f64> = (0..quantities).map(|_| SOMEWHERE * rng.f64()).collect();
+        let held = found.held_at(&somewhere);
+        found.translations = Translations::new(&found.conditions, &held);
+        if let Some(translations) = &found.translations {
+            found.count = translations.count;
+            return Some(found);
+        }
         found.starts = found.general();
         // A round trip permutes the solutions; one that was lost comes with another one that leads there.
         for _ in 0..MOST_ROUNDS {
@@ -229,8 +248,35 @@ impl Continued {
         found
     }
 
+    /// Whether the solutions have a closed form.
+    pub fn is_closed(&self) -> bool {
+        self.translations.is_some()
+    }
+
+    /// The forms of the conditions on joints that are real.
+    fn held_at(&self, actuated: &[f64]) -> Vec<RealForm> {
+        let factors = self.conditions.real_factors(actuated);
+        self.conditions.held.iter().map(|condition| condition.at(&factors)).collect()
+    }
+
     /// The displacements of the platform for displacements of the actuated joints, radians and metres.
     pub fn solve(&self, actuated: &[f64]) -> FoundDisplacements {
+        if let Some(translations) = &self.translations {
+            let (found, of) = (self.count, self.count);
+            return match translations.solve(&self.held_at(actuated)) {
+                Met::At(met) => {
+                    let real = met.iter().map(|x| self.displacement(x)).collect();
+                    FoundDisplacements { real, near: Vec::new(), found, of, closed: true }
+                }
+                Met::Dependent => FoundDisplacements {
+                    real: Vec::new(),
+                    near: Vec::new(),
+                    found: 0,
+                    of,
+                    closed: false,
+                },
+            };
+        }
         let joints: Vec<C> = actuated.iter().map(|&value| C::from(value)).collect();
         let (found, met) = self.ends(&joints);
         let of = |solutions: &[Unknowns], within: f64| {
@@ -238,7 +284,8 @@ impl Continued {
             real.collect::<Vec<_>>()
         };
         let (near, real) = (of(&met, NEARLY), [of(&found, REAL), of(&met, REAL)].concat());
-        FoundDisplacements { real, near, found: found.len(), of: self.count }
+        let (found, of) = (found.len(), self.count);
+        FoundDisplacements { real, near, found, of, closed: false }
     }
 
     /// The displacement that a solution is; `None` if it is not real to within this.
@@ -248,9 +295,14 @@ impl Continued {
         if turned.iter().any(|c| c.im.abs() > within) {
             return None;
         }
-        let x: SVector<f64, 8> = self.conditions.basis * turned.map(|c| c.re);
+        Some(self.displacement(&turned.map(|c| c.re)))
+    }
+
+    /// The displacement of coordinates.
+    fn displacement(&self, coordinates: &SVector<f64, 8>) -> Isometry3<f64> {
+        let x = self.conditions.basis * coordinates;
         let rotation = UnitQuaternion::from_quaternion(Quaternion::new(x[0], x[1], x[2], x[3]));
         let moved = SVector::from(translation(&x)) * self.conditions.size;
-        Some(Isometry3::from_parts(Translation3::from(moved), rotation))
+        Isometry3::from_parts(Translation3::from(moved), rotation)
     }
 }

@@ -77,6 +77,13 @@ impl Condition {
         (0..self.count()).map(|number| product_of(&own, number)).collect()
     }
 
+    /// The form that it has where its joints, which are real, give `factors`: see [`Conditions::real_factors`].
+    pub fn at(&self, factors: &[[f64; 3]]) -> RealForm {
+        let own: Vec<[f64; 3]> = self.joints.iter().map(|&joint| factors[joint]).collect();
+        let forms = self.forms.iter().enumerate();
+        forms.fold(RealForm::zeros(), |sum, (number, form)| sum + form * product_of(&own, number))
+    }
+
     /// The form in which each counts so much.
     pub fn mixed(&self, weights: impl IntoIterator<Item = C>) -> Form {
         let forms = self.forms.iter().zip(weights);
@@ -138,11 +145,7 @@ impl Conditions {
             let samples = own.as_ref().unwrap_or(&shared).iter().map(|sample| {
                 let x = self.basis.transpose() * sample.x;
                 let values = self.terms.iter().map(|term| (term * x).dot(&x)).collect();
-                let factors: Vec<[f64; 3]> = self
-                    .factors(&complex(&sample.actuated))
-                    .into_iter()
-                    .map(|factors| factors.map(|factor| factor.re))
-                    .collect();
+                let factors = self.real_factors(&sample.actuated);
                 FitSample { values, factors: joints.iter().map(|&joint| factors[joint]).collect() }
             });
             let quantities: Vec<Quantity> = joints.iter().map(|&j| self.quantities[j]).collect();
@@ -182,6 +185,18 @@ impl Conditions {
     fn form(&self, coefficients: &[f64]) -> RealForm {
         let parts = self.terms.iter().zip(coefficients);
         parts.fold(RealForm::zeros(), |sum, (term, coefficient)| sum + term * *coefficient)
+    }
+
+    /// The same of real values.
+    pub fn real_factors(&self, actuated: &[f64]) -> Vec<[f64; 3]> {
+        let of = |(&value, quantity): (&f64, &Quantity)| match quantity {
+            Quantity::Angle => [1.0, value.cos(), value.sin()],
+            Quantity::Length => {
+                let value = value / self.size;
+                [1.0, value, value * value]
+            }
+        };
+        actuated.iter().zip(&self.quantities).map(of).collect()
     }
 
     /// What each actuated joint gives: `1, cos q, sin q`, or `1, q, q²`.
