@@ -324,3 +324,24 @@ fn one_screw_stands_for_both_hinges() {
     assert!(screws[1].angular.norm() < 1e-15);
     assert!((screws[1].linear - Vector3::y().cross(&bar)).norm() < 1e-15);
 }
+
+/// An assembly is proven where the hinges are held together, and where each of them would be a joint of its own.
+#[test]
+fn assemblies_are_proven() {
+    let mut tried = 0;
+    for text in [DELTA_FILE.to_owned(), TURNING_FILE.to_owned(), schoenflies()] {
+        let m = made(&text);
+        let mut at = m.solution();
+        let pose: Vec<f64> = m.home_pose().iter().map(|q| q + 0.02).collect();
+        let solution = m.inverse(&pose, m.home_mode(), &mut at).unwrap().unwrap();
+        let actuated: Vec<f64> = m.actuated().iter().map(|&i| solution.joints()[i]).collect();
+        let found = m.forward(&actuated).unwrap();
+        let certificates = m.certify(&found.list);
+        tried += certificates.len();
+        for certificate in certificates {
+            let proof = certificate.proof().unwrap_or_else(|| panic!("not proven: {text}"));
+            assert!(proof.radius < 1e-9 && proof.distinct);
+        }
+    }
+    assert!(tried >= 6, "{tried}");
+}

@@ -32,6 +32,8 @@ struct Part {
     motion: Motion,
     value: Bound,
     unknown: Option<usize>,
+    /// Whether it is the second hinge of a parallelogram: the unknown is that of the first one, and is subtracted.
+    back: bool,
 }
 
 /// The closure of an assembly's legs; unknown is how far passive joints are from their values in it, radians and sizes.
@@ -117,11 +119,18 @@ impl Legs {
                     // The base's own axes are exact.
                     let axis = [axis.x, axis.y, axis.z].map(Bound::constant);
                     let motion = Motion::Turn { axis, point, pitch: 0.0 };
-                    parts.push(Part { motion, value: Bound::constant(0.0), unknown });
+                    let value = Bound::constant(0.0);
+                    parts.push(Part { motion, value, unknown, back: false });
                 }
             }
             let motion = Motion::Fixed(Place::about(&point, turned));
-            return parts.push(Part { motion, value: Bound::constant(0.0), unknown: None });
+            let value = Bound::constant(0.0);
+            return parts.push(Part { motion, value, unknown: None, back: false });
+        }
+        if joint.turns_back {
+            let unknown = parts.last().and_then(|first| first.unknown);
+            let (motion, value) = (turn(&joint.axis, 0.0), from_home(0));
+            return parts.push(Part { motion, value, unknown, back: true });
         }
         let motions = match joint.kind {
             JointKind::Revolute | JointKind::Spherical => vec![turn(&joint.axis, 0.0)],
@@ -137,7 +146,7 @@ impl Legs {
             };
             let unknown = (!joint.actuated).then_some(self.coordinates.len());
             self.coordinates.extend(unknown.map(|_| Some(at + i)));
-            parts.push(Part { motion, value, unknown });
+            parts.push(Part { motion, value, unknown, back: false });
         }
     }
 
@@ -192,8 +201,15 @@ impl Legs {
     pub fn moved(&self, m: &Manipulator, joints: &[f64], by: &DVector<f64>) -> Vec<f64> {
         let mut joints = joints.to_vec();
         let (mut at, mut unknown) = (0, 0);
+        let mut held = true;
         for joint in m.mechanism().joints() {
             let count = joint.coordinates.len();
+            if joint.turns_back {
+                joints[at] -= if held { 0.0 } else { by[unknown - 1] };
+                at += 1;
+                continue;
+            }
+            held = joint.actuated;
             if !joint.actuated && joint.kind == JointKind::Spherical {
                 let home = Vector3::from_fn(|i, _| joint.coordinates[i].home);
                 let vector = Vector3::from_column_slice(&joints[at..at + 3]) - home;
@@ -245,9 +261,10 @@ fn walk(leg: &[Part], [centres, radii]: [&DVector<f64>; 2]) -> (Place, Vec<(usiz
     let mut place = Place::identity();
     let mut screws: Vec<(usize, [Vector; 2])> = Vec::new();
     let still = [Bound::constant(0.0); 3];
-    for Part { motion, value, unknown } in leg {
-        let value = match unknown {
-            Some(unknown) => *value + about(centres[*unknown], radii[*unknown]),
+    for Part { motion, value, unknown, back } in leg {
+        let value = match unknown.map(|unknown| about(centres[unknown], radii[unknown])) {
+            Some(by) if *back => *value - by,
+            Some(by) => *value + by,
             None => *value,
         };
         let (moved, screw) = match motion {
@@ -268,7 +285,13 @@ fn walk(leg: &[Part], [centres, radii]: [&DVector<f64>; 2]) -> (Place, Vec<(usiz
             }
             Motion::Fixed(moved) => (*moved, [still; 2]),
         };
-        screws.extend(unknown.map(|unknown| (unknown, screw)));
+        match screws.last_mut() {
+            Some((_, first)) if *back && unknown.is_some() => {
+                let [angular, linear] = screw;
+                *first = [difference(&first[0], &angular), difference(&first[1], &linear)];
+            }
+            _ => screws.extend(unknown.map(|unknown| (unknown, screw))),
+        }
         place = place.followed(&moved);
     }
     (place, screws)
