@@ -79,7 +79,7 @@ impl Manipulator {
     /// ...     wanted = -stiff @ (pose - m.home) - damped @ rates
     /// ...     return m.inverse_dynamics(pose, rates, wanted)
     /// >>> times = np.linspace(0, 1, 201)
-    /// >>> poses, rates = m.simulate(m.home + [0.01, 0, 0], rest, times, controller)
+    /// >>> poses, rates = m.simulate(np.add(m.home, [0.01, 0, 0]), rest, times, controller)
     /// >>> poses.shape, bool(abs(poses[-1] - m.home).max() < 1e-5)
     /// ((201, 3), True)
     #[pyo3(signature = (
