@@ -38,6 +38,7 @@ mod parts;
 mod pickle;
 mod pictures;
 mod place;
+mod response;
 mod restored;
 mod rows;
 mod screws;

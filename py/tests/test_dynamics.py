@@ -179,3 +179,33 @@ def test_wrong_arguments_of_a_simulation_are_named():
         m.simulate(m.home, rest, [0, 1], rest, tolerance=0)
     with pytest.raises(ZeroDivisionError):
         m.simulate(m.home, rest, [0, 1], lambda t, x, v: 1 / 0)
+
+
+def test_the_frequency_response_solves_the_equations_of_forced_vibrations():
+    m = opm.examples.load("stewart")
+    soft = {"link_stiffness": (1e7, 1e5), "joint_stiffness": {m.joint_names[i]: 2e5 for i in m.actuated}}
+    found = m.analyze(m.home, **soft)
+    stiff, shapes, natural = found.stiffness_matrix, found.vibration_shapes, found.natural_frequencies
+    pushed = shapes @ stiff
+    mass = np.einsum("ki,kj,k->ij", pushed, pushed, 1 / np.einsum("ki,ki,k->k", pushed, shapes, (2 * np.pi * natural) ** 2))
+    frequencies = np.array([0, 10.0, natural[0], natural[2], 500])
+    response = m.frequency_response(m.home, frequencies, loss_factor=0.05, damping_ratio=0, **soft)
+    assert response.shape == (5, 6, 6) and response.dtype == complex
+    for frequency, own in zip(frequencies, response, strict=True):
+        forced = stiff * (1 + 0.05j) - (2 * np.pi * frequency) ** 2 * mass
+        np.testing.assert_allclose(forced @ own, np.eye(6), atol=1e-6)
+    # Viscous damping of one half of the loss factor is the same at a natural frequency, of its own vibration.
+    viscous = m.frequency_response([m.home, m.home], [natural[0]], damping_ratio=0.025, **soft)
+    assert viscous.shape == (2, 1, 6, 6)
+    energies = [shapes[0] @ stiff @ own @ stiff @ shapes[0] for own in (viscous[1, 0], response[2])]
+    assert energies[0] == pytest.approx(energies[1], rel=1e-6)
+    assert np.isnan(m.frequency_response([9.0, 0, 0, 0, 0, 0], [1], **soft)).all()
+    for wrong, message in [
+        ({"damping_ratio": 0}, "one above 0"),
+        ({"loss_factor": -1}, "loss_factor is -1"),
+        ({"joint_stiffness": {"Q": 1.0}}, "Q"),
+    ]:
+        with pytest.raises(opm.OpmError, match=message):
+            m.frequency_response(m.home, [1], **{**soft, **wrong})
+    with pytest.raises(opm.OpmError, match="-1 is among frequencies"):
+        m.frequency_response(m.home, [-1], **soft)

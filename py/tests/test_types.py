@@ -187,7 +187,7 @@ def odd_calls():
     swept = opm_kinematics.sweep(m, x=(-0.1, 0.1, 5), xi=(-0.1, 0.1, 3))
     whole = {
         "poses": m.home, "rates": m.home, "accelerations": m.home, "efforts": np.zeros(5), "joints": np.zeros(5), "transforms": np.eye(4), "values": [0.1], "legs": m.screws,
-        "pose": m.home, "times": [0.0, 0.1], "path": "none.mcap", "text": m.text, "motion": "plano-spherical-sinusoids", "manipulator": m, "coordinates": "tilt-torsion",
+        "pose": m.home, "times": [0.0, 0.1], "frequencies": [1.0], "link_stiffness": (1e6, 1e4), "path": "none.mcap", "text": m.text, "motion": "plano-spherical-sinusoids", "manipulator": m, "coordinates": "tilt-torsion",
         "measurements": {}, "over": {"x": (-0.1, 0.1)}, "shape": "disc", "start": m.home, "goal": m.home, "changes": {},
         "name": "a", "kind": "revolute", "actuated": [[True] * len(rows) for rows in m.screws.values()],
     }  # fmt: skip

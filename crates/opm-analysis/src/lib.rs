@@ -10,7 +10,7 @@
 //! | how well motion and force are transmitted | [`Transmissions`] |
 //! | what acts: a load on the platform, and the weight of all bodies | [`Loads`] |
 //! | the equations of motion: mass matrix, bias, gravity, friction; accelerations and motion under efforts; the linear model | [`Dynamics`] |
-//! | how much the platform gives way, how the legs share a load, and its natural frequencies | [`Compliant`] |
+//! | how much the platform gives way, how the legs share a load, its natural frequencies, and how it answers to what swings | [`Compliant`], [`Response`] |
 //! | one number for a colour, a column or a limit | [`Indices`] |
 //!
 //! Everything is in SI and radians. The signs, the formulas and their sources are in `docs/analysis.md`.
@@ -42,6 +42,7 @@ mod dynamics;
 mod efforts;
 mod index;
 mod path;
+mod response;
 mod screws;
 mod setup;
 mod simulation;
@@ -59,6 +60,7 @@ pub use dynamics::Dynamics;
 pub use efforts::{Balance, Efforts, Worst};
 pub use index::{Facts, Index, IndexBounds, IndexError, Indices};
 pub use path::time_optimal;
+pub use response::{Damping, Response};
 pub use screws::{Freedom, Screws};
 pub use setup::{Loads, Setup};
 pub use simulation::{LinearModel, SimulationError, State};

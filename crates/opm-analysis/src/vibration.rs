@@ -46,23 +46,29 @@ impl Compliant<'_> {
     /// ```
     pub fn vibrations(&self, stiffness: &Stiffness) -> Option<[Vibration; 6]> {
         let unit = self.unit();
+        Some(self.modes(stiffness)?.map(|(square, shape)| {
+            let frequency =
+                if square > 0.0 { (TAU * square.sqrt()).recip() } else { f64::INFINITY };
+            let sign = shape[shape.iamax()].signum();
+            Vibration { frequency, shape: unit * shape * (sign / shape.norm()) }
+        }))
+    }
+
+    /// One over the squares of the natural angular frequencies, falling, zero where nothing with a mass moves; and shapes `φ` with
+    /// `φᵀ K φ = 1`, in comparable numbers ([`Compliant::unit`] times these are displacements).
+    pub(crate) fn modes(&self, stiffness: &Stiffness) -> Option<[(f64, Vector6<f64>); 6]> {
+        let unit = self.unit();
         let masses = unit * self.masses(stiffness)? * unit;
         let lower = self.decomposed_stiffness(stiffness)?.l();
         let inverse = lower.try_inverse()?;
-        // Its eigenvalues are one over the squares of the angular frequencies.
         let eigen = (inverse * masses * inverse.transpose()).symmetric_eigen();
         let mut order: [usize; 6] = std::array::from_fn(|i| i);
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let largest = eigen.eigenvalues.max();
         Some(order.map(|i| {
             let square = eigen.eigenvalues[i];
-            let frequency = match square > MASSLESS * largest {
-                true => (TAU * square.sqrt()).recip(),
-                false => f64::INFINITY,
-            };
-            let scaled = inverse.transpose() * eigen.eigenvectors.column(i);
-            let sign = scaled[scaled.iamax()].signum();
-            Vibration { frequency, shape: unit * scaled * (sign / scaled.norm()) }
+            let square = if square > MASSLESS * largest { square } else { 0.0 };
+            (square, inverse.transpose() * eigen.eigenvectors.column(i))
         }))
     }
 

@@ -1,7 +1,7 @@
 //! Natural frequencies: those of decoupled sliders by hand, and those of the equations of motion with springs at the actuators.
 
-use nalgebra::{DMatrix, DVector, Vector3};
-use opm_analysis::{Compliant, Dynamics, Gravity, Index, Indices, Setup, Springs};
+use nalgebra::{Complex, DMatrix, DVector, Matrix6, Vector3};
+use opm_analysis::{Compliant, Damping, Dynamics, Gravity, Index, Indices, Setup, Springs};
 use opm_core::manipulator::{Manipulator, Solution};
 use opm_core::mechanism::examples::{EXAMPLES, TEMPLATES};
 use opm_core::mechanism::joint::Drive;
@@ -121,6 +121,84 @@ fn frequencies_are_those_of_the_equations_of_motion() {
         compared += 1;
     }
     assert!(compared >= 20, "{compared}, not {left_out:?}");
+}
+
+/// Each slider of a Tripteron answers as a mass on a spring does.
+#[test]
+fn sliders_answer_by_themselves() {
+    let text = EXAMPLES.iter().find(|example| example.name == "tripteron").unwrap().text;
+    let m = Manipulator::read(&format!("{text}\n[bodies]\nmasses = {{ platform = 5 }}\n")).unwrap();
+    let actuators = vec![1e4, 4e4, 9e4];
+    let springs =
+        Springs { actuators: actuators.clone(), translation: STIFF[1], rotation: STIFF[1] };
+    let mut compliant = Compliant::new(&m, springs).unwrap().with_gravity(&weightless(Some(1e-3)));
+    let stiffness = compliant.stiffness(&m.solution()).unwrap();
+    let response = compliant.response(&stiffness).unwrap();
+    let still = response.compliance(0.0, Damping::default());
+    let inverse = stiffness.platform.try_inverse().unwrap();
+    assert!((still.map(|x| x.re) - inverse).amax() < 1e-9 * inverse.amax());
+    assert!(still.iter().all(|x| x.im == 0.0));
+    for damping in [
+        Damping { loss_factor: 0.07, ratio: 0.0 },
+        Damping { loss_factor: 0.0, ratio: 0.04 },
+        Damping { loss_factor: 0.03, ratio: 0.02 },
+    ] {
+        for frequency in [3.0, 7.0, 12.0, 40.0] {
+            let omega = TAU * frequency;
+            let found = response.compliance(frequency, damping);
+            let mut sizes: Vec<[f64; 2]> =
+                (0..3).map(|i| [found[(i, i)].re, found[(i, i)].im]).collect();
+            let mut expected: Vec<[f64; 2]> = actuators
+                .iter()
+                .map(|k| {
+                    let viscous = 2.0 * damping.ratio * (k * 5.0).sqrt() * omega;
+                    // One over k (1 + i η) - ω² m + i ω d.
+                    let [a, b] = [k - omega * omega * 5.0, k * damping.loss_factor + viscous];
+                    [a / (a * a + b * b), -b / (a * a + b * b)]
+                })
+                .collect();
+            for all in [&mut sizes, &mut expected] {
+                all.sort_by(|a, b| a[1].total_cmp(&b[1]));
+            }
+            for (found, expected) in sizes.iter().zip(&expected) {
+                let size = expected[0].hypot(expected[1]);
+                for (a, b) in found.iter().zip(expected) {
+                    assert!((a - b).abs() < 1e-3 * size, "{frequency}: {found:?} {expected:?}");
+                }
+            }
+        }
+    }
+}
+
+/// It solves `(K (1 + i η) - ω² M) X = 1`, with the mass matrix that the natural vibrations have.
+#[test]
+fn the_response_solves_the_equations_of_forced_vibrations() {
+    let m = Manipulator::example("stewart").unwrap();
+    let springs = Springs { actuators: vec![2e5; 6], translation: 1e7, rotation: 1e5 };
+    let mut compliant = Compliant::new(&m, springs).unwrap().with_gravity(&weightless(None));
+    let stiffness = compliant.stiffness(&m.solution()).unwrap();
+    let response = compliant.response(&stiffness).unwrap();
+    let k = stiffness.platform;
+    let masses: Matrix6<f64> = compliant
+        .vibrations(&stiffness)
+        .unwrap()
+        .iter()
+        .map(|found| {
+            let pushed = k * found.shape;
+            let energy = found.shape.dot(&pushed);
+            pushed * pushed.transpose() / (energy * (TAU * found.frequency).powi(2))
+        })
+        .sum();
+    let damping = Damping { loss_factor: 0.05, ratio: 0.0 };
+    for frequency in [1.0, 20.0, 90.0, 400.0] {
+        let square = (TAU * frequency).powi(2);
+        let forced = (k - masses * square).map(|x| Complex::new(x, 0.0))
+            + k.map(|x| Complex::new(0.0, x * damping.loss_factor));
+        let whole = forced * response.compliance(frequency, damping);
+        let off = (whole - Matrix6::identity()).map(Complex::norm);
+        // Forces and moments have different units.
+        assert!(off.max() < 1e-6, "{frequency}: {off}");
+    }
 }
 
 /// Frequencies do not depend on where a mechanism stands, and the index is the lowest.

@@ -462,6 +462,19 @@ class Manipulator:
         mode: str = "home",
         threads: int | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def frequency_response(
+        self,
+        poses: _Rows,
+        frequencies: ArrayLike,
+        *,
+        link_stiffness: tuple[float, float],
+        joint_stiffness: dict[str, float] | None = None,
+        loss_factor: float = 0.0,
+        damping_ratio: float = 0.02,
+        density: float | None = None,
+        mode: str = "home",
+        threads: int | None = None,
+    ) -> NDArray[np.complex128]: ...
     def simulate(
         self,
         pose: _Rows,
