@@ -15,6 +15,8 @@ build=(cargo rustc --locked --release --target "$target" --target-dir "$folder" 
 for package in opm-mechanism opm-interference opm-analysis opm-accuracy opm-study opm-web parry3d-f64 toml toml_parser winnow serde_json; do
   build+=(--config "profile.release.package.$package.opt-level=\"s\"")
 done
+# Copies of the same generic code in several crates become one.
+build+=(--config 'profile.release.lto="fat"')
 # The names of functions are a twentieth of the code, and nobody reads them in a page.
 last=(-- -C strip=symbols)
 

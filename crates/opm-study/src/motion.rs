@@ -8,6 +8,7 @@ mod summary;
 pub(crate) use driven::Driven;
 pub use driven::Duty;
 pub use reacting::Bearing;
+#[cfg(feature = "recording")]
 pub(crate) use reacting::Reacting;
 pub use summary::{Contacts, CoordinateRanges, MOST_LISTED, MotionSummary, Range};
 
@@ -135,7 +136,8 @@ impl<'a> MotionRequest<'a> {
                 Watch::new(of, Distances::new(interference))
             });
         let mut driven = self.efforts.map(|setup| Driven::new(self.manipulator, setup));
-        let mut reacting = self.reactions.and_then(|setup| Reacting::new(self.manipulator, setup));
+        let mut reacting =
+            self.reactions.and_then(|setup| reacting::Reacting::new(self.manipulator, setup));
         let mut number = 0;
         let open = self.each_batch(trajectory, |batch| {
             for (sample, changes) in batch {

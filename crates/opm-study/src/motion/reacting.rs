@@ -15,6 +15,7 @@ pub struct Reacting<'a> {
 }
 
 /// The components of a wrench, and their units.
+#[cfg(feature = "recording")]
 const COMPONENTS: [(&str, &str); 6] =
     [("FX", "N"), ("FY", "N"), ("FZ", "N"), ("MX", "N m"), ("MY", "N m"), ("MZ", "N m")];
 
@@ -35,6 +36,7 @@ impl<'a> Reacting<'a> {
     }
 
     /// The names of the columns of [`Reacting::values`], `reaction.NAME.FX`, with their units.
+    #[cfg(feature = "recording")]
     pub fn columns(manipulator: &Manipulator) -> impl Iterator<Item = (String, &'static str)> + '_ {
         manipulator.mechanism().joints().flat_map(|joint| {
             let name = &joint.name;
