@@ -230,7 +230,7 @@ impl Joint {
             "pitch" => self.pitch = given.read("a number, or None", |value| value.extract())?,
             "actuated" => self.actuated = given.read("True or False", |value| value.extract())?,
             "turns_back" => {
-                self.turns_back = given.read("True or False", |value| value.extract())?
+                self.turns_back = given.read("True or False", |value| value.extract())?;
             }
             "home" => self.home = number_or(0.0)?,
             "limits" => {

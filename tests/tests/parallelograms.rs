@@ -83,7 +83,7 @@ fn made(text: &str) -> Manipulator {
 
 /// The values of joints whose names start with a letter, leg by leg.
 fn named(manipulator: &Manipulator, joints: &[f64], letter: char, suffix: &str) -> Vec<f64> {
-    let each = manipulator.coordinates().into_iter().zip(joints);
+    let each = manipulator.coordinates().iter().zip(joints);
     each.filter(|(c, _)| c.name.starts_with(letter) && c.name[2..] == *suffix)
         .map(|(_, value)| *value)
         .collect()

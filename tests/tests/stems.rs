@@ -386,7 +386,7 @@ fn exechon(independent: &str) -> Result<Manipulator, String> {
 fn an_exechon_by_its_position() {
     let plain = Manipulator::read(EXECHON).unwrap();
     let m = exechon(r#"["x", "y", "z"]"#).unwrap();
-    let names: Vec<&str> = m.task_coordinates().iter().map(|c| &*c.name).collect();
+    let names: Vec<&str> = m.task_coordinates().iter().map(|c| c.name).collect();
     assert_eq!(names, ["x", "y", "z"]);
     assert_eq!(m.dependent_coordinates().len(), 3);
     let foot = Vector3::new(0.0, 0.4, 0.0);
@@ -419,7 +419,7 @@ fn an_exechon_by_its_position() {
             }
         }
         assert!(found || joints.is_none(), "{pose:?}");
-        assert!(orientations.len() <= 4 && orientations.len() % 2 == 0);
+        assert!(orientations.len() <= 4 && orientations.len().is_multiple_of(2));
         four += usize::from(orientations.len() == 4);
     }
     assert!(four > 90, "{four}");
