@@ -40,7 +40,7 @@ fn joint_json(leg: &str, joint: &Joint) -> Value {
         [one] => value(one),
         several => several.iter().map(value).collect(),
     };
-    json!({
+    let mut json = json!({
         "name": joint.name,
         "leg": leg,
         "type": joint.kind.name(),
@@ -49,7 +49,6 @@ fn joint_json(leg: &str, joint: &Joint) -> Value {
         "point": triple_json(&joint.point.coords),
         "pitch": pitch,
         "actuated": joint.actuated,
-        "turns_back": joint.turns_back,
         "coordinates": joint.coordinates.iter().map(|c| &*c.name).collect::<Vec<_>>(),
         "unit": each(|c| c.quantity.unit().into()),
         "home": each(|c| c.home.into()),
@@ -57,5 +56,9 @@ fn joint_json(leg: &str, joint: &Joint) -> Value {
         "max_rate": each(|c| json!(c.motion_limits.max_rate)),
         "max_acceleration": each(|c| json!(c.motion_limits.max_acceleration)),
         "max_effort": each(|c| json!(c.max_effort)),
-    })
+    });
+    if joint.turns_back {
+        json["turns_back"] = json!(true);
+    }
+    json
 }

@@ -406,6 +406,9 @@ impl Joint {
         [Self::new(name, JointKind::Revolute, axis, point), Self { turns_back: true, ..back }]
     }
 
+    /// The key in mechanism files of a hinge that turns back what the one before it turned.
+    pub(crate) const TURNS_BACK: &str = "turns_back";
+
     /// The name of the second hinge of a parallelogram.
     pub fn end_name(name: &str) -> String {
         format!("{name}.end")

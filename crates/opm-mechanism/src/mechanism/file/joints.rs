@@ -57,9 +57,6 @@ pub(super) const RESERVED: [&str; 15] = [
 /// two freedoms would be the same.
 const PARALLEL: f64 = 1e-6;
 
-/// The key of a hinge that turns back what the one before it turned, which `type = "parallelogram"` writes shorter.
-pub(super) const TURNS_BACK: &str = "turns_back";
-
 /// The `type` of a joint.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Type {
@@ -84,7 +81,7 @@ impl Type {
             keys.push("cone");
         }
         match self {
-            Self::Revolute => keys.push(TURNS_BACK),
+            Self::Revolute => keys.push(Joint::TURNS_BACK),
             Self::Parallelogram => keys.push("point2"),
             _ => {}
         }
@@ -429,7 +426,7 @@ fn read_joint(
     let units = table.reader.units();
     let cone = table.get("cone").filter(|_| kind.tilts());
     joint.cone = cone.and_then(|value| read_cone(&value, units));
-    let back = table.get(TURNS_BACK).filter(|_| kind == Type::Revolute);
+    let back = table.get(Joint::TURNS_BACK).filter(|_| kind == Type::Revolute);
     if back.is_some_and(|value| value.boolean().unwrap_or_default()) {
         joint.turns_back = true;
         if joint.actuated {

@@ -1,7 +1,6 @@
 //! Writing a mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
-use super::joints::TURNS_BACK;
 use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointCoordinate, JointKind};
 use crate::mechanism::{
     Cone, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, Payload, TaskHints,
@@ -205,7 +204,7 @@ impl Writer {
             entries.push("actuated = true".into());
         }
         if joint.turns_back {
-            entries.push(format!("{TURNS_BACK} = true"));
+            entries.push(format!("{} = true", Joint::TURNS_BACK));
         }
 
         let one_or_all = |values: Vec<String>| match &values[..] {

@@ -1,6 +1,5 @@
 //! The part of the schema that describes lists of joints.
 
-use super::super::joints::TURNS_BACK;
 use super::Properties;
 use super::values::{
     array, cases, closed, described, direction, exactly, form, name, number, object, point,
@@ -135,7 +134,7 @@ fn joint() -> Value {
                 3,
             ),
         ),
-        (TURNS_BACK, json!({ "description": TURNS_BACK_MEANS, "type": "boolean" })),
+        (Joint::TURNS_BACK, json!({ "description": TURNS_BACK_MEANS, "type": "boolean" })),
         ("pitch", number(PITCH, Quantity::Length)),
         (
             "actuated",
