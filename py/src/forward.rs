@@ -50,9 +50,9 @@ pub struct Assembly {
     within_limits: bool,
     /// Closure error of the legs: radians, and lengths divided by the mechanism's size.
     residual: f64,
-    /// Within this is one exact assembly, and no other one: radians, plus lengths divided by the mechanism's size. NaN where
+    /// Within this is one exact assembly, and no other one: radians, plus lengths divided by the mechanism's size. None where
     /// that is not proven, or was not asked for.
-    radius: f64,
+    radius: Option<f64>,
 }
 
 pickled!(Assembly { pose, mode, joints, imaginary, within_limits, residual, radius });

@@ -166,7 +166,9 @@ impl Assemblies {
             imaginary: vector(&self.imaginary)?,
             within_limits: part(py, &self.within_limits, place)?.is_truthy()?,
             residual: part(py, &self.residuals, place)?.extract()?,
-            radius: part(py, &self.radii, place)?.extract()?,
+            radius: part(py, &self.radii, place)?
+                .extract()
+                .map(|radius: f64| (!radius.is_nan()).then_some(radius))?,
         })
     }
 
