@@ -328,10 +328,11 @@ fn one_screw_stands_for_both_hinges() {
 /// The assembly that joints came from is proven: both hinges of a parallelogram are one unknown.
 #[test]
 fn assemblies_are_proven() {
-    for text in [DELTA_FILE.to_owned(), TURNING_FILE.to_owned(), schoenflies()] {
-        let m = made(&text);
+    for text in [DELTA_FILE, TURNING_FILE] {
+        let m = made(text);
         let mut at = m.solution();
-        let pose: Vec<f64> = m.home_pose().iter().map(|q| q + 0.02).collect();
+        let pose: Vec<f64> =
+            m.home_pose().iter().zip(1..).map(|(q, i)| q + 0.02 * f64::from(i)).collect();
         let solution = m.inverse(&pose, m.home_mode(), &mut at).unwrap().unwrap();
         let actuated: Vec<f64> = m.actuated().iter().map(|&i| solution.joints()[i]).collect();
         let list = m.forward(&actuated).unwrap().list;
@@ -339,7 +340,6 @@ fn assemblies_are_proven() {
         let number = list.iter().position(|assembly| is_pose(&assembly.pose)).unwrap();
         let certificates = m.certify(&list);
         let proof = certificates[number].proof().unwrap_or_else(|| panic!("not proven: {text}"));
-        // The other poses of four legs are not far.
-        assert!(proof.radius < 1e-5 && proof.distinct, "{proof:?}");
+        assert!(proof.radius < 1e-8 && proof.distinct, "{proof:?}");
     }
 }
