@@ -105,7 +105,7 @@ impl Manipulator {
     /// assert_eq!(certificates.len(), 2);
     /// for certificate in certificates {
     ///     let proof = certificate.proof().expect("a regular assembly");
-    ///     assert!(proof.radius < 1e-11 && proof.distinct);
+    ///     assert!(proof.radius < 1e-8 && proof.distinct);
     /// }
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
