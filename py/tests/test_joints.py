@@ -2,6 +2,7 @@
 
 import pickle
 import re
+from pathlib import Path
 
 import numpy as np
 import opm_kinematics as opm
@@ -139,24 +140,8 @@ def test_drives_are_checked_as_in_files():
 
 
 def test_a_parallelogram_is_two_hinges():
-    rail = opm.Manipulator.parse(
-        """
-format = 1
-name = "rail"
-units = { length = "mm", angle = "deg" }
-platform = { point = [0, 0, -300] }
-[[leg]]
-joints = [
-  { name = "s1", type = "prismatic", axis = [1, 0, 0], point = [-250, 0, 0], actuated = true },
-  { name = "p1", type = "parallelogram", axis = [0, 1, 0], point = [-250, 0, 0], point2 = [-50, 0, -300] },
-]
-[[leg]]
-joints = [
-  { name = "s2", type = "prismatic", axis = [1, 0, 0], point = [250, 0, 0], actuated = true },
-  { name = "p2", type = "parallelogram", axis = [0, 1, 0], point = [250, 0, 0], point2 = [50, 0, -300] },
-]
-"""
-    )
+    text = (Path(__file__).parents[2] / "tests/tests/parallelograms/rail.toml").read_text(encoding="utf-8")
+    rail = opm.Manipulator.parse(text)
     first, back = rail.legs["leg1"][1:]
     assert (first.name, first.turns_back, back.name, back.turns_back) == ("p1", False, "p1.end", True)
     values = dict(zip(rail.joint_names, rail.inverse([0.05, -0.32]).joints))

@@ -5,6 +5,7 @@ use nalgebra::{Isometry3, Point3, Rotation3, Vector3};
 use opm_core::Manipulator;
 use opm_core::decomposition::PlatformSet;
 use opm_core::decomposition::mobility::mobility;
+use opm_core::linkage::Linkage;
 use opm_core::mechanism::file;
 
 /// The dimensions of the Delta, metres: base, platform, crank, rod.
@@ -33,22 +34,7 @@ joints = [
 "#;
 
 /// Two sliders on one rail, each with a parallelogram: the platform moves in the plane and does not turn.
-const RAIL_FILE: &str = r#"
-format = 1
-name = "rail"
-units = { length = "mm", angle = "deg" }
-platform = { point = [0, 0, -300] }
-[[leg]]
-joints = [
-  { name = "s1", type = "prismatic", axis = [1, 0, 0], point = [-250, 0, 0], actuated = true },
-  { name = "p1", type = "parallelogram", axis = [0, 1, 0], point = [-250, 0, 0], point2 = [-50, 0, -300] },
-]
-[[leg]]
-joints = [
-  { name = "s2", type = "prismatic", axis = [1, 0, 0], point = [250, 0, 0], actuated = true },
-  { name = "p2", type = "parallelogram", axis = [0, 1, 0], point = [250, 0, 0], point2 = [50, 0, -300] },
-]
-"#;
+const RAIL_FILE: &str = include_str!("parallelograms/rail.toml");
 
 /// Legs in one plane whose platform turns behind the parallelogram.
 const TURNING_FILE: &str = r#"
@@ -195,27 +181,14 @@ fn rates_of_the_two_hinges_are_opposite() {
 }
 
 /// Two parallelograms in a row between hinges about the vertical, in two such legs: the Schoenflies Motion Generator.
-const GENERATOR_FILE: &str = r#"
-format = 1
-name = "generator"
-units = { length = "mm", angle = "deg" }
-platform = { point = [0, 0, 100] }
-[[leg]]
-name = "leg{i}"
-pattern = { count = 2, axis = [0, 0, 1] }
-joints = [
-  { name = "r{i}", type = "revolute", axis = [0, 0, 1], point = [400, 0, 0], actuated = true },
-  { name = "p{i}", type = "parallelogram", axis = [0, 1, 0], point = [370, 0, 40], point2 = [300, 0, 330], actuated = true },
-  { name = "q{i}", type = "parallelogram", axis = [0, 1, 0], point = [290, 0, 330], point2 = [70, 0, 120] },
-  { name = "s{i}", type = "revolute", axis = [0, 0, 1], point = [60, 0, 110] },
-]
-"#;
+const GENERATOR_FILE: &str = include_str!("parallelograms/generator.toml");
 
 /// The platform turns behind a parallelogram. The joints are held to the legs' products of exponentials, in every mode, and
 /// joints from which a pose was made are among those that are found.
 #[test]
 fn platforms_turn_behind_parallelograms() {
-    let files = [(TURNING_FILE.to_owned(), 3), (schoenflies(), 4), (GENERATOR_FILE.to_owned(), 4)];
+    let generator = GENERATOR_FILE.to_owned();
+    let files = [(TURNING_FILE.to_owned(), 3), (schoenflies(), 4), (generator, 4), (seven(), 4)];
     for (text, freedoms) in files {
         let m = made(&text);
         assert_eq!(m.decomposition().mobility, freedoms, "{text}");
@@ -312,6 +285,39 @@ fn the_pose_that_motors_came_from_is_found() {
             assert!((a - b).abs() < 1e-9, "{text}: {:?} {pose:?}", found.pose);
         }
     }
+}
+
+/// The generator with another hinge at the end of each leg, which the platform does not turn: legs of seven freedoms.
+fn seven() -> String {
+    let hinge = r#"  { name = "t{i}", type = "revolute", axis = [1, 0, 0], point = [60, 0, 110] },
+]"#;
+    let pattern = "pattern = { angles = [0, 90], axis = [0, 0, 1] }";
+    GENERATOR_FILE
+        .replace("pattern = { count = 2, axis = [0, 0, 1] }", pattern)
+        .replace("\n]\n", &format!("\n{hinge}\n"))
+}
+
+/// A loop is traced where the other joints hold a parallelogram together, and refused by name where they do not.
+#[test]
+fn loops_are_traced_where_they_hold_a_parallelogram() {
+    let of = |second: &str| {
+        let at = RAIL_FILE.rfind("[[leg]]").unwrap();
+        let text = format!("{}[[leg]]\njoints = [{second}]\n", &RAIL_FILE[..at]);
+        Linkage::new(&file::read(&text).unwrap().mechanism)
+    };
+    // The platform goes up and down: the slider follows as far as the bar is long.
+    let lift = of(r#"{ name = "lift", type = "prismatic", axis = [0, 0, 1], point = [0, 0, 0] }"#)
+        .unwrap();
+    let bar = 0.2_f64.hypot(0.3);
+    let range = lift.input("lift").unwrap().range();
+    let opm_core::linkage::InputRange::Intervals { intervals, .. } = range else { panic!() };
+    let [[low, high]] = intervals[..] else { panic!("{intervals:?}") };
+    assert!((low - 0.3 + bar).abs() < 1e-9 && (high - 0.3 - bar).abs() < 1e-9, "{low} {high}");
+    // The other leg would turn the platform.
+    let turns = r#"{ name = "a", type = "revolute", axis = [0, 1, 0], point = [200, 0, 0] },
+        { name = "b", type = "revolute", axis = [0, 1, 0], point = [100, 0, -200] }"#;
+    let refused = of(turns).unwrap_err().to_string();
+    assert!(refused.contains("the two hinges of its parallelogram"), "{refused}");
 }
 
 /// The screw of both hinges together is a translation across the bar.

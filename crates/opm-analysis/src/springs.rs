@@ -89,11 +89,8 @@ impl Springs {
         if given != expected {
             return Err(SpringError::Count { given, expected });
         }
-        for leg in &manipulator.mechanism().legs {
-            if let Some(end) = leg.joints.iter().position(|joint| joint.turns_back) {
-                let joint = leg.joints[end - 1].name.clone();
-                return Err(SpringError::Parallelogram { joint });
-            }
+        if let Some(joint) = manipulator.mechanism().parallelograms().next() {
+            return Err(SpringError::Parallelogram { joint: joint.name.clone() });
         }
         let links = [self.translation, self.rotation];
         match self.actuators.iter().chain(&links).find(|k| k.is_nan() || **k <= 0.0) {

@@ -42,19 +42,10 @@ impl Closure<'_> {
                 size * (rng.f64() * 2.0 - 1.0)
             });
             let mut start = DVector::from_iterator(quantities.len(), start);
-            self.turn_back(&mut start);
+            self.leg.hold_parallelograms(start.as_mut_slice());
             found.extend(self.solve(start));
         }
         found
-    }
-
-    /// Makes the second hinge of each parallelogram turn back what the first one turns.
-    fn turn_back(&self, values: &mut DVector<f64>) {
-        for (number, back) in self.leg.turn_back().into_iter().enumerate() {
-            if back {
-                values[number] = -values[number - 1];
-            }
-        }
     }
 
     fn solve(&self, q: DVector<f64>) -> Option<DVector<f64>> {
@@ -77,7 +68,7 @@ impl Closure<'_> {
                     *step *= self.size;
                 }
             }
-            self.turn_back(&mut step);
+            self.leg.hold_parallelograms(step.as_mut_slice());
             let tried = &q + step;
             let (after, derivative) = self.linear(&tried, rates);
             if after.norm() < miss.norm() {

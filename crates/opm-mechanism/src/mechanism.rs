@@ -68,6 +68,11 @@ impl Mechanism {
         self.legs.iter().flat_map(|leg| &leg.joints)
     }
 
+    /// The first hinges of all parallelograms.
+    pub fn parallelograms(&self) -> impl Iterator<Item = &Joint> {
+        self.legs.iter().flat_map(Leg::parallelograms)
+    }
+
     /// The joint whose first coordinate has this number among all joint coordinates.
     pub fn joint_from(&self, coordinate: usize) -> Option<&Joint> {
         let mut first = 0;

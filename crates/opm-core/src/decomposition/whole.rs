@@ -189,8 +189,11 @@ pub(super) fn split_or_whole(
     mechanism: &Mechanism,
     report: &Mobility,
 ) -> Result<Vec<Decomposition>, DecomposeError> {
-    let linked = mechanism.joints().any(|joint| joint.turns_back);
-    let split = if linked { Err(unsplit(mechanism, report)) } else { ranked(mechanism, report) };
+    // Sections of a leg are groups, and a parallelogram is in none but with other joints.
+    let split = match mechanism.parallelograms().next() {
+        Some(_) => Err(unsplit(mechanism, report)),
+        None => ranked(mechanism, report),
+    };
     let mut error = match split {
         Ok(found) => {
             let reflected =
@@ -287,7 +290,7 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
         Some(subspace) => WholeMiss::NoCoordinates { subspace },
         None => no_group.clone(),
     };
-    if mechanism.joints().any(|joint| joint.turns_back) {
+    if mechanism.parallelograms().next().is_some() {
         return Err(miss);
     }
     let is_stem = |leg: &Leg| Freedom::of_leg(leg).len() == dimension;

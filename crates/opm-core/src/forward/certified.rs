@@ -130,11 +130,7 @@ impl Manipulator {
     /// For each leg, how many of its passive joints can move without the others, wherever the leg is.
     pub(super) fn idle(&self) -> Vec<usize> {
         let mut rng = Rng::with_seed(71);
-        let mut drawn = |c: usize| {
-            let off = ABOUT_HOME * (2.0 * rng.f64() - 1.0) / self.weight(c);
-            self.coordinates()[c].home + off
-        };
-        let joints: Vec<f64> = (0..self.coordinates().len()).map(&mut drawn).collect();
+        let joints = self.joints_near_home(ABOUT_HOME, &mut rng);
         let legs = Legs::new(self, &joints, &Isometry3::identity(), 0.0);
         let still = DVector::zeros(legs.coordinates.len());
         let of_leg = |leg: usize| {
@@ -142,6 +138,20 @@ impl Manipulator {
             twists.ncols() - rank(twists, DEPENDENT)
         };
         (0..self.legs()).map(of_leg).collect()
+    }
+
+    /// Joint values at random, up to so far from home, radians and sizes. Parallelograms stay such; legs do not meet.
+    pub(super) fn joints_near_home(&self, off: f64, rng: &mut Rng) -> Vec<f64> {
+        let mut joints = Vec::with_capacity(self.coordinates().len());
+        for leg in &self.mechanism().legs {
+            let first = joints.len();
+            let mut own: Vec<f64> = (first..first + leg.coordinates().count())
+                .map(|c| off * (2.0 * rng.f64() - 1.0) / self.weight(c))
+                .collect();
+            leg.hold_parallelograms(&mut own);
+            joints.extend(own.iter().zip(leg.coordinates()).map(|(off, c)| c.home + off));
+        }
+        joints
     }
 
     /// The exact solution near an assembly.

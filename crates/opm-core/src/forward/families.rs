@@ -124,10 +124,7 @@ impl Mover<'_> {
         let mut found = Vec::new();
         for number in 0..=STARTS {
             let off = if number == 0 { 0.0 } else { NEAR_HOME };
-            let drawn = |(i, c): (usize, &crate::mechanism::joint::JointCoordinate)| {
-                c.home + off * (2.0 * rng.f64() - 1.0) / m.weight(i)
-            };
-            let mut joints: Vec<f64> = m.coordinates().iter().enumerate().map(drawn).collect();
+            let mut joints = m.joints_near_home(off, &mut rng);
             for (&c, &value) in m.actuated().iter().zip(actuated) {
                 joints[c] = value;
             }

@@ -19,6 +19,7 @@ pub use input::TracedInput;
 
 use crate::group::JointDisplacement;
 use crate::mechanism::Mechanism;
+use crate::mechanism::leg::Leg;
 use crate::numeric::angle::unit;
 use assemblies::Assemblies;
 use closed_loop::{ClosedLoop, FreedomKind, Motions, Posture};
@@ -42,6 +43,17 @@ pub struct Traced {
     solutions: Option<usize>,
 }
 
+/// Whether the second hinge of each parallelogram turns back what the first one turns, all along a curve.
+fn keeps_parallelograms(mechanism: &Mechanism, curve: &Curve) -> bool {
+    let back: Vec<bool> = mechanism.legs.iter().flat_map(Leg::turn_back).collect();
+    curve.knots.iter().all(|Knot { at, .. }| {
+        (1..back.len()).filter(|&freedom| back[freedom]).all(|freedom| {
+            let sum = at.values[freedom - 1] + at.values[freedom];
+            (sum - TAU * (sum / TAU).round()).abs() < SAME
+        })
+    })
+}
+
 impl Traced {
     /// Traces the loop of a mechanism of two legs.
     ///
@@ -49,8 +61,15 @@ impl Traced {
     /// It is rigid, or has several freedoms.
     pub fn new(mechanism: &Mechanism) -> Result<Self, Stuck> {
         let closed = ClosedLoop::new(mechanism);
-        let start = Knot::new(&closed, closed.home(), None)?;
+        let linked = mechanism.parallelograms().next().is_some();
+        let start = Knot::new(&closed, closed.home(), None).map_err(|stuck| match stuck {
+            Stuck::Several(_) if linked => Stuck::Parallelogram,
+            stuck => stuck,
+        })?;
         let mut curves = vec![Curve::through(&closed, start)?];
+        if linked && !keeps_parallelograms(mechanism, &curves[0]) {
+            return Err(Stuck::Parallelogram);
+        }
         let mut solutions = None;
         for held in 0..closed.count() {
             if closed.freedoms[held].kind != FreedomKind::Turn || closed.is_ball(held) {
@@ -72,6 +91,9 @@ impl Traced {
                     curves.extend(start.and_then(|start| Curve::through(&closed, start)));
                 }
             }
+        }
+        if linked {
+            curves.retain(|curve| keeps_parallelograms(mechanism, curve));
         }
         let arcs = vec![OnceLock::new(); closed.count()];
         Ok(Self { closed, curves, arcs, solutions })

@@ -3,6 +3,7 @@
 
 mod products;
 
+use crate::chain::whole::MOST_FREEDOMS;
 use crate::decomposition::mobility::frame;
 use crate::group::screw::Screw;
 use crate::mechanism::Mechanism;
@@ -215,10 +216,10 @@ impl Closure {
     fn step(&self, leg: &[LegJoint], joints: &mut [f64], target: &Isometry3<f64>) {
         /// Small enough that damping changes the solution by less than its rounding.
         const DAMPING: f64 = 1e-12;
-        // A leg has at most six freedoms. The columns after those of its passive joints are zeros.
+        // At most six freedoms of a leg are passive and move by themselves. The columns after theirs are zeros.
         let mut jacobian = Matrix6::zeros();
         let mut count = 0;
-        let mut before = [UnitQuaternion::identity(); 6];
+        let mut before = [UnitQuaternion::identity(); MOST_FREEDOMS];
         let mut g = Isometry3::identity();
         let mut at = 0;
         // Lengths are divided by the size; screws are taken about the platform's point.

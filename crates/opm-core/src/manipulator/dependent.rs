@@ -22,6 +22,7 @@
 mod complete;
 pub(crate) mod constraint;
 mod determining;
+mod error;
 pub(super) mod form;
 mod many;
 mod mirror;
@@ -34,18 +35,18 @@ pub(crate) mod zeros;
 use super::Mode;
 use super::leg::{CompiledLeg, Section};
 use super::mode::{Choices, ModeLayout};
-use crate::chain::whole::NoOrder;
 use crate::decomposition::mobility::assembled;
 use crate::decomposition::whole::Constrained;
 use crate::group::{JointDisplacement, SubspaceKind};
-use crate::mechanism::{Mechanism, TaskKey};
+use crate::mechanism::Mechanism;
 use crate::numeric::Quantity;
 use crate::task::{CoordinateKind, Task};
 use constraint::{Constraint, constraints, follows, order, target_of};
+pub use error::ConstraintError;
 pub(super) use many::Complete;
 use mirror::Mirror;
 use one_joint::OneJoint;
-use rows::{NoRows, Rows};
+use rows::Rows;
 use stem::Stem;
 use zeros::Function;
 
@@ -59,105 +60,6 @@ const LEVEL: f64 = 1e-9;
 /// A constraint of a further leg counts as obeyed if it is missed by less than this, in radians or shares of
 /// the size.
 pub const OBEYED: f64 = 1e-9;
-
-/// Why the constraining legs of a mechanism have no closed form.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ConstraintError {
-    /// The constraint of a leg does not determine any coordinate at home.
-    #[error(
-        "leg {leg} constrains its {section} section, but at home no coordinate follows from that constraint"
-    )]
-    Singular {
-        /// The leg's name.
-        leg: String,
-        /// The section that is constrained.
-        section: Section,
-    },
-    /// No coordinates of the platform determine the motion of the stem at home.
-    #[error(
-        "leg {leg} carries the platform, but at home no task coordinates determine its joints, expected another choice of \
-         `coordinates`, regular there"
-    )]
-    Poles {
-        /// The leg's name.
-        leg: String,
-    },
-    /// The motion of the stem has no closed form in the platform's coordinates.
-    #[error(
-        "leg {leg} carries the platform, but its joints do not follow from coordinates of the platform one by one: {reason}"
-    )]
-    Stem {
-        /// The leg's name.
-        leg: String,
-        /// Why not.
-        reason: NoOrder,
-    },
-    /// The constraints of several legs that are solved whole have no closed form.
-    #[error(transparent)]
-    Rows(NoRows),
-    /// A platform is the image of its base in a plane that is not level in its coordinates.
-    #[error(
-        "the platform is the image of its base in a plane, expected one that is at home across the third axis of the base, and roll,          pitch and yaw as coordinates, zero there"
-    )]
-    Mirror,
-    /// The file wants other independent coordinates than can be.
-    #[error(
-        "`independent` is {}, but the coordinates from which the others follow in closed form are {}",
-        given.join(", "), expected.join(", ")
-    )]
-    Independent {
-        /// The names in the file.
-        given: Vec<String>,
-        /// Those that are possible.
-        expected: Vec<String>,
-    },
-    /// The file wants a coordinate that the mechanism does not have.
-    #[error("`independent` has {name:?}, expected one of {}", expected.join(", "))]
-    Unknown {
-        /// The name in the file.
-        name: String,
-        /// The names of the task coordinates.
-        expected: Vec<String>,
-    },
-    /// The constraints of several legs differ, or those of one have no closed form in this order.
-    #[error(
-        "legs {} constrain the platform in more ways than closed-form inverse kinematics covers: the mobility is \
-         N = {mobility}, expected {determined}, with one constraining leg for each section, or several that \
-         constrain it in the same way",
-        legs.join(", ")
-    )]
-    Several {
-        /// The names of the constraining legs.
-        legs: Vec<String>,
-        /// The mobility of the mechanism, `N`.
-        mobility: usize,
-        /// The mobility that one constraining leg for each section would leave.
-        determined: usize,
-    },
-}
-
-impl ConstraintError {
-    /// The name of the first leg that it is about.
-    pub fn leg(&self) -> Option<&str> {
-        match self {
-            Self::Singular { leg, .. } | Self::Stem { leg, .. } | Self::Poles { leg } => Some(leg),
-            Self::Several { legs, .. } => legs.first().map(String::as_str),
-            Self::Rows(NoRows::Leg { leg, .. }) => Some(leg),
-            Self::Rows(_) | Self::Mirror | Self::Independent { .. } | Self::Unknown { .. } => None,
-        }
-    }
-
-    /// The key of `[task]` that causes the error, if one does.
-    pub fn key(&self) -> Option<TaskKey> {
-        match self {
-            Self::Independent { .. } | Self::Unknown { .. } | Self::Rows(NoRows::Wanted { .. }) => {
-                Some(TaskKey::Independent)
-            }
-            _ => None,
-        }
-    }
-}
 
 /// The numbers of the coordinates that the file wants as independent ones; `None` if it says nothing.
 fn wanted(task: &Task, mechanism: &Mechanism) -> Result<Option<Vec<usize>>, ConstraintError> {

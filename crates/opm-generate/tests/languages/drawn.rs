@@ -23,21 +23,7 @@ pub fn shipped() -> Vec<Manipulator> {
 
 /// Two legs of a hinge, two parallelograms in a row, and a hinge (the Schoenflies Motion Generator).
 fn generator() -> Manipulator {
-    let text = r#"
-format = 1
-name = "generator"
-units = { length = "mm", angle = "deg" }
-platform = { point = [0, 0, 100] }
-[[leg]]
-name = "leg{i}"
-pattern = { count = 2, axis = [0, 0, 1] }
-joints = [
-  { name = "r{i}", type = "revolute", axis = [0, 0, 1], point = [400, 0, 0], actuated = true },
-  { name = "p{i}", type = "parallelogram", axis = [0, 1, 0], point = [370, 0, 40], point2 = [300, 0, 330], actuated = true, limits = [-70, 80] },
-  { name = "q{i}", type = "parallelogram", axis = [0, 1, 0], point = [290, 0, 330], point2 = [70, 0, 120] },
-  { name = "s{i}", type = "revolute", axis = [0, 0, 1], point = [60, 0, 110] },
-]
-"#;
+    let text = include_str!("../../../../tests/tests/parallelograms/generator.toml");
     Manipulator::read(text).expect("its platform translates and turns about the vertical")
 }
 

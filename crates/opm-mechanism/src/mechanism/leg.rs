@@ -93,10 +93,35 @@ impl Leg {
         screws
     }
 
+    /// The first hinges of its [parallelograms](Joint::parallelogram).
+    pub fn parallelograms(&self) -> impl Iterator<Item = &Joint> {
+        self.joints.windows(2).filter(|two| two[1].turns_back).map(|two| &two[0])
+    }
+
     /// Of each freedom, whether it turns back what the one before it turned.
     pub fn turn_back(&self) -> Vec<bool> {
         let of = |joint: &Joint| std::iter::repeat_n(joint.turns_back, joint.freedoms());
         self.joints.iter().flat_map(of).collect()
+    }
+
+    /// Makes the second hinge of each parallelogram turn back what the first one turns, in displacements of the leg's freedoms.
+    ///
+    /// ```
+    /// use opm_core::nalgebra::{Point3, Vector3};
+    /// use opm_core::{Joint, Leg};
+    ///
+    /// let ends = [Point3::origin(), Point3::new(0.2, 0.0, 0.0)];
+    /// let leg = Leg::new("leg1", Joint::parallelogram("p1", Vector3::z_axis(), ends).to_vec());
+    /// let mut displacements = [0.3, 0.7];
+    /// leg.hold_parallelograms(&mut displacements);
+    /// assert_eq!(displacements, [0.3, -0.3]);
+    /// ```
+    pub fn hold_parallelograms(&self, displacements: &mut [f64]) {
+        for (freedom, back) in self.turn_back().into_iter().enumerate() {
+            if back {
+                displacements[freedom] = -displacements[freedom - 1];
+            }
+        }
     }
 
     /// Every coordinate of every joint, from base to platform. [`Leg::displacement`] takes its

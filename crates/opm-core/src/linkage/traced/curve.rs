@@ -44,6 +44,12 @@ pub enum Stuck {
         "its joints have rates at home that keep the loop closed, but it closes nowhere near home: it is rigid"
     )]
     FirstOrder,
+    /// A parallelogram would open.
+    #[error(
+        "the two hinges of its parallelogram could turn by different angles; a loop is traced where its other joints hold them \
+         together"
+    )]
+    Parallelogram,
     /// The curve has more knots than are kept.
     #[error("its motion does not come back within {MOST_KNOTS} steps")]
     Long,

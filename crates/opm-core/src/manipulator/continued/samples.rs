@@ -55,11 +55,7 @@ pub fn of_leg(m: &Manipulator, leg: usize, rng: &mut Rng, count: usize) -> Vec<S
             FARTHEST * unit(c.quantity, m.closure.size) * (2.0 * rng.f64() - 1.0)
         };
         let mut values: Vec<f64> = m.coordinates()[own.clone()].iter().map(&mut value).collect();
-        for (number, back) in m.mechanism().legs[leg].turn_back().into_iter().enumerate() {
-            if back {
-                values[number] = -values[number - 1];
-            }
-        }
+        m.mechanism().legs[leg].hold_parallelograms(&mut values);
         let of = |c: &usize| if own.contains(c) { values[c - own.start] } else { 0.0 };
         let actuated = m.actuated().iter().map(of).collect();
         Sample::new(&end(&m.mechanism().legs[leg], &values), actuated, m.closure.size)

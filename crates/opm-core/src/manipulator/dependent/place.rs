@@ -7,13 +7,10 @@
 //! two legs lie in one plane through `u`.
 
 use super::rows::{HOLDS, LEVEL, Row};
-use super::stem::Rotations;
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
-use crate::numeric::angle::near;
 use crate::numeric::svd::Svd;
-use crate::task::Task;
-use nalgebra::{DMatrix, Isometry3, Matrix3, Rotation3, Translation3, Unit, Vector3};
+use nalgebra::{DMatrix, Matrix3, Rotation3, Unit, Vector3};
 
 /// Axes whose sine is smaller are one.
 const APART: f64 = 0.1;
@@ -78,8 +75,7 @@ impl Place {
         let all = [couple.clone(), others[0].clone(), others[1].clone()];
         for step in 0..2 {
             let values = found.values(&all, step, [0.0; 2], &Vector3::zeros());
-            let middle = 0.5 * (values[0] + values[2]);
-            let unit = (0.5 * (values[0] - values[2])).hypot(values[1] - middle);
+            let unit = found.functions[step].amplitude(values);
             if unit < LEVEL {
                 return None;
             }
@@ -127,19 +123,4 @@ impl Place {
 /// The rotation about the base's axis behind that about the platform's.
 fn turned([u, m]: &[Unit<Vector3<f64>>; 2], [alpha, beta]: [f64; 2]) -> Matrix3<f64> {
     (Rotation3::from_axis_angle(u, alpha) * Rotation3::from_axis_angle(m, beta)).into_inner()
-}
-
-/// Writes the angles of an orientation from home to a pose: those nearest to what it holds.
-pub(super) fn write_angles(task: &Task, rotations: &Rotations, r: &Matrix3<f64>, pose: &mut [f64]) {
-    let rotation = Rotation3::from_matrix_unchecked(*r).into();
-    let at = rotations.centre.coords;
-    let g = Isometry3::from_parts(Translation3::from(at - r * at), rotation);
-    let ([v, b], _) = task.factors(&g);
-    let first = rotations.angles.first;
-    let section = if first < task.lower_count { v } else { b };
-    let homes = [0, 1, 2].map(|i| task.coordinates[first + i].home);
-    let found = task.angles(section.spherical(), homes);
-    for (value, held) in found.into_iter().zip(&mut pose[first..first + 3]) {
-        *held = near(value, *held);
-    }
 }

@@ -13,7 +13,7 @@
 
 use super::determining::determining;
 use super::form::{RowForm, RowsForm};
-use super::place::{Place, write_angles};
+use super::place::Place;
 use super::stem::{Rotations, rates};
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
@@ -24,7 +24,9 @@ use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::numeric::svd::Svd;
 use crate::task::Task;
-use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Point3, SMatrix, SVector, Vector3, Vector6};
+use nalgebra::{
+    DMatrix, DVector, Isometry3, Matrix3, Point3, Rotation3, SMatrix, SVector, Vector3, Vector6,
+};
 use std::f64::consts::FRAC_PI_2;
 
 /// An equation holds, or an equation follows from others, to within this, relative to its scale.
@@ -247,8 +249,7 @@ impl Rows {
         let plain = Function::harmonic(at_home, 1.0);
         found.turn = Some((factor, angle, plain));
         let values = plain.places().map(|turn| found.left(task, &home, turn));
-        let middle = 0.5 * (values[0] + values[2]);
-        let unit = (0.5 * (values[0] - values[2])).hypot(values[1] - middle);
+        let unit = plain.amplitude(values);
         if unit < LEVEL {
             return None;
         }
@@ -412,7 +413,7 @@ impl Rows {
                 p += task.lower.axes.column(i) * ((at - c.home) / self.size);
             }
             let r = place.orientation(&self.rows, &p, signs)?;
-            write_angles(task, &self.rotations, &r, pose);
+            self.rotations.write_angles(task, Rotation3::from_matrix_unchecked(r).into(), pose);
             return Ok(());
         }
         if let Some((factor, angle, function)) = self.turn {

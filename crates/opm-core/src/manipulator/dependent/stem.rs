@@ -39,7 +39,7 @@ pub(crate) struct Stem {
     coordinates: Vec<usize>,
     angles: Angles,
     /// What rotations are about.
-    pub centre: Point3<f64>,
+    centre: Point3<f64>,
 }
 
 /// A part of the displacement that follows.
@@ -58,7 +58,7 @@ enum Part {
 pub(super) struct Rotations {
     pub angles: Angles,
     axes: [Vector3<f64>; 3],
-    pub centre: Point3<f64>,
+    centre: Point3<f64>,
 }
 
 /// The angles among the coordinates.
@@ -87,9 +87,32 @@ impl Rotations {
         };
         Self { angles: Angles { count, first }, axes, centre }
     }
+
+    /// Writes the angles of an orientation from home to a pose: those nearest to what it holds.
+    pub fn write_angles(&self, task: &Task, rotation: UnitQuaternion<f64>, pose: &mut [f64]) {
+        let Angles { first, .. } = self.angles;
+        let found = self.angles.of_rotation(task, rotation, &self.centre);
+        for (value, held) in found.into_iter().zip(&mut pose[first..]) {
+            *held = near(value, *held);
+        }
+    }
 }
 
 impl Angles {
+    /// The three angles of a rotation about a centre, from home.
+    fn of_rotation(
+        self,
+        task: &Task,
+        rotation: UnitQuaternion<f64>,
+        centre: &Point3<f64>,
+    ) -> [f64; 3] {
+        let at = centre.coords;
+        let g = Isometry3::from_parts(Translation3::from(at - rotation * at), rotation);
+        let ([v, b], _) = task.factors(&g);
+        let section = if self.first < task.lower_count { v } else { b };
+        task.angles(section.spherical(), [0, 1, 2].map(|i| task.coordinates[self.first + i].home))
+    }
+
     /// The angles of the rotations of a pose; zeros for those that there are not.
     pub fn factors(self, task: &Task, pose: &[f64]) -> [f64; 3] {
         match self.count {
@@ -292,13 +315,7 @@ impl Stem {
         }
         let found = match turned {
             None => self.angles.of_factors(task, factors),
-            Some(rotation) => {
-                let at = self.centre.coords;
-                let g = Isometry3::from_parts(Translation3::from(at - rotation * at), rotation);
-                let ([v, b], _) = task.factors(&g);
-                let section = if first < task.lower_count { v } else { b };
-                task.angles(section.spherical(), [0, 1, 2].map(|i| homes[first + i]))
-            }
+            Some(rotation) => self.angles.of_rotation(task, rotation, &self.centre),
         };
         for (i, value) in (first..first + count).zip(found) {
             let follows = self.coordinates.contains(&i);

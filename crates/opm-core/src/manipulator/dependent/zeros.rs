@@ -46,6 +46,11 @@ impl Function {
         }
     }
 
+    /// The amplitude of the harmonic function with these values.
+    pub fn amplitude(&self, [first, second, third]: [f64; 3]) -> f64 {
+        (0.5 * (first - third)).hypot(second - 0.5 * (first + third))
+    }
+
     /// The slope at home of the function with these values.
     pub fn slope(&self, values: [f64; 3]) -> f64 {
         self.through(values).slope_at(0.0) / self.step

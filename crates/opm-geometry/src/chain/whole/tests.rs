@@ -259,6 +259,14 @@ fn regularity(leg: &Type, q: &[f64]) -> f64 {
 }
 
 #[test]
+fn more_than_two_parallelograms_are_refused() {
+    let joints = [pa(X, A, Y), pa(Y, B, X), pa(Z, C, X)];
+    let motions = [forward(&joints, &[0.1, -0.1, 0.2, -0.2, 0.3, -0.3])];
+    let refused = WholeLeg::new(&joints, &[true; 3], &motions, SIZE, &[]).unwrap_err();
+    assert_eq!(refused, NoOrder::Parallelograms { found: 3 });
+}
+
+#[test]
 fn each_type_has_its_choices() {
     for leg in types() {
         let whole = compiled(&leg);

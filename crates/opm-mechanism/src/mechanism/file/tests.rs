@@ -34,6 +34,26 @@ joints = [
 ]
 "#;
 
+/// Two sliders on a rail, each with a parallelogram.
+const RAIL: &str = r#"
+format = 1
+name = "rail"
+units = { length = "mm", angle = "deg" }
+platform = { point = [0, 0, -300] }
+
+[[leg]]
+joints = [
+  { name = "s1", type = "prismatic", axis = [1, 0, 0], actuated = true },
+  { name = "p1", type = "parallelogram", axis = [0, 1, 0], point = [-250, 0, 0], point2 = [-50, 0, -300], home = 20 },
+]
+
+[[leg]]
+joints = [
+  { name = "s2", type = "prismatic", axis = [1, 0, 0], actuated = true },
+  { name = "p2", type = "parallelogram", axis = [0, 1, 0], point = [250, 0, 0], point2 = [50, 0, -300] }, # as drawn
+]
+"#;
+
 fn r1_point(mechanism: &Mechanism) -> Point3<f64> {
     mechanism.joints().find(|joint| joint.name == "r1").unwrap().point
 }
@@ -176,24 +196,7 @@ fn sliders_without_points_are_on_their_legs() {
 /// A parallelogram is two hinges. A changed file keeps it as it was typed, and a written one says the same with hinges.
 #[test]
 fn a_parallelogram_stays_as_it_was_typed() {
-    let text = r#"
-format = 1
-name = "rail"
-units = { length = "mm", angle = "deg" }
-platform = { point = [0, 0, -300] }
-
-[[leg]]
-joints = [
-  { name = "s1", type = "prismatic", axis = [1, 0, 0], actuated = true },
-  { name = "p1", type = "parallelogram", axis = [0, 1, 0], point = [-250, 0, 0], point2 = [-50, 0, -300], home = 20 },
-]
-
-[[leg]]
-joints = [
-  { name = "s2", type = "prismatic", axis = [1, 0, 0], actuated = true },
-  { name = "p2", type = "parallelogram", axis = [0, 1, 0], point = [250, 0, 0], point2 = [50, 0, -300] }, # as drawn
-]
-"#;
+    let text = RAIL;
     let file = read(text).unwrap();
     let leg = &file.mechanism.legs[0];
     let names: Vec<&str> = leg.coordinates().map(|c| &*c.name).collect();
