@@ -27,6 +27,7 @@ mod one_subspace;
 mod paper;
 mod parallelograms;
 mod paths;
+mod rails;
 mod rejections;
 mod roll_pitch_yaw;
 mod rows;

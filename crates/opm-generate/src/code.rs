@@ -74,6 +74,9 @@ impl<'a> Writer<'a> {
         if matches!(&forms.whole, Some(WholeStep::Rows(rows)) if rows.by_place) {
             return Err(GenerateError::Place);
         }
+        if matches!(&forms.whole, Some(WholeStep::Rows(rows)) if rows.slides) {
+            return Err(GenerateError::Rail);
+        }
         Ok(Self { manipulator, task, forms, fields, functions: RefCell::default() })
     }
 

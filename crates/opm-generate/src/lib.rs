@@ -76,6 +76,11 @@ pub enum GenerateError {
          `independent` out"
     )]
     Place,
+    /// A leg slides a ball on a line, with a choice of its own.
+    #[error(
+        "a leg constrains the platform by a ball that slides on a line, for which no code is written"
+    )]
+    Rail,
     /// The closed forms have what the other languages do not know: this is a defect of opm.
     #[error("the closed forms cannot be written in this language, which is a defect of opm: {0}")]
     Unread(String),

@@ -28,6 +28,7 @@ mod many;
 mod mirror;
 pub(crate) mod one_joint;
 mod place;
+mod rail;
 mod rows;
 mod stem;
 pub(crate) mod zeros;
@@ -121,11 +122,11 @@ impl Whole {
         }
     }
 
-    /// The bits of its choices.
+    /// The bits of its choices, and of those of a leg that has to agree.
     fn bits(&self) -> [Option<u32>; 4] {
         match self {
             Self::Stem(stem) => stem.bits,
-            Self::Rows(rows) => [rows.bits[0], rows.bits[1], None, None],
+            Self::Rows(rows) => [rows.bits[0], rows.bits[1], rows.rail_bits[0], rows.rail_bits[1]],
             Self::Mirror(_) => [None; 4],
         }
     }
@@ -300,6 +301,10 @@ impl Dependent {
             Some(Whole::Rows(rows)) => {
                 let given = layout.pose_bits(rows.leg());
                 rows.bits.iter_mut().zip(given).for_each(|(to, bit)| *to = Some(bit));
+                if let Some(leg) = rows.rail_leg() {
+                    let of = |section| layout.section_bit(leg, section);
+                    rows.rail_bits = [of(Section::Lower), of(Section::Upper)];
+                }
             }
             Some(Whole::Mirror(_)) | None => {}
         }

@@ -110,6 +110,24 @@ impl Manipulator {
         }
     }
 
+    /// The displacement of a freedom of a leg that is solved whole, for a displacement of the platform in a mode, metres or radians;
+    /// `None` where the leg is out of reach.
+    pub(in crate::manipulator) fn slid(
+        &self,
+        leg: usize,
+        freedom: usize,
+        target: &Isometry3<f64>,
+        mode: Mode,
+    ) -> Option<f64> {
+        let whole = self.legs[leg].whole.as_ref()?;
+        let mut found = LegSolution::HOME;
+        whole.solve(target, self.modes.branches(mode, leg), &mut found).ok()?;
+        match whole.displacement(&found, freedom) {
+            JointDisplacement::Value(value) => Some(value),
+            JointDisplacement::Direction(_) => None,
+        }
+    }
+
     /// The same for all coordinates of a pose.
     fn legs_reach(&self, pose: &[f64], mode: Option<Mode>) -> bool {
         let (v, b) = self.task.sections(pose);

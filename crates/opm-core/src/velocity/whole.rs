@@ -470,7 +470,14 @@ impl Manipulator {
             }
             Some(Constraining::Rows(rows)) => {
                 let g = at.displacement(self);
-                rows.wrenches(&g).for_each(|(leg, wrench)| add(leg, wrench));
+                for (leg, wrench) in rows.wrenches(&g) {
+                    match wrench {
+                        Some(wrench) => add(leg, wrench),
+                        None => self
+                            .stem_wrenches(&differential(leg), point, 1)
+                            .for_each(|wrench| add(leg, wrench)),
+                    }
+                }
             }
             Some(Constraining::Mirror(mirror)) => {
                 let wrenches = self.mirror_wrenches(at, &mirror.legs, point, differential);

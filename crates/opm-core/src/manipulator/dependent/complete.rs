@@ -47,7 +47,7 @@ impl Dependent {
             let missed = |deficit| Unreachable { leg: whole.leg(), section: None, deficit };
             let found = match whole {
                 Whole::Stem(stem) => stem.complete(manipulator.task(), mode, pose),
-                Whole::Rows(rows) => rows.complete(manipulator.task(), mode, pose),
+                Whole::Rows(rows) => rows.complete(manipulator, mode, pose),
                 Whole::Mirror(mirror) => mirror.complete(manipulator.task(), pose),
             };
             return found.map_err(missed);

@@ -43,7 +43,8 @@ pub enum ConstraintError {
     Rows(NoRows),
     /// A platform is the image of its base in a plane that is not level in its coordinates.
     #[error(
-        "the platform is the image of its base in a plane, expected one that is at home across the third axis of the base, and roll,          pitch and yaw as coordinates, zero there"
+        "the platform is the image of its base in a plane, expected one that is at home across the third axis of the base, and roll, \
+         pitch and yaw as coordinates, zero there"
     )]
     Mirror,
     /// The file wants other independent coordinates than can be.

@@ -107,6 +107,8 @@ pub struct RowsForm {
     pub bit: Option<u32>,
     /// Whether the orientation follows from the position: then there are two choices, and nothing below says how.
     pub by_place: bool,
+    /// Whether a ball slides on a line: then what it slides is one unknown more, with a choice of its own.
+    pub slides: bool,
     /// The dependent positions.
     pub lengths: Vec<usize>,
     /// The factor of the orientation that follows and the coordinate that has it, its value at home, and the unit of the

@@ -9,23 +9,25 @@
 //! rows determine the positions that follow only where `F(ψ) = det [c | c · P + ⟨r, R⟩ + c₀] = 0`. That is
 //! `A cos ψ + B sin ψ + C` for the mechanisms that are covered, and its sign of slope names the branch. The positions are linear.
 //!
+//! One leg may also keep a ball that slides on a line at a circle, with one unknown more: see [`rail`](super::rail).
 //! Where a file asks for it, the orientation follows from the position instead: see [`place`](super::place).
 
 use super::determining::determining;
 use super::form::{RowForm, RowsForm};
 use super::place::Place;
+use super::rail::Rail;
 use super::stem::{Rotations, rates};
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
 use crate::decomposition::whole::{configurations, end};
-use crate::manipulator::Mode;
+use crate::manipulator::{Manipulator, Mode};
 use crate::mechanism::Mechanism;
 use crate::mechanism::leg::Leg;
 use crate::numeric::Quantity;
 use crate::numeric::svd::Svd;
 use crate::task::Task;
 use nalgebra::{
-    DMatrix, DVector, Isometry3, Matrix3, Point3, Rotation3, SMatrix, SVector, Vector3, Vector6,
+    DMatrix, DVector, Isometry3, Matrix3, Point3, Rotation3, SMatrix, Vector3, Vector6,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -42,8 +44,8 @@ const MOST: usize = 6;
 pub enum NoRows {
     /// A leg's constraint is not affine in the orientation and the position.
     #[error(
-        "leg {leg} constrains the platform in another way than by a point in a plane or by the angle of two axes: of its {lacking} \
-         constraints {found} are such"
+        "leg {leg} constrains the platform in another way than by a point in a plane, by the angle of two axes, or (one leg of all) by a \
+         ball that slides on a line and stays on a circle: of its {lacking} constraints {found} are such"
     )]
     Leg {
         /// The leg's name.
@@ -77,12 +79,14 @@ pub enum NoRows {
 /// An equation between orientation and position, lengths over the size.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
-    leg: usize,
+    pub leg: usize,
     /// Whether the direction turns with the platform.
-    carried: bool,
+    pub carried: bool,
     pub direction: Vector3<f64>,
     pub turn: Matrix3<f64>,
-    constant: f64,
+    pub constant: f64,
+    /// The wrench by which the leg holds the platform at home.
+    pub at_home: Vector6<f64>,
 }
 
 impl Row {
@@ -99,9 +103,15 @@ impl Row {
         self.direction_at(r).dot(p) + self.rest(r)
     }
 
-    /// The wrench at home.
-    fn at_home(&self) -> Vector6<f64> {
-        self.wrench(&Matrix3::identity(), &Vector3::zeros())
+    /// The equation as its wrench at home has length one.
+    fn normalized(mut self) -> Self {
+        self.at_home = self.wrench(&Matrix3::identity(), &Vector3::zeros());
+        let length = self.at_home.norm();
+        self.direction /= length;
+        self.turn /= length;
+        self.constant /= length;
+        self.at_home /= length;
+        self
     }
 
     /// Its rate for a twist `(ω; v)` about the reference point: the wrench by which the leg holds the platform.
@@ -129,6 +139,10 @@ pub(crate) struct Rows {
     turn: Option<(usize, usize, Function)>,
     /// How all angles follow from the position, where they do.
     place: Option<Place>,
+    /// The ball that slides on a line, and the number of its row.
+    rail: Option<(usize, Rail)>,
+    /// The bits of the choices of the leg of that ball.
+    pub rail_bits: [Option<u32>; 2],
     /// The number of rows that determine the angle alone.
     angles: usize,
     rotations: Rotations,
@@ -151,11 +165,15 @@ impl Rows {
         size: f64,
     ) -> Result<(Vec<usize>, Self), NoRows> {
         let reference = mechanism.platform;
-        let mut all = Vec::new();
+        let (mut all, mut rail) = (Vec::new(), None);
         for (number, leg) in mechanism.legs.iter().enumerate() {
             let lacking = 6_usize.saturating_sub(leg.screws().len());
             if lacking > 0 {
-                let found = rows(leg, number, &reference, size);
+                let mut found = rows(leg, number, &reference, size);
+                if found.is_empty() && lacking == 1 && rail.is_none() {
+                    rail = Rail::new(leg, number, &reference, size);
+                    found.extend(rail.as_ref().map(Rail::row));
+                }
                 if found.len() != lacking {
                     let (leg, found) = (leg.name.clone(), found.len());
                     return Err(NoRows::Leg { leg, lacking, found });
@@ -165,19 +183,24 @@ impl Rows {
         }
         // Couples first: they tell the angle by themselves.
         all.sort_by_key(|row| row.direction != Vector3::zeros());
-        let mut kept = independent(all);
-        for row in &mut kept {
-            let length = row.at_home().norm();
-            row.direction /= length;
-            row.turn /= length;
-            row.constant /= length;
-        }
+        let kept = independent(all);
         if kept.len() + freedoms != 6 {
             return Err(NoRows::Rank { left: 6 - kept.len(), freedoms });
         }
+        let rail = match rail {
+            None => None,
+            Some(rail) => match kept.iter().position(|row| row.leg == rail.leg) {
+                Some(row) => Some((row, rail)),
+                // Others demand the same.
+                None => {
+                    let leg = mechanism.legs[rail.leg].name.clone();
+                    return Err(NoRows::Leg { leg, lacking: 1, found: 0 });
+                }
+            },
+        };
         let rotations = Rotations::new(task, reference);
         // What the rows leave free at home.
-        let held = DMatrix::from_fn(kept.len(), 6, |i, j| kept[i].at_home()[j]);
+        let held = DMatrix::from_fn(kept.len(), 6, |i, j| kept[i].at_home[j]);
         let left = Svd::new(held).right.columns(kept.len(), freedoms).into_owned();
         let rates = rates(task, &left, &rotations);
         let suits = |independent: &[usize]| {
@@ -189,7 +212,7 @@ impl Rows {
             }
         };
         for independent in determining(&rates, &preferred(task), suits, |_| false) {
-            let found = Self::of(task, &independent, &kept, rotations, (reference, size));
+            let found = Self::of(task, &independent, (&kept, &rail), rotations, (reference, size));
             if let Some(rows) = found.filter(|rows| rows.holds(task, motions)) {
                 return Ok((independent, rows));
             }
@@ -206,7 +229,7 @@ impl Rows {
     fn of(
         task: &Task,
         independent: &[usize],
-        rows: &[Row],
+        (rows, rail): (&[Row], &Option<(usize, Rail)>),
         rotations: Rotations,
         (reference, size): (Point3<f64>, f64),
     ) -> Option<Self> {
@@ -220,13 +243,15 @@ impl Rows {
             lengths,
             turn: None,
             place: None,
+            rail: rail.clone(),
+            rail_bits: [None; 2],
             angles: of_angles,
             rotations,
             reference,
             size,
         };
         if let [_, _, _] = angles[..] {
-            found.place = Some(Place::new(rows)?);
+            found.place = Some(Place::new(rows).filter(|_| rail.is_none())?);
             return Some(found);
         }
         if angles.len() > 1 {
@@ -235,7 +260,8 @@ impl Rows {
         let Some(&angle) = angles.first() else {
             return (of_angles == 0).then_some(found);
         };
-        if of_angles > 1 {
+        // What a ball slides is found with the positions.
+        if of_angles > 1 || (rail.is_some() && of_angles == 0) {
             return None;
         }
         // The factor with this angle alone.
@@ -323,6 +349,7 @@ impl Rows {
             couples: self.angles,
             bit: self.bits[0],
             by_place: self.place.is_some(),
+            slides: self.rail.is_some(),
             lengths: self.lengths.clone(),
             turn: self
                 .turn
@@ -334,12 +361,20 @@ impl Rows {
 
     /// The number of its two-valued choices.
     pub fn choices(&self) -> usize {
-        if self.place.is_some() { 2 } else { usize::from(self.turn.is_some()) }
+        match self.place {
+            Some(_) => 2,
+            None => usize::from(self.turn.is_some()) + usize::from(self.rail.is_some()),
+        }
     }
 
     /// The number of the first leg that constrains.
     pub fn leg(&self) -> usize {
         self.rows.first().map_or(0, |row| row.leg)
+    }
+
+    /// The leg of the ball that slides on a line.
+    pub fn rail_leg(&self) -> Option<usize> {
+        self.rail.as_ref().map(|(_, rail)| rail.leg)
     }
 
     /// The legs that constrain.
@@ -348,10 +383,15 @@ impl Rows {
     }
 
     /// The wrenches by which legs hold the platform at a displacement, about its reference point, with lengths over the size, each
-    /// with the number of its leg.
-    pub fn wrenches(&self, g: &Isometry3<f64>) -> impl Iterator<Item = (usize, Vector6<f64>)> + '_ {
+    /// with the number of its leg. There is none for a ball that slides: where it is, joints tell.
+    pub fn wrenches(
+        &self,
+        g: &Isometry3<f64>,
+    ) -> impl Iterator<Item = (usize, Option<Vector6<f64>>)> + '_ {
         let (r, p) = (g.rotation.to_rotation_matrix().into_inner(), self.position(g));
-        self.rows.iter().map(move |row| (row.leg, row.wrench(&r, &p)))
+        let slides = |i: usize| self.rail.as_ref().is_some_and(|(row, _)| *row == i);
+        let rows = self.rows.iter().enumerate();
+        rows.map(move |(i, row)| (row.leg, (!slides(i)).then(|| row.wrench(&r, &p))))
     }
 
     fn position(&self, g: &Isometry3<f64>) -> Vector3<f64> {
@@ -386,7 +426,14 @@ impl Rows {
                     })
             };
             harmonic
-                && self.rows.iter().all(|row| row.value(&r, &p).abs() <= HOLDS)
+                && self.rows.iter().enumerate().all(|(i, row)| {
+                    let rail = self.rail.as_ref().filter(|(of, _)| *of == i);
+                    let miss = rail.map_or_else(
+                        || row.value(&r, &p).abs(),
+                        |(_, rail)| rail.miss(row, &r, &p),
+                    );
+                    miss <= HOLDS
+                })
                 && [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].into_iter().any(found)
         })
     }
@@ -395,18 +442,52 @@ impl Rows {
     ///
     /// # Errors
     /// By how much no angle satisfies the rows.
-    pub fn complete(&self, task: &Task, mode: Mode, pose: &mut [f64]) -> Result<(), ReachDeficit> {
+    pub fn complete(
+        &self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        pose: &mut [f64],
+    ) -> Result<(), ReachDeficit> {
         let minus = |bit: Option<u32>| bit.is_some_and(|bit| mode.0 >> bit & 1 == 1);
         let signs = self.bits.map(|bit| if minus(bit) { -1.0 } else { 1.0 });
-        self.complete_with(task, signs, pose)
+        let slid = self.complete_with(manipulator.task(), signs, pose)?;
+        match &self.rail {
+            Some((_, rail)) => self.check_slid(manipulator, mode, pose, (rail, slid)),
+            None => Ok(()),
+        }
     }
 
+    /// Checks that the leg of the ball slides in a mode as its constraint has it. Where the leg is out of reach, its own
+    /// solution tells so.
+    fn check_slid(
+        &self,
+        manipulator: &Manipulator,
+        mode: Mode,
+        pose: &[f64],
+        (rail, wanted): (&Rail, f64),
+    ) -> Result<(), ReachDeficit> {
+        let task = manipulator.task();
+        let mut all = [0.0; 6];
+        all.copy_from_slice(pose);
+        let g = task.displacement(&all);
+        let Some(slid) = manipulator.slid(rail.leg, rail.freedom(), &g, mode) else {
+            return Ok(());
+        };
+        let (r, p) = (g.rotation.to_rotation_matrix().into_inner(), self.position(&g));
+        let sliding = rail.sliding(&r, &p, &Vector3::zeros());
+        match rail.agrees(sliding, [slid / self.size, wanted]) {
+            true => Ok(()),
+            false => Err(ReachDeficit::length((slid - wanted * self.size).abs())),
+        }
+    }
+
+    /// The same with the signs of the slopes. Returns what the ball of a rail has slid, over the size.
     fn complete_with(
         &self,
         task: &Task,
         signs: [f64; 2],
         pose: &mut [f64],
-    ) -> Result<(), ReachDeficit> {
+    ) -> Result<f64, ReachDeficit> {
         if let Some(place) = &self.place {
             let mut p = Vector3::zeros();
             for (i, (at, c)) in pose.iter().zip(&task.coordinates).enumerate().take(3) {
@@ -414,7 +495,7 @@ impl Rows {
             }
             let r = place.orientation(&self.rows, &p, signs)?;
             self.rotations.write_angles(task, Rotation3::from_matrix_unchecked(r).into(), pose);
-            return Ok(());
+            return Ok(0.0);
         }
         if let Some((factor, angle, function)) = self.turn {
             let values = function.places().map(|at| self.left(task, pose, at));
@@ -427,11 +508,15 @@ impl Rows {
         }
         let r = self.orientation(task, pose, None);
         let mut matrix = SMatrix::<f64, MOST, 3>::zeros();
-        let mut right = SVector::<f64, MOST>::zeros();
+        // Without what a ball slides, and what that adds.
+        let mut right = SMatrix::<f64, MOST, 2>::zeros();
         for (i, row) in self.rows.iter().enumerate().skip(self.angles) {
             let (by, rest) = self.parts(task, row, &r, pose);
             (0..3).for_each(|j| matrix[(i, j)] = by[j]);
-            right[i] = -rest;
+            right[(i, 0)] = -rest;
+        }
+        if let Some((row, rail)) = &self.rail {
+            right[(*row, 1)] = -rail.by_slider(&r);
         }
         // Columns of positions that are known are unit vectors of rows that are not used.
         for j in self.lengths.len()..3 {
@@ -448,10 +533,29 @@ impl Rows {
         let Some(found) = square.solve_upper_triangular(&head) else {
             return Err(ReachDeficit::angle(FRAC_PI_2));
         };
-        for (place, &i) in self.lengths.iter().enumerate() {
-            pose[i] = task.coordinates[i].home + found[place] * self.size;
+        let mut slid = 0.0;
+        if let Some((_, rail)) = &self.rail {
+            let [mut p, mut by] = [Vector3::zeros(); 2];
+            for (i, (at, c)) in pose.iter().zip(&task.coordinates).enumerate().take(3) {
+                let axis = task.lower.axes.column(i);
+                match self.lengths.iter().position(|&length| length == i) {
+                    Some(place) => {
+                        p += axis * found[(place, 0)];
+                        by += axis * found[(place, 1)];
+                    }
+                    None => p += axis * ((at - c.home) / self.size),
+                }
+            }
+            let sign = signs[usize::from(self.turn.is_some())];
+            slid = rail
+                .slide(rail.sliding(&r, &p, &by), sign)
+                .map_err(|missed| ReachDeficit::length(missed.excess * self.size))?;
         }
-        Ok(())
+        for (place, &i) in self.lengths.iter().enumerate() {
+            let moved = found[(place, 0)] + slid * found[(place, 1)];
+            pose[i] = task.coordinates[i].home + moved * self.size;
+        }
+        Ok(slid)
     }
 }
 
@@ -465,7 +569,7 @@ fn preferred(task: &Task) -> Vec<usize> {
 fn independent(mut rows: Vec<Row>) -> Vec<Row> {
     let mut basis: Vec<Vector6<f64>> = Vec::new();
     rows.retain(|row| {
-        let mut rest = row.at_home().normalize();
+        let mut rest = row.at_home;
         // Twice, so that rounding is not left.
         for _ in 0..2 {
             rest = basis.iter().fold(rest, |rest, unit| rest - unit * unit.dot(&rest));
@@ -515,13 +619,10 @@ fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row
             0 => Vector3::zeros(),
             _ => Vector3::new(vector[0], vector[1], vector[2]),
         };
-        Row {
-            leg: number,
-            carried,
-            direction,
-            turn: Matrix3::from_column_slice(&vector.as_slice()[place..place + 9]),
-            constant: vector[place + 9],
-        }
+        let (turn, constant) = (&vector.as_slice()[place..place + 9], vector[place + 9]);
+        let turn = Matrix3::from_column_slice(turn);
+        Row { leg: number, carried, direction, turn, constant, at_home: Vector6::zeros() }
+            .normalized()
     };
     let mut found: Vec<Row> = fitted(None).iter().map(|vector| row(vector, false)).collect();
     for carried in [false, true] {
