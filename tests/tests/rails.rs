@@ -1,8 +1,10 @@
-//! A ball that slides on a line and stays on a circle, as the last leg of a 2PUR-PSR, against plain geometry.
+//! Balls that slide on a line: of the base and of the platform, as in a 3-PSP, or on a circle of the platform, as in a 2PUR-PSR. Both
+//! against plain geometry.
 
 use fastrand::Rng;
 use nalgebra::{Isometry3, Vector3};
 use opm_core::Manipulator;
+use opm_core::decomposition::PlatformSet;
 use opm_core::mechanism::file;
 
 /// A 2PUR-PSR (Y. Xu and others, 2017), with dimensions of no particular machine.
@@ -89,7 +91,7 @@ fn closure(m: &Manipulator, mut joints: &[f64], g: &Isometry3<f64>) -> f64 {
 fn a_2pur_psr_by_geometry() {
     let m = made(FILE);
     assert_eq!((m.decomposition().mobility, m.task_coordinates().len()), (3, 3));
-    let names: Vec<&str> = m.dependent_coordinates().iter().map(|c| &*c.name).collect();
+    let names: Vec<&str> = m.dependent_coordinates().iter().map(|c| c.name).collect();
     assert_eq!(names, ["x", "y", "yaw"]);
     let rod = 0.15_f64.hypot(0.3);
     let (mut rng, mut all, mut at) = (Rng::with_seed(5), m.all_modes(), m.solution());
@@ -194,4 +196,109 @@ joints = [
 "#;
     let refused = Manipulator::read(text).err().unwrap().to_string();
     assert!(refused.contains("leg2 constrains the platform in another way"), "{refused}");
+}
+
+/// The balls of a 3-PSP run on upright lines of the base, and on lines of the platform: each line of the platform meets its own.
+#[test]
+fn a_3psp_by_geometry() {
+    // The lines of the platform are level in the first case, and neither level nor through one point in the second one.
+    for [along, across, up] in [[1.0, 0.0, 0.0], [1.0, 0.2, 0.1]] {
+        let text = format!(
+            r#"
+format = 1
+name = "3-PSP"
+units = {{ length = "mm", angle = "deg" }}
+platform = {{ point = [0, 0, 300] }}
+[[leg]]
+name = "leg{{i}}"
+pattern = {{ count = 3, axis = [0, 0, 1] }}
+joints = [
+  {{ name = "p{{i}}", type = "prismatic", axis = [0, 0, 1], point = [200, 0, 0], actuated = true }},
+  {{ name = "s{{i}}", type = "spherical", point = [200, 0, 300] }},
+  {{ name = "r{{i}}", type = "prismatic", axis = [{along}, {across}, {up}], point = [200, 0, 300] }},
+]
+"#
+        );
+        let m = made(&text);
+        let names: Vec<&str> = m.dependent_coordinates().iter().map(|c| c.name).collect();
+        assert_eq!(names, ["x", "y", "yaw"]);
+        let (mut rng, mut at, mut solved) = (Rng::with_seed(11), m.solution(), 0);
+        for _ in 0..60 {
+            let pose = [0.3 + 0.1 * rng.f64(), 0.8 * rng.f64() - 0.4, 0.8 * rng.f64() - 0.4];
+            for mode in m.modes() {
+                let Some(solution) = m.inverse(&pose, mode, &mut at).unwrap() else { continue };
+                let joints = solution.joints();
+                let g = m.displacement_in(&pose, mode).unwrap();
+                let (p, turn) =
+                    ((g * m.mechanism().platform).coords, g.rotation.to_rotation_matrix());
+                for leg in 0..3 {
+                    let third = std::f64::consts::TAU / 3.0 * leg as f64;
+                    let about = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), third);
+                    let foot = about * Vector3::new(0.2, 0.0, 0.0);
+                    let slid = value(&m, joints, &format!("p{}", leg + 1));
+                    let ball = foot + Vector3::z() * (0.3 + slid);
+                    // The ball is on the line of the platform.
+                    let away = turn.inverse() * (ball - p) - foot;
+                    let line = about * Vector3::new(along, across, up);
+                    assert!(away.cross(&line).norm() < 1e-11, "{pose:?} {away:?}");
+                }
+                assert!(closure(&m, joints, &g) < 1e-11, "{pose:?}");
+                solved += 1;
+            }
+        }
+        assert!(solved > 60, "{solved}");
+    }
+}
+
+/// The legs of a 3-RPS on the edges of a cube (Z. Huang and others, 1995): at home the lines of its constraint forces meet, and it moves
+/// as about a point, but no farther.
+#[test]
+fn a_3rps_on_a_cube() {
+    let legs: String = (0..3)
+        .map(|i| {
+            let turned = |v: [i32; 3]| [v[(3 - i) % 3], v[(4 - i) % 3], v[(5 - i) % 3]];
+            let (foot, ball) = (turned([200, 0, 0]), turned([200, 200, 0]));
+            format!(
+                r#"
+[[leg]]
+name = "leg{i}"
+joints = [
+  {{ name = "r{i}", type = "revolute", axis = {:?}, point = {foot:?} }},
+  {{ name = "p{i}", type = "prismatic", axis = {:?}, point = {foot:?}, actuated = true }},
+  {{ name = "s{i}", type = "spherical", point = {ball:?} }},
+]
+"#,
+                turned([0, 0, 1]),
+                turned([0, 1, 0])
+            )
+        })
+        .collect();
+    let head = "format = 1\nname = \"3-RPS\"\nunits = { length = \"mm\", angle = \"deg\" }\nplatform = { point = [0, 0, 0] }\n";
+    let m = made(&format!("{head}{legs}"));
+    assert_eq!(m.decomposition().platform(), PlatformSet::Constrained);
+    let (mut rng, mut at, mut solved) = (Rng::with_seed(12), m.solution(), 0);
+    for _ in 0..60 {
+        let away = |c: &opm_core::task::TaskCoordinate, by: f64| {
+            let unit = if c.quantity == opm_core::Quantity::Length { 0.05 } else { 0.3 };
+            c.home + unit * (2.0 * by - 1.0)
+        };
+        let independent = m.home_pose().len();
+        let pose: Vec<f64> =
+            m.task_coordinates()[..independent].iter().map(|c| away(c, rng.f64())).collect();
+        for mode in m.modes() {
+            let Some(solution) = m.inverse(&pose, mode, &mut at).unwrap() else { continue };
+            let g = m.displacement_in(&pose, mode).unwrap();
+            assert!(closure(&m, solution.joints(), &g) < 1e-11, "{pose:?}");
+            // Each ball stays in the plane of its leg.
+            for i in 0..3 {
+                let turned = |v: [f64; 3]| {
+                    nalgebra::Point3::new(v[(3 - i) % 3], v[(4 - i) % 3], v[(5 - i) % 3])
+                };
+                let ball = g * turned([0.2, 0.2, 0.0]);
+                assert!(ball.coords.dot(&turned([0.0, 0.0, 1.0]).coords).abs() < 1e-11);
+            }
+            solved += 1;
+        }
+    }
+    assert!(solved > 100, "{solved}");
 }

@@ -407,6 +407,15 @@ impl Manipulator {
         self.modes.leg_modes(leg)
     }
 
+    /// Those of [`Manipulator::leg_modes`] in which the leg's choices are as they are given.
+    pub(crate) fn chosen_leg_modes(
+        &self,
+        choices: Choices,
+        leg: usize,
+    ) -> impl Iterator<Item = Mode> + use<> {
+        self.modes.chosen_leg_modes(choices, leg).map(|(_, mode)| mode)
+    }
+
     /// The mode with these branches of one leg's chains, and plus for all other legs.
     pub(crate) fn leg_mode(&self, leg: usize, branches: LegBranches) -> Mode {
         self.modes.leg_mode(leg, branches)

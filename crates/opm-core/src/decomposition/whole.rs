@@ -263,6 +263,8 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
     else {
         return Err(no_group);
     };
+    // A motion at home may look like a subgroup and be none: a 3-RPS on the edges of a cube.
+    let mut is_other = true;
     let miss = match common.class() {
         Some(SubspaceClass::Full) => {
             let found = Found {
@@ -287,8 +289,11 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
                 Err(miss) => miss,
             }
         }
-        Some(subspace) => WholeMiss::NoCoordinates { subspace },
-        None => no_group.clone(),
+        Some(subspace) => {
+            is_other = false;
+            WholeMiss::NoCoordinates { subspace }
+        }
+        None => no_group,
     };
     if mechanism.parallelograms().next().is_some() {
         return Err(miss);
@@ -296,7 +301,7 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
     let is_stem = |leg: &Leg| Freedom::of_leg(leg).len() == dimension;
     match mechanism.legs.iter().position(is_stem) {
         Some(stem) => Found::of_stem(mechanism, stem, frame.length).solved(mechanism, report),
-        None if miss == no_group && !is_doubtful(mechanism, report) => {
+        None if is_other && !is_doubtful(mechanism, report) => {
             let motions = assembled(mechanism);
             let constrained = match mirrored(&motions) {
                 Some(_) => Constrained::Mirror { freedoms: dimension },
@@ -309,7 +314,8 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
                 twists: common.screws(),
                 motions,
             };
-            found.solved(mechanism, report)
+            let of_group = !matches!(miss, WholeMiss::NoGroup { .. });
+            found.solved(mechanism, report).map_err(|other| if of_group { miss } else { other })
         }
         None => Err(miss),
     }

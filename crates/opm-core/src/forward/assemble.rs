@@ -4,7 +4,7 @@ use super::accept::{APART, MATCH};
 use super::{Assemblies, Assembly, Completeness, Unmet};
 use crate::group::JointDisplacement;
 use crate::manipulator::{
-    AllModes, ClosureBuffer, Continued, FoundDisplacements, Manipulator, Mode, Solution,
+    AllModes, Choices, ClosureBuffer, Continued, FoundDisplacements, Manipulator, Mode, Solution,
 };
 use nalgebra::Isometry3;
 use std::ops::Range;
@@ -103,9 +103,9 @@ impl Assembler<'_> {
     fn at(&mut self, g: &Isometry3<f64>) -> Option<Assembly> {
         let m = self.manipulator;
         let pose = self.pose(g, None);
-        let steps = self.steps(&pose, g)?;
+        let steps = self.steps(&pose, g);
         m.inverse_all(&pose, &mut self.all).ok()??;
-        let mode = self.legs_mode(steps)?;
+        let mode = steps.into_iter().find_map(|choices| self.legs_mode(choices))?;
         let solution = m.solution_in_mode(&self.all, mode, &mut self.solution)?;
         let mut assembly =
             m.assembly_of((&pose, mode), solution, self.wanted, &mut self.closure)?;
@@ -117,30 +117,27 @@ impl Assembler<'_> {
         (assembly.residual <= m.largest_residual()).then_some(assembly)
     }
 
-    /// The choices with which the dependent coordinates of a pose follow so that the platform is displaced by `g`.
-    fn steps(&self, pose: &[f64], g: &Isometry3<f64>) -> Option<Mode> {
+    /// The choices with which the dependent coordinates of a pose follow so that the platform is displaced by `g`, best first.
+    fn steps(&self, pose: &[f64], g: &Isometry3<f64>) -> Vec<Choices> {
         let m = self.manipulator;
-        let off = |all: &[f64]| m.apart(&m.task().displacement(all), g);
-        let Some(dependent) = &m.dependent else {
-            return (off(pose) < APART).then(Mode::default);
-        };
-        let completed = dependent.step_modes().filter_map(|mode| {
-            let all = m.completed(pose, mode).ok()?;
-            Some((off(&all), mode))
+        let completed = m.completions(None).filter_map(|choices| {
+            let all = m.completed(pose, choices.chosen).ok()?;
+            Some((m.apart(&m.task().displacement(&all), g), choices))
         });
-        let (error, mode) = completed.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (error < APART).then_some(mode)
+        let mut found: Vec<_> = completed.filter(|(error, _)| *error < APART).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().map(|(_, choices)| choices).collect()
     }
 
     /// The working mode with these choices of dependent coordinates in which the actuated joints have their values. Where a
     /// leg has them with several choices, in one that is within its limits, and else in that of home, if there are such.
-    fn legs_mode(&mut self, steps: Mode) -> Option<Mode> {
+    fn legs_mode(&mut self, choices: Choices) -> Option<Mode> {
         let m = self.manipulator;
         let most = if m.dependent.is_some() { APART } else { MATCH };
         let mut best: Vec<Option<(u8, Mode)>> = vec![None; m.legs()];
         for choice in 0..CHOICES {
-            let own = |leg: usize| m.leg_modes(leg).nth(choice);
-            let mode = (0..m.legs()).filter_map(own).fold(steps, Mode::with);
+            let own = |leg: usize| m.chosen_leg_modes(choices, leg).nth(choice);
+            let mode = (0..m.legs()).filter_map(own).fold(choices.chosen, Mode::with);
             // The joints of a leg that closes are written, whether others close or not.
             let _ = m.solution_in_mode(&self.all, mode, &mut self.solution);
             for (leg, best) in best.iter_mut().enumerate() {
@@ -156,7 +153,7 @@ impl Assembler<'_> {
                 }
             }
         }
-        best.into_iter().try_fold(steps, |mode, best| Some(mode.with(best?.1)))
+        best.into_iter().try_fold(choices.chosen, |mode, best| Some(mode.with(best?.1)))
     }
 
     /// The largest error of an actuated joint among these coordinates, in radians or shares of the size.

@@ -22,33 +22,12 @@ impl Manipulator {
     /// The same assembly with the coordinates that it has in another working mode; `None` where it is none of that mode.
     ///
     /// Where coordinates are dependent, two triples of angles may give one orientation, and the others may follow from each
-    /// in modes of its own: one pose of the platform, and one set of joints, then has a name in each of these modes.
+    /// in modes of its own: one pose of the platform, and one set of joints, then has a name in each of these modes. Other joints
+    /// than the actuated ones, as those of a leg without a motor, may have several values with the same actuated ones.
     pub fn assembly_in(&self, assembly: &Assembly, mode: Mode) -> Option<Assembly> {
         if assembly.mode == mode {
             return Some(assembly.clone());
         }
-        if self.is_whole() {
-            return self.whole_assembly_in(assembly, mode);
-        }
-        let dependent = self.dependent.as_ref()?;
-        if !dependent.differ_in_steps(assembly.mode, mode) {
-            return None;
-        }
-        let (mut all, mut pose) = (self.all_of(assembly), Vec::new());
-        self.write_independent(Some(mode), &mut all, &mut pose);
-        let completed = self.completed(&pose, mode).ok()?;
-        let displacements = [&completed, &all].map(|all| self.task().displacement(all));
-        let same = self.apart(&displacements[0], &displacements[1]) <= APART;
-        same.then(|| Assembly {
-            pose,
-            dependent: dependent.values(&all).collect(),
-            mode,
-            ..assembly.clone()
-        })
-    }
-
-    /// The same where every leg is solved whole: its other joints may have several values with the same actuated ones.
-    fn whole_assembly_in(&self, assembly: &Assembly, mode: Mode) -> Option<Assembly> {
         let (mut all, mut pose, mut solution) =
             (self.all_of(assembly), Vec::new(), self.solution());
         let place = self.task().displacement(&all);
@@ -70,7 +49,18 @@ impl Manipulator {
     /// Keeps the assemblies of one working mode, with the coordinates that they have in it:
     /// [`Manipulator::assembly_in`].
     pub fn keep_assemblies_in(&self, list: &mut Vec<Assembly>, mode: Mode) {
-        *list = list.iter().filter_map(|assembly| self.assembly_in(assembly, mode)).collect();
+        let mut kept: Vec<Assembly> = Vec::with_capacity(list.len());
+        for assembly in list.iter().filter_map(|assembly| self.assembly_in(assembly, mode)) {
+            // Several may differ in nothing but the joints of legs without a motor.
+            let off = |known: &Assembly| {
+                let joints = known.joints.iter().zip(&assembly.joints);
+                joints.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            };
+            if !kept.iter().any(|known| off(known) <= APART) {
+                kept.push(assembly);
+            }
+        }
+        *list = kept;
     }
 
     /// How far two poses of the platform in SE(3) are apart ([`Manipulator::platform_pose`]): the angle between their

@@ -122,7 +122,7 @@ impl Whole {
         }
     }
 
-    /// The bits of its choices, and of those of a leg that has to agree.
+    /// The bits of its choices.
     fn bits(&self) -> [Option<u32>; 4] {
         match self {
             Self::Stem(stem) => stem.bits,
@@ -309,6 +309,9 @@ impl Dependent {
             Some(Whole::Mirror(_)) | None => {}
         }
         let mut bits: Vec<u32> = self.own_bits().collect();
+        if let Some(Whole::Rows(rows)) = &self.whole {
+            bits.extend(rows.rail_bits.into_iter().flatten());
+        }
         let used = self.steps.iter().map(|step| (step.solution.leg(), step.solution.section()));
         let checked = self.checks.iter().map(|check| (check.leg, check.section));
         for (leg, section) in used.chain(checked) {
@@ -356,12 +359,6 @@ impl Dependent {
             let bits = bits.iter().enumerate();
             Mode(bits.fold(0, |mode, (i, bit)| mode | (combination >> i & 1) << bit))
         })
-    }
-
-    /// Whether two modes differ in no other choices than the steps' own.
-    pub fn differ_in_steps(&self, one: Mode, other: Mode) -> bool {
-        let own = self.own_bits().fold(0, |own, bit| own | 1 << bit);
-        (one.0 ^ other.0) & !own == 0
     }
 
     /// The constraints that only repeat others, as the legs and sections that they belong to.

@@ -6,7 +6,7 @@
 
 use super::leg::{CompileContext, CompiledLeg, LegBranches, LegSolution};
 use super::section::{ChainCoordinate, CompiledSection};
-use super::{Manipulator, Mode};
+use super::{Choices, Manipulator, Mode};
 use crate::chain::limits::Limits;
 use crate::chain::whole::{LegReach, MOST_FREEDOMS, WholeLeg};
 use crate::chain::{Chain, Part, ReachDeficit};
@@ -98,16 +98,20 @@ impl Manipulator {
     /// Whether all legs, which are solved whole, reach a pose within their limits, in one working mode, or (`None`) in any. Legs
     /// share no choices.
     pub(crate) fn whole_reaches(&self, pose: &[f64], mode: Option<Mode>) -> bool {
-        let Some(dependent) = &self.dependent else { return self.legs_reach(pose, mode) };
         let mut all = self.home.clone();
-        let mut reaches = |steps: Mode| {
-            dependent.complete_from_home(self, steps, pose, &mut all).is_ok()
-                && self.legs_reach(&all, mode)
-        };
-        match mode {
-            Some(mode) => reaches(mode),
-            None => dependent.step_modes().any(reaches),
-        }
+        self.completions(mode).any(|choices| {
+            let completed = match &self.dependent {
+                None => pose,
+                Some(dependent) => {
+                    let found = dependent.complete_from_home(self, choices.chosen, pose, &mut all);
+                    if found.is_err() {
+                        return false;
+                    }
+                    &all
+                }
+            };
+            self.legs_reach(completed, choices)
+        })
     }
 
     /// The displacement of a freedom of a leg that is solved whole, for a displacement of the platform in a mode, metres or radians;
@@ -129,7 +133,7 @@ impl Manipulator {
     }
 
     /// The same for all coordinates of a pose.
-    fn legs_reach(&self, pose: &[f64], mode: Option<Mode>) -> bool {
+    fn legs_reach(&self, pose: &[f64], choices: Choices) -> bool {
         let (v, b) = self.task.sections(pose);
         let rise = self.task.rise(pose);
         let target = self.task.raised(rise, self.task.isometry(&v, &b));
@@ -140,10 +144,7 @@ impl Manipulator {
                 let branches = self.modes.branches(mode, number);
                 whole.solve(&target, branches, &mut found).is_ok() && self.admits(leg, &found, rise)
             };
-            match mode {
-                Some(mode) => reaches(mode),
-                None => self.modes.leg_modes(number).any(reaches),
-            }
+            self.modes.chosen_leg_modes(choices, number).any(|(_, mode)| reaches(mode))
         })
     }
 }

@@ -163,6 +163,7 @@ impl Writer<'_> {
             true => rotated(r, constant(&row.direction)),
             false => constant(&row.direction),
         };
+        let c = row.across.map_or(c, |base| cross(constant(&base), c));
         let c = crate::trace::named(&fresh("along"), c);
         let axes = self.task.lower.axes;
         let along = |i: usize| dot(c, constant(&axes.column(i).into_owned()));

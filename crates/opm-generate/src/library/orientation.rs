@@ -12,11 +12,20 @@ functions! {
     /// The rotation by the smallest angle that takes the direction of a vector to that of another one.
     fn swing(from: Vector, to: Vector) -> Rotation {
         name!(a = normal_vector(from), b = normal_vector(to));
-        name!(cosine = dot(a, b), axis = cross(a, b));
-        when(cosine.lt(-1.0 + REACH), || {
-            give(rotation_about(normal_vector(perpendicular(a)), complex_of(-1.0, 0.0)));
+        name!(cosine = dot(a, b));
+        let (axis, scale) = (Vector::empty("axis"), Real::empty("scale"));
+        axis.set(cross(a, b));
+        scale.set(1.0 / (1.0 + cosine));
+        note("Nearly opposite vectors take the digits of both.");
+        when(cosine.lt(0.0), || {
+            axis.set(add(axis, -dot(a, axis), a));
+            name!(square = dot(axis, axis));
+            when(square.lt(REACH * REACH), || {
+                give(rotation_about(normal_vector(perpendicular(a)), complex_of(-1.0, 0.0)));
+            });
+            scale.set((1.0 - cosine) / square);
         });
-        name!(c = add(vector_of(0.0, 0.0, 0.0), 1.0 / (1.0 + cosine), axis));
+        name!(c = add(vector_of(0.0, 0.0, 0.0), scale, axis));
         Rotation::made(
             vector_of(cosine + axis.x * c.x, axis.z + axis.y * c.x, axis.z * c.x - axis.y),
             vector_of(axis.x * c.y - axis.z, cosine + axis.y * c.y, axis.x + axis.z * c.y),

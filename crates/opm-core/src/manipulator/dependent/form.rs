@@ -174,6 +174,8 @@ impl MirrorForm {
 pub struct RowForm {
     /// Whether the direction turns with the platform.
     pub carried: bool,
+    /// The direction is this one of the base across that which turns with the platform.
+    pub across: Option<Vector3<f64>>,
     /// The direction `c`.
     pub direction: Vector3<f64>,
     /// The factors `r` of the orientation in base directions, from home.

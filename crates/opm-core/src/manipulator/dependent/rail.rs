@@ -1,10 +1,12 @@
-//! A leg that keeps a point that slides on a line at a circle: a slider, a ball and a hinge (PSR, the last leg of a 2PUR-PSR).
+//! Legs of a slider, a ball, and a slider or a hinge: the ball slides on a line.
 //!
-//! The ball at `c + s d` of the base is on the circle of the platform about `o` with the axis `m` and the radius `ρ`. With
-//! `w = c + s d − P − R o`, that is `R m · w = 0`, a [row](super::rows) with one unknown more, and `|w| = ρ`. The rows are
-//! linear in the positions and in `s`, so `w` is linear in `s`, and the length is a quadratic equation. The unknown is not
-//! eliminated: at home `R m · d = 0`, and both of its values are at one pose.
+//! A ball between two sliders (PSP) makes a line of the platform meet one of the base: with the directions `d` and `e` and the
+//! ball at `c`, `(d × R e) · (c − P − R c) = 0`, a [row](super::rows).
 //!
+//! With a slider and a hinge (PSR, the last leg of a 2PUR-PSR) the ball at `c + s d` of the base is on the circle of the platform
+//! about `o` with the axis `m` and the radius `ρ`. With `w = c + s d − P − R o`, that is `R m · w = 0`, a row with one unknown more,
+//! and `|w| = ρ`. The rows are linear in the positions and in `s`, so `w` is linear in `s`, and the length is a quadratic
+//! equation. The unknown is not eliminated: at home `R m · d = 0`, and both of its values are at one pose.
 //! A hinge at the base and a slider at the platform are the same with base and platform exchanged.
 
 use super::rows::{HOLDS, LEVEL, Row};
@@ -12,6 +14,92 @@ use crate::chain::ReachDeficit;
 use crate::group::screw::Screw;
 use crate::mechanism::leg::Leg;
 use nalgebra::{Matrix3, Point3, Vector3, Vector6};
+
+/// The ball of a leg with one joint before it and one behind it.
+pub(super) struct Ball {
+    leg: usize,
+    /// From the platform's reference point, over the size.
+    point: Vector3<f64>,
+    /// The joints at the base and at the platform, with axes through that point.
+    ends: [End; 2],
+}
+
+/// A joint beside a ball, with a unit vector.
+#[derive(Clone, Copy)]
+enum End {
+    Slider(Vector3<f64>),
+    /// The axis, and the point on it that is nearest to the ball.
+    Hinge(Vector3<f64>, Vector3<f64>),
+}
+
+impl Ball {
+    /// That of a leg of five joints; the ball may be three axes through a point.
+    pub fn new(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Option<Self> {
+        let screws = leg.screws();
+        let [first, ball @ .., last] = &screws[..] else { return None };
+        let turns = |screw: &Screw| {
+            let turn = screw.angular.norm();
+            turn > LEVEL && screw.angular.dot(&screw.linear).abs() <= HOLDS * size * turn
+        };
+        if ball.len() != 3 || !ball.iter().all(turns) {
+            return None;
+        }
+        // A point `x` of an axis has `x × ω = v`.
+        let squares = ball.iter().fold(Matrix3::zeros(), |sum, screw| {
+            let cross = screw.angular.cross_matrix();
+            sum - cross * cross
+        });
+        let moments = ball.iter().map(|screw| screw.angular.cross(&screw.linear));
+        let point = squares.try_inverse()? * moments.sum::<Vector3<f64>>();
+        let misses = |screw: &Screw| (point.cross(&screw.angular) - screw.linear).norm();
+        let axes = Matrix3::from_fn(|i, j| ball[j].angular[i]);
+        if axes.determinant().abs() < LEVEL || ball.iter().any(|s| misses(s) > HOLDS * size) {
+            return None;
+        }
+        let from = |point: Vector3<f64>| (point - reference.coords) / size;
+        let end = |screw: &Screw| {
+            if screw.angular == Vector3::zeros() {
+                return Some(End::Slider(screw.linear.normalize()));
+            }
+            let axis = screw.angular.normalize();
+            let on_axis = screw.angular.cross(&screw.linear) / screw.angular.norm_squared();
+            let nearest = on_axis + axis * axis.dot(&(point - on_axis));
+            turns(screw).then(|| End::Hinge(axis, from(nearest)))
+        };
+        Some(Self { leg: number, point: from(point), ends: [end(first)?, end(last)?] })
+    }
+
+    /// The equation that a line of the platform meets one of the base, between two sliders that are not parallel at home.
+    pub fn lines(&self) -> Option<Row> {
+        let [End::Slider(base), End::Slider(own)] = self.ends else { return None };
+        let turn =
+            self.point.cross(&base) * own.transpose() - base * own.cross(&self.point).transpose();
+        let row = Row {
+            leg: self.leg,
+            carried: true,
+            across: Some(base),
+            direction: -own,
+            turn,
+            constant: 0.0,
+            at_home: Vector6::zeros(),
+        };
+        (base.cross(&own).norm() > LEVEL).then(|| row.normalized())
+    }
+
+    /// How the ball slides on a line, and stays on a circle.
+    pub fn rail(&self) -> Option<Rail> {
+        let (at_base, along, axis, centre) = match self.ends {
+            [End::Slider(along), End::Hinge(axis, centre)] => (true, along, axis, centre),
+            [End::Hinge(axis, centre), End::Slider(along)] => (false, along, axis, centre),
+            _ => return None,
+        };
+        let (leg, ball, unit) = (self.leg, self.point, 1.0);
+        let radius = (ball - centre).norm();
+        let mut found = Rail { leg, at_base, ball, along, axis, centre, radius, unit };
+        found.unit = found.wrench_at_home().norm();
+        (radius > LEVEL && found.unit > LEVEL).then_some(found)
+    }
+}
 
 /// How a ball moves; lengths over the size, points from the platform's reference point, all at home.
 #[derive(Clone, Debug)]
@@ -39,57 +127,6 @@ pub(super) struct Sliding {
 }
 
 impl Rail {
-    /// That of a leg of one slider, a ball (or three axes through a point) and one hinge, in either order.
-    pub fn new(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Option<Self> {
-        let mut screws = leg.screws();
-        let at_base = screws.first()?.angular == Vector3::zeros();
-        if !at_base {
-            screws.reverse();
-        }
-        let [slider, ball @ .., hinge] = &screws[..] else { return None };
-        let turns = |screw: &Screw| {
-            let turn = screw.angular.norm();
-            turn > LEVEL && screw.angular.dot(&screw.linear).abs() <= HOLDS * size * turn
-        };
-        if slider.angular != Vector3::zeros() || ball.len() != 3 || !ball.iter().all(turns) {
-            return None;
-        }
-        // A point `x` of an axis has `x × ω = v`.
-        let axes = Matrix3::from_fn(|i, j| ball[j].angular[i]);
-        let squares = ball.iter().fold(Matrix3::zeros(), |sum, screw| {
-            let cross = screw.angular.cross_matrix();
-            sum - cross * cross
-        });
-        let right = ball
-            .iter()
-            .fold(Vector3::zeros(), |sum, screw| sum + screw.angular.cross(&screw.linear));
-        let point = squares.try_inverse()? * right;
-        let misses = |screw: &Screw| (point.cross(&screw.angular) - screw.linear).norm();
-        if axes.determinant().abs() < LEVEL
-            || ball.iter().any(|screw| misses(screw) > HOLDS * size)
-            || !turns(hinge)
-        {
-            return None;
-        }
-        let axis = hinge.angular.normalize();
-        let on_axis = hinge.angular.cross(&hinge.linear) / hinge.angular.norm_squared();
-        let centre = on_axis + axis * axis.dot(&(point - on_axis));
-        let radius = (point - centre).norm() / size;
-        let from = |point: Vector3<f64>| (point - reference.coords) / size;
-        let mut found = Self {
-            leg: number,
-            at_base,
-            ball: from(point),
-            along: slider.linear.normalize(),
-            axis,
-            centre: from(centre),
-            radius,
-            unit: 1.0,
-        };
-        found.unit = found.wrench_at_home().norm();
-        (radius > LEVEL && found.unit > LEVEL).then_some(found)
-    }
-
     /// The wrench by which the leg holds the platform at home: along the ball's way, and along the circle, it does no work.
     fn wrench_at_home(&self) -> Vector6<f64> {
         let away = self.ball - self.centre;
@@ -115,7 +152,7 @@ impl Rail {
         let (direction, turn, constant) =
             (direction / self.unit, turn / self.unit, constant / self.unit);
         let (leg, carried) = (self.leg, self.at_base);
-        Row { leg, carried, direction, turn, constant, at_home }
+        Row { leg, carried, across: None, direction, turn, constant, at_home }
     }
 
     /// By how much the equation changes as the ball slides.

@@ -3,7 +3,8 @@
 //! A leg that lacks freedoms satisfies equations, *rows*, that are affine in the orientation `R` and linear in the position `P`
 //! of the platform's reference point: `c · P + ⟨r, R⟩ + c₀ = 0` with a direction `c` of the base or of the platform. A ball that stays in a plane of the
 //! base gives one, so does a point of the base that stays in a plane of the platform, and an axis of each that keep their angle.
-//! The rows of a leg are found as the equations that all its configurations have in common.
+//! The rows of a leg are found as the equations that all its configurations have in common. Where a line of the platform meets one
+//! of the base, `c` is across directions of both: see [`rail`](super::rail).
 //!
 //! Of the coordinates, at most one angle `ψ` is dependent. With the others known, `R` is affine in its cosine and sine, and the
 //! rows determine the positions that follow only where `F(ψ) = det [c | c · P + ⟨r, R⟩ + c₀] = 0`. That is
@@ -15,7 +16,7 @@
 use super::determining::determining;
 use super::form::{RowForm, RowsForm};
 use super::place::Place;
-use super::rail::Rail;
+use super::rail::{Ball, Rail};
 use super::stem::{Rotations, rates};
 use super::zeros::Function;
 use crate::chain::ReachDeficit;
@@ -44,7 +45,7 @@ const MOST: usize = 6;
 pub enum NoRows {
     /// A leg's constraint is not affine in the orientation and the position.
     #[error(
-        "leg {leg} constrains the platform in another way than by a point in a plane, by the angle of two axes, or (one leg of all) by a \
+        "leg {leg} constrains the platform in another way than by a point in a plane, by two lines that meet, by the angle of two axes, or (one leg of all) by a \
          ball that slides on a line and stays on a circle: of its {lacking} constraints {found} are such"
     )]
     Leg {
@@ -82,6 +83,8 @@ pub(super) struct Row {
     pub leg: usize,
     /// Whether the direction turns with the platform.
     pub carried: bool,
+    /// The direction is this one of the base across that which turns with the platform.
+    pub across: Option<Vector3<f64>>,
     pub direction: Vector3<f64>,
     pub turn: Matrix3<f64>,
     pub constant: f64,
@@ -91,7 +94,8 @@ pub(super) struct Row {
 
 impl Row {
     fn direction_at(&self, r: &Matrix3<f64>) -> Vector3<f64> {
-        if self.carried { r * self.direction } else { self.direction }
+        let c = if self.carried { r * self.direction } else { self.direction };
+        self.across.map_or(c, |base| base.cross(&c))
     }
 
     /// What there is beside the position.
@@ -104,7 +108,7 @@ impl Row {
     }
 
     /// The equation as its wrench at home has length one.
-    fn normalized(mut self) -> Self {
+    pub fn normalized(mut self) -> Self {
         self.at_home = self.wrench(&Matrix3::identity(), &Vector3::zeros());
         let length = self.at_home.norm();
         self.direction /= length;
@@ -121,7 +125,11 @@ impl Row {
         let mut moment =
             Vector3::new(a[(1, 2)] - a[(2, 1)], a[(2, 0)] - a[(0, 2)], a[(0, 1)] - a[(1, 0)]);
         if self.carried {
-            moment += c.cross(p);
+            // (d × ω × c) · P = ω · (c × (P × d))
+            moment += match self.across {
+                None => c.cross(p),
+                Some(base) => (r * self.direction).cross(&p.cross(&base)),
+            };
         }
         Vector6::new(moment.x, moment.y, moment.z, c.x, c.y, c.z)
     }
@@ -170,9 +178,14 @@ impl Rows {
             let lacking = 6_usize.saturating_sub(leg.screws().len());
             if lacking > 0 {
                 let mut found = rows(leg, number, &reference, size);
-                if found.is_empty() && lacking == 1 && rail.is_none() {
-                    rail = Rail::new(leg, number, &reference, size);
-                    found.extend(rail.as_ref().map(Rail::row));
+                if let Some(ball) = Ball::new(leg, number, &reference, size)
+                    && found.is_empty()
+                {
+                    found.extend(ball.lines());
+                    if found.is_empty() && rail.is_none() {
+                        rail = ball.rail();
+                        found.extend(rail.as_ref().map(Rail::row));
+                    }
                 }
                 if found.len() != lacking {
                     let (leg, found) = (leg.name.clone(), found.len());
@@ -337,8 +350,9 @@ impl Rows {
 
     /// They as plain data.
     pub fn form(&self) -> RowsForm {
-        let row = |Row { carried, direction, turn, constant, .. }: &Row| RowForm {
+        let row = |Row { carried, across, direction, turn, constant, .. }: &Row| RowForm {
             carried: *carried,
+            across: *across,
             direction: *direction,
             turn: *turn,
             constant: *constant,
@@ -621,8 +635,16 @@ fn rows(leg: &Leg, number: usize, reference: &Point3<f64>, size: f64) -> Vec<Row
         };
         let (turn, constant) = (&vector.as_slice()[place..place + 9], vector[place + 9]);
         let turn = Matrix3::from_column_slice(turn);
-        Row { leg: number, carried, direction, turn, constant, at_home: Vector6::zeros() }
-            .normalized()
+        Row {
+            leg: number,
+            carried,
+            across: None,
+            direction,
+            turn,
+            constant,
+            at_home: Vector6::zeros(),
+        }
+        .normalized()
     };
     let mut found: Vec<Row> = fitted(None).iter().map(|vector| row(vector, false)).collect();
     for carried in [false, true] {

@@ -251,12 +251,26 @@ fn vector((w, v): Quaternion) -> Vector3<f64> {
 /// it is about the cross product of the first one and the base axis that it is least along.
 #[inline(always)]
 fn shortest(from: &Vector3<f64>, to: &Vector3<f64>) -> Quaternion {
-    let lengths = (from.inner(*from) * to.inner(*to)).sqrt();
-    let w = lengths + from.inner(*to);
-    if w > OPPOSITE * lengths { (w, from.crossed(*to)) } else { opposite(from) }
+    let (lengths, along) = ((from.inner(*from) * to.inner(*to)).sqrt(), from.inner(*to));
+    if along > 0.0 {
+        (lengths + along, from.crossed(*to))
+    } else {
+        backwards(from, to, lengths - along)
+    }
 }
 
-/// Of the sum of the lengths of two vectors and their scalar product, relative to the lengths: they are opposite.
+/// The same by more than a right angle: nearly opposite vectors take the digits of their cross product and of the sum of their lengths
+/// and their scalar product. `apart` is the difference of these.
+fn backwards(from: &Vector3<f64>, to: &Vector3<f64>, apart: f64) -> Quaternion {
+    let axis = from.crossed(*to);
+    // Rounding has left a part along the first vector, by which that would come to another place.
+    let axis = axis - from * (from.inner(axis) / from.inner(*from));
+    let square = axis.inner(axis);
+    // |a × b|² = (|a| |b| − a · b) (|a| |b| + a · b)
+    if square > (OPPOSITE * apart).powi(2) { (square / apart, axis) } else { opposite(from) }
+}
+
+/// Where the cross product of two vectors is smaller, over their lengths, they are opposite.
 const OPPOSITE: f64 = 1e-14;
 
 #[cold]
