@@ -829,7 +829,10 @@ def test_every_unit_of_files_is_understood(browser, opm, tmp_path):
     moved = {}
     for length, angle, quarter in (("mm", "deg", 90), ("um", "mrad", 500 * math.pi)):
         mechanism, page = tmp_path / f"{length}.toml", tmp_path / f"{length}.html"
-        mechanism.write_text(text.replace('length = "mm", angle = "deg"', f'length = "{length}", angle = "{angle}"'))
+        scaled = text.replace('length = "mm", angle = "deg"', f'length = "{length}", angle = "{angle}"')
+        # The one angle of the file.
+        start = float(re.search(r"start = { value = ([-.0-9]+)", text)[1])
+        mechanism.write_text(scaled.replace(f"value = {start}", f"value = {start * quarter / 90}"))
         subprocess.run([opm, "explore", mechanism, "--quiet", "-o", page], check=True)
         explorer = Explorer(browser, page)
         found, moved[length] = handles(explorer), []

@@ -260,6 +260,8 @@ def fragments():
             yield text + f"[[leg]]\njoints = [\n{joints}\n]\n[[leg]]\njoints = [{other}]\n"
         elif kind.startswith("obstacles of "):
             yield named[kind.removeprefix("obstacles of ")] + "\n" + block
+        elif kind.startswith("part of "):
+            yield named[kind.removeprefix("part of ")].partition("[[leg]]")[0] + block
         else:
             text = named[kind.removeprefix("task of ")]
             yield re.sub(r"^\[task\]\n.*?\n\n", block + "\n", text, count=1, flags=re.M | re.S)

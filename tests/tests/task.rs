@@ -483,11 +483,11 @@ fn given_frames_shift_home() {
 /// A joint cannot have the name of any task coordinate: both are columns of one table.
 #[test]
 fn names_of_coordinates_are_no_names_of_joints() {
-    let text = opm_core::mechanism::examples::find("planar-3rpr").unwrap().text;
+    let text = opm_core::mechanism::examples::find("five-bar").unwrap().text;
     use CoordinateKind::{Azimuth, H, Pitch, Roll, Tilt, Torsion, Yaw};
     let rare = [Azimuth, H, Tilt, Torsion, Roll, Pitch, Yaw];
     for kind in CoordinateKind::ALL.into_iter().filter(|kind| !rare.contains(kind)) {
-        let renamed = text.replacen("name = \"A1\"", &format!("name = {:?}", kind.name()), 1);
+        let renamed = text.replacen("name = \"S1\"", &format!("name = {:?}", kind.name()), 1);
         assert_ne!(renamed, text);
         let error = Manipulator::read(&renamed).unwrap_err().to_string();
         assert!(error.contains("is the name of a task coordinate"), "{error}");

@@ -415,8 +415,9 @@ fn rates_and_accelerations_beyond_their_limits_are_found_between_samples() {
         (MotionLimit::Acceleration, amplitude * rate * rate, 0.5),
     ] {
         let text = opm_core::mechanism::examples::find("cartesian-wrist-6dof").unwrap().text;
-        let slow = format!("limits = [-100, 100], {} = {}", limit.key(), 1000.0 * share * at_most);
-        let text = text.replace("limits = [-100, 100]", &slow);
+        let limits = "limits = [\"-lift\", \"lift\"]";
+        let slow = format!("{limits}, {} = {}", limit.key(), 1000.0 * share * at_most);
+        let text = text.replace(limits, &slow);
         let manipulator = Manipulator::read(&text).unwrap();
         let z = manipulator.task_coordinates().iter().position(|c| c.name == "z").unwrap();
         let mut path: Vec<Harmonics> =

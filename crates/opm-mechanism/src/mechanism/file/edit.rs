@@ -131,7 +131,8 @@ pub(super) fn joints(
 /// The number of legs that a pattern makes.
 fn count_of(pattern: &Place<'_>) -> usize {
     let mirrored = if pattern.get("mirror").is_some() { 2 } else { 1 };
-    let count = pattern.get("count").and_then(|count| count.get_ref().as_integer());
+    let count = pattern.get("count").or_else(|| pattern.get("repeat"));
+    let count = count.and_then(|count| count.get_ref().as_integer());
     let count = count.and_then(|count| usize::from_str_radix(count.as_str(), count.radix()).ok());
     let angles = pattern.array("angles").map(<[_]>::len);
     mirrored * count.or(angles).unwrap_or(1)

@@ -53,6 +53,10 @@ pub(super) trait Scope {
     fn names(&self) -> Vec<String>;
     /// The units of the numbers.
     fn units(&self) -> FileUnits;
+    /// The number of the leg of a pattern that is read, which stands for `{i}` in names.
+    fn leg(&self) -> Option<usize> {
+        None
+    }
 }
 
 /// What a name is found to be.

@@ -157,8 +157,7 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
         .map_or_else(TaskHints::default, |task| read_task(&task, &mut locations));
 
     let tables = root.tables("leg", LEG_KEYS);
-    let mut patterns = Vec::new();
-    let described = legs(&tables, &mut patterns);
+    let (described, patterns) = legs(&tables);
     let (mut leg_names, mut joint_names) = (UniqueNames::new("legs"), UniqueNames::new("joints"));
     for name in RESERVED {
         joint_names.reserve(name, "a task coordinate or a column of tables");
@@ -171,7 +170,7 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     for leg in described {
         leg_names.add(&leg.name, root.reader, leg.table.location_of("name"));
         locations.legs.push(leg.table.at);
-        root.reader.number_leg(leg.number.map(|(number, _)| number + 1));
+        root.reader.number_leg(leg.number.map(|(number, _)| number));
         let mut joints =
             read_joints(leg.table, platform, leg.number, &mut joint_names).unwrap_or_default();
         root.reader.number_leg(None);
@@ -182,7 +181,7 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     }
     let at = root.location_of("leg");
     // How many legs a wrong pattern would make is not known.
-    let told = tables.iter().filter(|leg| leg.get("pattern").is_some()).count() > patterns.len();
+    let told = patterns.contains(&None);
     if legs.len() < 2 && !told && !root.reader.has_problem(at) {
         let (count, tables) = (legs.len(), if legs.len() == 1 { "table" } else { "tables" });
         let problem = format!("found {count} {tables} [[leg]], expected at least 2 legs");
@@ -191,21 +190,22 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
     let units = root.reader.units();
     let name = name.to_owned();
-    (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations, patterns)
+    let copies = patterns.into_iter().flatten().filter(|pattern| !pattern.text.is_empty());
+    (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations, copies.collect())
 }
 
 /// A leg of the file, or one of those that a pattern makes of it.
 struct Described<'t, 'a> {
     table: &'t Table<'a>,
     name: String,
-    /// Its number in the pattern, from 0, and how many there are.
+    /// Its number in the pattern, as names have it, and how many there are.
     number: Option<(usize, usize)>,
     place: Option<Placement>,
 }
 
-/// The legs of the file, in order, those of patterns one by one.
-fn legs<'t, 'a>(tables: &'t [Table<'a>], patterns: &mut Vec<LegPattern>) -> Vec<Described<'t, 'a>> {
-    let mut legs = Vec::new();
+/// The legs of the file, in order, those of patterns one by one, and the patterns; `None` in place of a wrong one.
+fn legs<'t, 'a>(tables: &'t [Table<'a>]) -> (Vec<Described<'t, 'a>>, Vec<Option<LegPattern>>) {
+    let (mut legs, mut patterns) = (Vec::new(), Vec::new());
     for table in tables {
         let pattern = table.get("pattern");
         let Some(value) = pattern else {
@@ -214,23 +214,27 @@ fn legs<'t, 'a>(tables: &'t [Table<'a>], patterns: &mut Vec<LegPattern>) -> Vec<
             legs.push(Described { table, name, number: None, place: None });
             continue;
         };
-        let Some(pattern) = Pattern::read(&value) else { continue };
+        let Some(pattern) = Pattern::read(&value) else {
+            patterns.push(None);
+            continue;
+        };
         let count = pattern.count();
-        for number in 0..count {
+        for index in 0..count {
             let name = leg_name(table, legs.len());
             let given = table.get("name");
+            let number = Some((pattern.first + index, count));
             let name = match given {
-                Some(_) => pattern::numbered(given.as_ref(), &name, Some((number, count))),
+                Some(_) => pattern::numbered(given.as_ref(), &name, number),
                 None => name,
             };
-            let (number, place) = (Some((number, count)), Some(pattern.place(number)));
+            let place = Some(pattern.place(index));
             legs.push(Described { table, name, number, place });
         }
         let names = legs[legs.len() - count..].iter().map(|leg| leg.name.clone());
         let text = pattern.describe(table.reader.units());
-        patterns.push(LegPattern { legs: names.collect(), text });
+        patterns.push(Some(LegPattern { legs: names.collect(), text }));
     }
-    legs
+    (legs, patterns)
 }
 
 /// Reads `[task]`: how the pose is measured. Whether it fits the geometry is checked later.

@@ -10,7 +10,9 @@ use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::TAU;
 
 /// The keys of `pattern`.
-pub(super) const KEYS: &[&str] = &["count", "axis", "point", "angles", "mirror"];
+pub(super) const KEYS: &[&str] = &["count", "axis", "point", "angles", "repeat", "mirror", "first"];
+/// The keys that say how many legs there are, of which one is given.
+const COUNTS: [&str; 3] = ["count", "angles", "repeat"];
 /// The keys of `mirror` in it.
 pub(super) const MIRROR_KEYS: &[&str] = &["normal", "point"];
 
@@ -29,6 +31,8 @@ pub struct Pattern {
     pub point: Point3<f64>,
     /// By how much each leg is turned, radians.
     pub angles: Vec<f64>,
+    /// The number of the first leg in names and expressions.
+    pub first: usize,
     /// A plane in which each of them is mirrored, if there is one: its normal and a point. The image of a leg follows it.
     pub mirror: Option<(Unit<Vector3<f64>>, Point3<f64>)>,
 }
@@ -40,24 +44,27 @@ impl Pattern {
         let axis = table.get("axis").and_then(|value| value.direction());
         let point = table.get("point").and_then(|value| value.point());
         let mirror = table.get("mirror").and_then(|value| read_mirror(&value));
-        let (count, angles) = (table.get("count"), table.get("angles"));
-        let angles = match (count, angles) {
-            (Some(_), Some(angles)) => {
-                angles.report("is given beside `count`, expected one of them");
+        let mut given = COUNTS.iter().filter_map(|&key| Some((key, table.get(key)?)));
+        let angles = match (given.next(), given.next()) {
+            (Some((key, _)), Some((_, other))) => {
+                other.report(format!("is given beside `{key}`, expected one of them"));
                 None
             }
-            (Some(count), None) => read_count(&count),
-            (None, Some(angles)) => read_angles(&angles),
-            (None, None) if table.get("mirror").is_some() => Some(vec![0.0]),
-            (None, None) => {
-                value.report("has no legs, expected `count`, `angles` or `mirror`");
+            (Some(("count", count)), None) => read_count(&count).map(around),
+            (Some(("angles", angles)), None) => read_angles(&angles),
+            (Some((_, repeat)), None) => read_count(&repeat).map(|count| vec![0.0; count as usize]),
+            (None, _) if table.get("mirror").is_some() => Some(vec![0.0]),
+            (None, _) => {
+                value.report("has no legs, expected `count`, `angles`, `repeat` or `mirror`");
                 None
             }
         };
+        let first = table.get("first").map_or(Some(1), |first| read_first(&first));
         Some(Self {
             axis: axis.unwrap_or(Vector3::z_axis()),
             point: point.map_or_else(Point3::origin, Point3::from),
             angles: angles?,
+            first: first?,
             mirror,
         })
     }
@@ -67,7 +74,7 @@ impl Pattern {
         self.angles.len() * if self.mirror.is_some() { 2 } else { 1 }
     }
 
-    /// How the legs lie, for people.
+    /// How the legs lie, for people; empty if none is a copy of another, since each has points of its own.
     pub(super) fn describe(&self, units: FileUnits) -> String {
         let vector = |axis: &Vector3<f64>| {
             let short = |c: f64| readable((c * 1e4).round() / 1e4);
@@ -75,6 +82,9 @@ impl Pattern {
         };
         let show = |angle: f64| units.show(angle, Quantity::Angle).to_string();
         let mut parts = Vec::new();
+        if self.angles.len() > 1 && self.angles.iter().all(|&angle| angle == 0.0) {
+            return String::new();
+        }
         if let [first, second, ..] = *self.angles {
             let step = second - first;
             let even = self.angles.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-9);
@@ -110,14 +120,29 @@ fn read_mirror(value: &Value<'_>) -> Option<(Unit<Vector3<f64>>, Point3<f64>)> {
     Some((normal?, point.map_or_else(Point3::origin, Point3::from)))
 }
 
-/// Reads the number of legs, which are all around the axis.
-fn read_count(value: &Value<'_>) -> Option<Vec<f64>> {
+/// Reads the number of legs.
+fn read_count(value: &Value<'_>) -> Option<i64> {
     let count = value.integer()?;
     if !(1..=MOST).contains(&count) {
         value.report(format!("is {count}, expected 1 to {MOST} legs"));
         return None;
     }
-    Some((0..count).map(|number| TAU * number as f64 / count as f64).collect())
+    Some(count)
+}
+
+/// The angles of so many legs, all around the axis.
+fn around(count: i64) -> Vec<f64> {
+    (0..count).map(|number| TAU * number as f64 / count as f64).collect()
+}
+
+/// Reads the number of the first leg.
+fn read_first(value: &Value<'_>) -> Option<usize> {
+    let first = value.integer()?;
+    if !(1..=MOST).contains(&first) {
+        value.report(format!("is {first}, expected the number of the first leg, 1 to {MOST}"));
+        return None;
+    }
+    Some(first as usize)
 }
 
 /// Reads the angles of legs, one by one.
@@ -187,7 +212,7 @@ impl Placement {
     }
 }
 
-/// A name of a pattern's leg or joint, with the leg's number; a problem is reported if it would be that of several legs.
+/// A name of a pattern's leg or joint, with the leg's number of so many legs; a problem is reported if it would be that of several legs.
 pub(super) fn numbered(
     value: Option<&Value<'_>>,
     name: &str,
@@ -203,7 +228,7 @@ pub(super) fn numbered(
                     "is {name:?} in every leg of the pattern, expected a name with {PLACE}, the number of the leg"
                 ));
             }
-            name.replace(PLACE, &(number + 1).to_string())
+            name.replace(PLACE, &number.to_string())
         }
         None => {
             if name.contains(PLACE)

@@ -6,6 +6,7 @@ mod fuzz;
 mod parametric;
 mod problems;
 mod round_trip;
+mod typed;
 
 /// A file with two joints in each leg and every optional entry of a joint.
 const JOINTS: &str = r#"format = 1

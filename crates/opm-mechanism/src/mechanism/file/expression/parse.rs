@@ -1,8 +1,10 @@
-//! The grammar: sums, products, powers, calls, points `[x, y, z]` and their components `p.x`.
+//! The grammar: sums, products, powers, calls, points `[x, y, z]` and their components `p.x`. A name in a leg of a pattern may
+//! have the leg's number in it: `A{i}`.
 
 use super::functions::call;
 use super::{Fault, Found, Scope, Term};
 use crate::mechanism::file::hint::nearest;
+use crate::mechanism::file::pattern::PLACE;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -234,8 +236,22 @@ impl<'t> Parser<'t> {
 
     fn name(&mut self) -> Result<Term, Fault> {
         let start = self.at;
-        let name: String = self.rest().chars().take_while(|&c| is_of_name(c)).collect();
-        self.at += name.len();
+        let mut name = String::new();
+        loop {
+            let part: String = self.rest().chars().take_while(|&c| is_of_name(c)).collect();
+            self.at += part.len();
+            name += &part;
+            if !self.rest().starts_with(PLACE) {
+                break;
+            }
+            let Some(leg) = self.scope.leg() else {
+                return Err(self.fault(format!(
+                    "found {PLACE}, which is the number of a leg in the joints of a `pattern`"
+                )));
+            };
+            name += &leg.to_string();
+            self.at += PLACE.len();
+        }
         if self.take(&['(']).is_some() {
             let given = self.list(')', &format!("after {name}("))?;
             let called = call(&name, &given, self.scope.units());

@@ -24,21 +24,21 @@ const LONGEST: usize = 200;
 #[derive(Default)]
 pub(in crate::mechanism::file) struct Names {
     parameters: HashMap<String, Option<Term>>,
-    index: Option<f64>,
+    index: Option<usize>,
     units: FileUnits,
 }
 
 impl Names {
     /// Sets the number of the leg that is read next.
     pub fn number_leg(&mut self, index: Option<usize>) {
-        self.index = index.map(|index| index as f64);
+        self.index = index;
     }
 }
 
 impl Scope for Names {
     fn value(&self, name: &str) -> Found {
         if let (INDEX, Some(index)) = (name, self.index) {
-            return Found::Term(Term::Number(index));
+            return Found::Term(Term::Number(index as f64));
         }
         match self.parameters.get(name) {
             Some(Some(term)) => Found::Term(*term),
@@ -55,6 +55,10 @@ impl Scope for Names {
 
     fn units(&self) -> FileUnits {
         self.units
+    }
+
+    fn leg(&self) -> Option<usize> {
+        self.index
     }
 }
 

@@ -44,10 +44,10 @@ fn parameter_key(key: &str) -> Value {
 pub fn pattern() -> Value {
     let keys: Properties =
         pattern::KEYS.iter().map(|&key| (key.to_owned(), pattern_key(key))).collect();
-    let description = "Makes several legs of the description: turned about an axis, mirrored, or both. {i} in names is \
-                       the number of the leg, and so is i in expressions.";
+    let description = "Makes several legs of the description: turned about an axis, mirrored, or with points of their own. \
+                       {i} in names is the number of the leg, also in those of parameters, and so is i in expressions.";
     let mut pattern = closed(description, keys, &[]);
-    let given = ["count", "angles", "mirror"].map(|key| json!({ "required": [key] }));
+    let given = ["count", "angles", "repeat", "mirror"].map(|key| json!({ "required": [key] }));
     pattern["anyOf"] = json!(given);
     pattern
 }
@@ -56,6 +56,13 @@ fn pattern_key(key: &str) -> Value {
     match key {
         "count" => json!({
             "description": "The number of legs, all around the axis.", "type": "integer", "minimum": 1,
+        }),
+        "repeat" => json!({
+            "description": "The number of legs, none of them turned: what differs has {i} or i in its expressions.",
+            "type": "integer", "minimum": 1,
+        }),
+        "first" => json!({
+            "description": "The number of the first leg, 1 if it is not given.", "type": "integer", "minimum": 1,
         }),
         "axis" => direction("the axis, that of z if it is not given"),
         "point" => point("a point of the axis, the origin if it is not given", 3),

@@ -191,7 +191,7 @@ fn every_number_may_be_an_expression() {
     let with = text.replacen("h = 120", "h = \"60*2\"", 1);
     assert_ne!(with, text);
     assert_eq!(read(&with).unwrap().mechanism, file.mechanism);
-    let joints = find("planar-3rpr").unwrap().text;
+    let joints = find("agile-eye").unwrap().text;
     let said = problems(&joints.replacen("point = [0, ", "point = [\"rb\", ", 1));
     assert!(
         said[0].contains("expected a point") || said[0].contains("is not a parameter"),
@@ -261,7 +261,16 @@ fn wrong_patterns_say_what_is_expected() {
         ("{ count = 0 }", "`count` is 0, expected 1 to 100 legs"),
         ("{ count = 3, angles = [1] }", "`angles` is given beside `count`"),
         ("{ angles = [] }", "`angles` has 0 angles"),
-        ("{ axis = [0, 0, 1] }", "`pattern` has no legs, expected `count`, `angles` or `mirror`"),
+        (
+            "{ axis = [0, 0, 1] }",
+            "`pattern` has no legs, expected `count`, `angles`, `repeat` or `mirror`",
+        ),
+        ("{ count = 3, repeat = 2 }", "`repeat` is given beside `count`, expected one of them"),
+        ("{ repeat = 0 }", "`repeat` is 0, expected 1 to 100 legs"),
+        (
+            "{ count = 3, first = 0 }",
+            "`first` is 0, expected the number of the first leg, 1 to 100",
+        ),
         ("{ cuont = 3 }", "did you mean `count`?"),
         ("{ count = 3, axis = [0, 0, 0] }", "`axis` is zero, expected a direction"),
         ("{ mirror = { point = [0, 0, 0] } }", "`normal` is missing"),
@@ -275,11 +284,81 @@ fn wrong_patterns_say_what_is_expected() {
         said.contains("`name` is \"A\" in every leg of the pattern, expected a name with {i}"),
         "{said}"
     );
-    let said = problems(&find("planar-3rpr").unwrap().text.replacen("\"leg1\"", "\"leg{i}\"", 1));
+    let said = problems(&find("five-bar").unwrap().text.replacen("\"left\"", "\"leg{i}\"", 1));
     assert!(
         said[0].contains("`name` has {i}, which is the number of a leg of a `pattern`"),
         "{said:?}"
     );
+}
+
+/// Legs with points of their own are those that are typed one by one.
+#[test]
+fn repeated_legs_have_parameters_of_their_own() {
+    let head = |legs: &str| {
+        format!(
+            r#"
+format = 1
+name = "p"
+units = {{ length = "m", angle = "deg" }}
+[parameters]
+A3 = {{ value = [1, 2, 0], unit = "length" }}
+A4 = {{ value = [-1, 2, 0], unit = "length" }}
+low4b = {{ value = -3, unit = "length" }}
+low3b = {{ value = -2, unit = "length" }}
+[platform]
+point = [0, 0, 1]
+{legs}"#
+        )
+    };
+    let leg = |number: &str, pattern: &str| {
+        format!(
+            r#"
+[[leg]]
+name = "leg{number}"
+{pattern}
+joints = [
+  {{ name = "a{number}", type = "revolute", axis = [0, 0, 1], point = "2*A{number} + [0, 0, A{number}.x]" }},
+  {{ name = "s{number}", type = "prismatic", axis = "A{number}", limits = ["low{number}b", 4] }},
+]
+"#
+        )
+    };
+    let pattern = leg("{i}", "pattern = { repeat = 2, first = 3 }");
+    let file = read(&head(&pattern)).unwrap();
+    let typed = read(&head(&(leg("3", "") + &leg("4", "")))).unwrap();
+    assert_near(&file.mechanism, &typed.mechanism);
+    let limits = |file: &MechanismFile| -> Vec<_> {
+        file.mechanism.coordinates().map(|c| c.limits).collect()
+    };
+    assert_eq!(limits(&file), limits(&typed));
+    // None of them is a copy of another.
+    assert!(file.patterns.is_empty());
+    let changed = file.with([("low4b", ParameterValue::Number(-1.0))]).unwrap();
+    let lows: Vec<f64> =
+        changed.mechanism.coordinates().filter_map(|c| Some(c.limits?[0])).collect();
+    assert_eq!(lows, [-2.0, -1.0]);
+    // What all legs have is one number of the text.
+    let limits = ParameterValue::Pair([-5.0, 5.0]);
+    let changed = file.with([("limits", limits)]).unwrap();
+    assert!(changed.text().contains("{ repeat = 2, first = 3 }"), "{}", changed.text());
+    assert!(changed.text().contains("limits = [-5, 5]"), "{}", changed.text());
+    // A name that there is not, and a number where there is no leg.
+    let said = problems(&head(&pattern.replace("low{i}b", "lw{i}b")));
+    assert!(said[0].contains("`lw3b` is not a parameter; did you mean `low3b`?"), "{said:?}");
+    assert!(said[1].contains("did you mean `low4b`?"), "{said:?}");
+    let alone = leg("{i}", "")
+        .replace("name = \"leg{i}\"", "")
+        .replace("\"a{i}", "\"a")
+        .replace("\"s{i}", "\"s");
+    let said = problems(&head(&alone));
+    assert!(
+        said[1].contains(
+            "`point`: found {i}, which is the number of a leg in the joints of a `pattern`"
+        ),
+        "{said:?}"
+    );
+    let said = problems(&head(&pattern).replace("value = -2", "value = \"low{i}b\""));
+    assert!(said[0].contains("`low3b`: found {i}"), "{said:?}");
 }
 
 /// What is changed of a shipped file by name changes its numbers, and nothing else of its text.
@@ -287,26 +366,26 @@ fn wrong_patterns_say_what_is_expected() {
 fn texts_keep_what_is_not_changed() {
     let pair = ParameterValue::Pair;
     let number = ParameterValue::Number;
-    let slider = "home = 14.98, limits = [5, 35] },";
+    let (stem, lift) = ("home = \"height\", limits = [650, 1300] },", "schoenflies-lift-4dof");
     for (name, change, from, to) in [
         (
-            "planar-3rpr",
-            ("S1.limits", pair([0.006, 0.035])),
-            slider,
-            "home = 14.98, limits = [6, 35] },",
+            "tricept",
+            ("S4.limits", pair([0.66, 1.3])),
+            stem,
+            "home = \"height\", limits = [660, 1300] },",
         ),
-        ("planar-3rpr", ("S1.limits", ParameterValue::None), slider, "home = 14.98 },"),
+        ("tricept", ("S4.limits", ParameterValue::None), stem, "home = \"height\" },"),
         (
-            "planar-3rpr",
-            ("S1.max_rate", number(0.2)),
-            slider,
-            "home = 14.98, limits = [5, 35], max_rate = 200 },",
+            "tricept",
+            ("S4.max_rate", number(0.2)),
+            stem,
+            "home = \"height\", limits = [650, 1300], max_rate = 200 },",
         ),
         (
-            "planar-3rpr",
-            ("A1.limits", pair([-0.5, 0.5])),
-            "axis = [0, 0, 1], point = [0, 0, 0] },",
-            "axis = [0, 0, 1], point = [0, 0, 0], limits = [-28.64788975654116, 28.64788975654116] },",
+            lift,
+            ("spin1.limits", pair([-0.5, 0.5])),
+            "point = \"H + up\", actuated = true },",
+            "point = \"H + up\", actuated = true, limits = [-28.64788975654116, 28.64788975654116] },",
         ),
         ("plano-spherical-5dof", ("leg1.h", number(0.13)), "h = 120", "h = 130"),
         (
