@@ -33,6 +33,7 @@ fn write(
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
     let code = generate(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
+    let code = code.with_dimensions(&loaded.file);
     let folder = &args.output;
     let files: Vec<_> = code.files.iter().map(|(name, text)| (folder.join(name), text)).collect();
     make(folder)?;

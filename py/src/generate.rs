@@ -114,6 +114,6 @@ impl Manipulator {
         generate: impl Fn(&opm_core::Manipulator) -> Result<Package, GenerateError> + Send + Sync,
     ) -> PyResult<Files> {
         let package = py.detach(|| generate(&self.inner)).map_err(|error| failed(&error))?;
-        Ok(package.files.into_iter().collect())
+        Ok(package.with_dimensions(&self.file()).files.into_iter().collect())
     }
 }

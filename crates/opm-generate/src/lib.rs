@@ -15,6 +15,7 @@
 
 mod c;
 mod code;
+mod dimensions;
 mod golden;
 mod library;
 mod matlab;
