@@ -52,7 +52,7 @@ impl<T: Real> Moved<T> {
 }
 
 /// Whether a vector is a point, or a direction, which translations leave alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Vector {
     Point,
     Direction,

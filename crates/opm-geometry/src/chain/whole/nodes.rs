@@ -3,20 +3,20 @@
 use super::element::{Element, Kind, Vector};
 use super::samples::Sample;
 use nalgebra::{Point3, Vector3};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// The number of a node.
 pub(super) type Id = usize;
 
 /// A link of the closed loop: a joint, or the target, which leads from the platform back to the base.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Link {
     Joint(usize),
     Target,
 }
 
 /// How a vector is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Node {
     /// A constant: its number among them.
     Constant(usize),
@@ -36,9 +36,10 @@ pub(super) struct Nodes<'a> {
     tiny: f64,
     pub constants: Vec<Vector3<f64>>,
     pub all: Vec<Node>,
-    values: Vec<Vec<Vector3<f64>>>,
+    /// At each sample, node after node.
+    values: Vec<Vector3<f64>>,
     costs: Vec<usize>,
-    found: HashMap<Node, Id>,
+    found: BTreeMap<Node, Id>,
 }
 
 impl<'a> Nodes<'a> {
@@ -51,13 +52,13 @@ impl<'a> Nodes<'a> {
             all: Vec::new(),
             values: Vec::new(),
             costs: Vec::new(),
-            found: HashMap::new(),
+            found: BTreeMap::new(),
         }
     }
 
     /// The value at a sample.
     pub fn value(&self, node: Id, sample: usize) -> Vector3<f64> {
-        self.values[node][sample]
+        self.values[node * self.samples.len() + sample]
     }
 
     /// How many operations it takes, each counted as often as it is used.
@@ -77,10 +78,12 @@ impl<'a> Nodes<'a> {
         if let Some(&id) = self.found.get(&node) {
             return id;
         }
-        let values = (0..self.samples.len()).map(|sample| value(self, sample)).collect();
+        for sample in 0..self.samples.len() {
+            let value = value(self, sample);
+            self.values.push(value);
+        }
         let id = self.all.len();
         self.all.push(node);
-        self.values.push(values);
         self.costs.push(cost);
         self.found.insert(node, id);
         id

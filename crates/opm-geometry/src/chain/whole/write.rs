@@ -27,13 +27,14 @@ impl Writer<'_, '_, '_> {
         self.done.get(id).copied().unwrap_or(false) || self.nodes.known(id).is_some()
     }
 
-    fn inputs(&self, id: Id) -> Vec<Id> {
-        match self.nodes.all[id] {
-            Node::Constant(_) => Vec::new(),
-            Node::Carried { of, .. } => vec![of],
-            Node::Meet([[a, u], [b, v]]) => vec![a, u, b, v],
-            Node::Cross(two) => two.to_vec(),
-        }
+    fn inputs(&self, id: Id) -> impl Iterator<Item = Id> + use<> {
+        let (ids, count) = match self.nodes.all[id] {
+            Node::Constant(_) => ([id; 4], 0),
+            Node::Carried { of, .. } => ([of; 4], 1),
+            Node::Meet([[a, u], [b, v]]) => ([a, u, b, v], 4),
+            Node::Cross([a, b]) => ([a, b, a, b], 2),
+        };
+        ids.into_iter().take(count)
     }
 
     fn need(&mut self, id: Id) {
@@ -63,34 +64,32 @@ impl Writer<'_, '_, '_> {
         seen.len()
     }
 
-    /// A vector carried forwards along the loop over so many links, or backwards.
-    fn carry(&mut self, kind: Vector, v: Id, body: usize, links: usize, forwards: bool) -> Id {
+    /// A vector carried forwards along the loop, or backwards: over no link, over one, up to so many.
+    fn carry(&mut self, kind: Vector, v: Id, body: usize, links: usize, forwards: bool) -> Vec<Id> {
         let bodies = self.leg.elements.len() + 1;
-        let mut all = v;
+        let mut all = vec![v];
         for i in 0..links {
             let link = (if forwards { body + i } else { body + 2 * bodies - 1 - i }) % bodies;
             let link = if link + 1 == bodies { Link::Target } else { Link::Joint(link) };
-            all = self.nodes.carried(link, forwards != (link == Link::Target), kind, all);
+            all.push(self.nodes.carried(link, forwards != (link == Link::Target), kind, all[i]));
         }
         all
+    }
+
+    /// The cheapest two of the ways that meet: forwards over some links, and backwards over the others.
+    fn cheapest(&self, forwards: &[Id], backwards: &[Id]) -> [Id; 2] {
+        let pairs = forwards.iter().zip(backwards.iter().rev()).map(|(&one, &other)| [one, other]);
+        // There is one over no link.
+        pairs.min_by_key(|&two| self.missing(two)).unwrap_or([forwards[0]; 2])
     }
 
     /// The cheapest two ways from a body, forwards and backwards, to what a vector is at the same body.
     fn ways(&mut self, kind: Vector, v: Vector3<f64>, body: usize) -> [Id; 2] {
         let bodies = self.leg.elements.len() + 1;
         let v = self.nodes.constant(v);
-        let mut best = ([v; 2], usize::MAX);
-        for links in 0..=bodies {
-            let two = [
-                self.carry(kind, v, body, links, true),
-                self.carry(kind, v, body, bodies - links, false),
-            ];
-            let missing = self.missing(two);
-            if missing < best.1 {
-                best = (two, missing);
-            }
-        }
-        best.0
+        let forwards = self.carry(kind, v, body, bodies, true);
+        let backwards = self.carry(kind, v, body, bodies, false);
+        self.cheapest(&forwards, &backwards)
     }
 
     /// What a direct kernel takes one vector to: it moves a vector, of which it uses a part, to another one.
@@ -189,31 +188,21 @@ pub(super) fn write(leg: Leg<'_>, nodes: &mut Nodes<'_>, steps: &[Candidate]) ->
     let mut kept: Vec<Id> = Vec::new();
     let balls_of_ids = match balls[..] {
         [ball] => {
-            let mut best = None;
             let centre = writer.nodes.constant(elements[ball].point);
-            for links in 0..bodies {
-                let two = [
-                    writer.carry(Vector::Point, centre, ball + 1, links, true),
-                    writer.carry(Vector::Point, centre, ball, bodies - 1 - links, false),
-                ];
-                let missing = writer.missing(two);
-                if best.is_none_or(|(_, least)| missing < least) {
-                    best = Some((two, missing));
-                }
-            }
-            if let Some((two, _)) = best {
-                two.into_iter().for_each(|id| writer.need(id));
-                kept.extend(two);
-                checks.push(Checked::Same(Vector::Point, two));
-            }
+            let forwards = writer.carry(Vector::Point, centre, ball + 1, bodies - 1, true);
+            let backwards = writer.carry(Vector::Point, centre, ball, bodies - 1, false);
+            let two = writer.cheapest(&forwards, &backwards);
+            two.into_iter().for_each(|id| writer.need(id));
+            kept.extend(two);
+            checks.push(Checked::Same(Vector::Point, two));
             Found::One(ball)
         }
         [one, two] => {
             let first = writer.nodes.constant(elements[one].point);
             let centre = writer.nodes.constant(elements[two].point);
-            let behind = writer.carry(Vector::Point, centre, two, two - one - 1, false);
-            let around = bodies - 1 - two + one;
-            let aim = writer.carry(Vector::Point, centre, two + 1, around, true);
+            let (between, around) = (two - one - 1, bodies - 1 - two + one);
+            let behind = writer.carry(Vector::Point, centre, two, between, false)[between];
+            let aim = writer.carry(Vector::Point, centre, two + 1, around, true)[around];
             for id in [behind, aim] {
                 writer.need(id);
                 kept.push(id);
