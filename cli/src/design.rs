@@ -40,7 +40,7 @@ pub fn run(args: &DesignArgs, output: &Output) -> Result<(), Failure> {
     let found = watch_steps(
         output,
         "designing",
-        Some(problem.budget),
+        Some(problem.most_evaluations()),
         || watch.evaluated(),
         || pool.install(|| design(&problem, &loaded.file, &mut files.log, &watch)),
     );

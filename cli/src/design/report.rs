@@ -5,7 +5,7 @@ use crate::output::Shown;
 use crate::text::{Table, plural, range, short};
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
-use opm_design::{Design, Measure, Outcome, Problem, Variable};
+use opm_design::{Design, Measure, Outcome, Polished, Problem, Variable};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -47,7 +47,9 @@ impl<'a> Units<'a> {
 
 impl Report<'_> {
     pub fn json(&self) -> Value {
-        let Outcome { designs, before, ranges, evaluations } = self.found;
+        let Outcome { designs, before, ranges, evaluations, polished } = self.found;
+        let polished =
+            polished.map(|p| json!({ "evaluations": p.evaluations, "from": p.from, "to": p.to }));
         let ranges: Map<String, Value> =
             ranges.iter().map(|(name, ends)| (name.clone(), json!(ends))).collect();
         let designs = designs.iter().zip(self.names).map(|(design, name)| {
@@ -62,6 +64,7 @@ impl Report<'_> {
             "name": self.loaded.file.mechanism.name,
             "objectives": self.problem.objectives.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "evaluations": { "upper": evaluations[0], "lower_or_whole": evaluations[1] },
+            "polished": polished,
             "resumed": self.resumed,
             "seed": self.problem.seed,
             "before": before.as_ref().map(|values| self.measures(values)),
@@ -88,7 +91,7 @@ impl Report<'_> {
     }
 
     pub fn text(&self) -> String {
-        let Outcome { designs, before, ranges, evaluations } = self.found;
+        let Outcome { designs, before, ranges, evaluations, polished } = self.found;
         let units = Units::new(self.problem, self.loaded);
         let measures = self.problem.measures();
         let mut text = String::new();
@@ -101,6 +104,20 @@ impl Report<'_> {
             let _ = write!(text, "; {} were known", self.resumed);
         }
         text += "\n";
+        if let (Some(Polished { evaluations, from, to }), [objective]) =
+            (polished, &*self.problem.objectives)
+        {
+            let (_, factor, symbol) = units.of(objective);
+            let show = |value: f64| format!("{} {symbol}", short(value / factor));
+            let (from, to) = (show(*from), show(*to));
+            let _ = writeln!(
+                text,
+                "polished by its rates, {} more: {objective} from {} to {}",
+                plural(*evaluations, "design"),
+                from.trim_end(),
+                to.trim_end()
+            );
+        }
         if !ranges.is_empty() {
             text += "imaginary joints:";
             let quantity = self.imaginary_quantity();

@@ -4,8 +4,9 @@ use crate::evaluate::{self, Ranges, Upper, Value};
 use crate::judge::Judged;
 use crate::log::{Columns, Log, LogError, fingerprint};
 use crate::measure::Measure;
-use crate::optimise;
-use crate::problem::{Problem, Variable, Variables, changed, numbers, scalars};
+use crate::problem::{Problem, Variable, Variables, changed, numbers, scalars, shares};
+use crate::smooth::sample;
+use crate::{optimise, polish};
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::MechanismFile;
 use opm_workspace::{Axis, Cancelled, Progress};
@@ -90,8 +91,21 @@ pub struct Outcome {
     pub before: Option<Vec<f64>>,
     /// The ranges of the imaginary joints, by name, that the lower section was designed for; none if all was designed at once.
     pub ranges: Ranges,
-    /// How many designs were evaluated: of the upper section, and of the lower section or the whole.
+    /// How many designs the search evaluated: of the upper section, and of the lower section or the whole.
     pub evaluations: [u64; 2],
+    /// What polishing did, where the objective is smooth ([`Problem::is_polished`]).
+    pub polished: Option<Polished>,
+}
+
+/// What polishing the best design by rates did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polished {
+    /// How many designs it evaluated, beside those of the search.
+    pub evaluations: u64,
+    /// The value of the objective that the search had found.
+    pub from: f64,
+    /// The value after it, which is as good or better, or that of a design that keeps the constraints better.
+    pub to: f64,
 }
 
 /// What a design is evaluated for.
@@ -175,9 +189,13 @@ pub fn design(
             stage = Stage::Lower { above: &above, cuts: &cuts };
         }
     }
-    let seen = work.search(stage, problem.budget - part)?;
+    let mut seen = work.search(stage, problem.budget - part)?;
+    let polished = match problem.is_polished() {
+        true => work.polish(stage, &mut seen)?,
+        false => None,
+    };
     let designs = work.chosen(&seen)?;
-    Ok(Outcome { designs, before, ranges, evaluations: [part, problem.budget - part] })
+    Ok(Outcome { designs, before, ranges, evaluations: [part, problem.budget - part], polished })
 }
 
 /// The values of an imaginary joint that the lower section has to reach its places with.
@@ -193,10 +211,17 @@ fn values(raw: &[f64]) -> Vec<f64> {
     raw.iter().copied().step_by(2).collect()
 }
 
+/// Values with their guides from the numbers of a table.
+fn pairs(raw: &[f64]) -> Vec<Value> {
+    raw.chunks(2).map(|pair| Value { value: pair[0], guide: pair[1] }).collect()
+}
+
 /// A design that was evaluated.
 struct Seen {
     numbers: Vec<f64>,
     judged: Judged,
+    /// The value of the first objective.
+    value: f64,
 }
 
 /// A design in progress.
@@ -306,8 +331,7 @@ impl Work<'_> {
             let cost = (1.0 - raw[0]) + WIDTH * raw[1];
             return Judged { costs: vec![cost], violation: self.too_wide(&raw[UPPER.len()..]) };
         }
-        let pairs = raw.chunks(2).map(|pair| Value { value: pair[0], guide: pair[1] });
-        Judged::new(self.problem, &self.measures, &pairs.collect::<Vec<_>>(), self.radius)
+        Judged::new(self.problem, &self.measures, &pairs(raw), self.radius)
     }
 
     /// By how much the ranges of imaginary joints are wider than constraints allow, relative to these.
@@ -322,6 +346,45 @@ impl Work<'_> {
         });
         // A range that is not known is not too wide.
         ranges.filter(|over| over.is_finite()).sum()
+    }
+
+    /// Goes on from the best design by its rates with the variables of a stage, and adds what it evaluates.
+    fn polish(
+        &mut self,
+        stage: Stage<'_>,
+        seen: &mut Vec<Seen>,
+    ) -> Result<Option<Polished>, DesignError> {
+        let variables = self.variables(stage).to_vec();
+        let best = least(seen);
+        let from = best.value;
+        let (above, own) = best.numbers.split_at(best.numbers.len() - scalars(&variables));
+        let (above, start) = (above.to_vec(), shares(&variables, own));
+        let scale = from.abs();
+        if !(scale.is_finite() && scale > 0.0) {
+            return Ok(None);
+        }
+        let mut evaluations = 0;
+        polish::polish(&start, self.problem.budget, &mut |all: &[Vec<f64>]| {
+            let design = |shares: &Vec<f64>| [&*above, &numbers(&variables, shares)].concat();
+            let designs: Vec<Vec<f64>> = all.iter().map(design).collect();
+            evaluations += designs.len() as u64;
+            let found = self.evaluated(stage, &designs)?;
+            let mut samples = Vec::new();
+            for (numbers, raw) in designs.into_iter().zip(found) {
+                samples.push(
+                    raw.as_ref()
+                        .and_then(|raw| sample(self.problem, &self.measures, &pairs(raw), scale)),
+                );
+                seen.extend(raw.map(|raw| self.seen(stage, numbers, &raw)));
+            }
+            Ok::<_, DesignError>(samples)
+        })?;
+        Ok(Some(Polished { evaluations, from, to: least(seen).value }))
+    }
+
+    /// A design with the numbers that were found of it.
+    fn seen(&self, stage: Stage<'_>, numbers: Vec<f64>, raw: &[f64]) -> Seen {
+        Seen { numbers, judged: self.judged(stage, raw), value: raw[0] }
     }
 
     /// Searches a stage, and gives all designs that assemble.
@@ -340,12 +403,11 @@ impl Work<'_> {
                 .map(|shares| [above, &numbers(&variables, shares)].concat())
                 .collect();
             let found = self.evaluated(stage, &designs)?;
-            let judged: Vec<Option<Judged>> =
-                found.iter().map(|raw| raw.as_ref().map(|raw| self.judged(stage, raw))).collect();
-            for (numbers, judged) in designs.into_iter().zip(&judged) {
-                seen.extend(judged.clone().map(|judged| Seen { numbers, judged }));
-            }
-            Ok::<_, DesignError>(judged)
+            let of = |(numbers, raw): (_, Option<Vec<f64>>)| Some(self.seen(stage, numbers, &raw?));
+            let all: Vec<Option<Seen>> = designs.into_iter().zip(found).map(of).collect();
+            let judged = all.iter().map(|one| Some(one.as_ref()?.judged.clone())).collect();
+            seen.extend(all.into_iter().flatten());
+            Ok::<Vec<Option<Judged>>, DesignError>(judged)
         };
         match (stage, objectives) {
             (Stage::Lower { .. } | Stage::Whole, 2) => {

@@ -8,6 +8,9 @@
 //! reach as many places as it can *with every value in these ranges*. A place that it reaches so is reached in every
 //! orientation.
 //!
+//! Where the one objective changes smoothly with the dimensions ([`Measure::is_smooth`]), the best design that was found is
+//! polished by its rates with them ([`Outcome::polished`]).
+//!
 //! ```
 //! use opm_core::mechanism::{examples, file};
 //! use opm_design::{Draft, Log, Watch, design};
@@ -39,9 +42,11 @@ mod judge;
 mod log;
 mod measure;
 mod optimise;
+mod polish;
 mod problem;
+mod smooth;
 
-pub use design::{Design, DesignError, Outcome, Watch, columns, design};
+pub use design::{Design, DesignError, Outcome, Polished, Watch, columns, design};
 pub use evaluate::Ranges;
 pub use file::{Draft, ProblemErrors};
 pub use log::{Columns, Log, LogError};

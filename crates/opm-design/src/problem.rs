@@ -104,6 +104,12 @@ pub fn scalars<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> usize {
     variables.into_iter().map(|variable| variable.bounds.len()).sum()
 }
 
+/// The shares of the way between the bounds of some numbers.
+pub(crate) fn shares(variables: &[Variable], numbers: &[f64]) -> Vec<f64> {
+    let bounds = variables.iter().flat_map(|variable| &variable.bounds);
+    bounds.zip(numbers).map(|([low, high], x)| ((x - low) / (high - low)).clamp(0.0, 1.0)).collect()
+}
+
 /// The numbers at some shares of the way between the bounds.
 pub(crate) fn numbers(variables: &[Variable], shares: &[f64]) -> Vec<f64> {
     let bounds = variables.iter().flat_map(|variable| &variable.bounds);
