@@ -12,7 +12,7 @@ OPM=${CARGO_TARGET_DIR:-$PWD/target}/release/opm
 export PEERS_PYTHON OPM
 "${CARGO:-cargo}" build --quiet --release --bin opm
 results=$("${CARGO:-cargo}" bench --quiet -p opm-benches)
-from_python=$("$PEERS_PYTHON" benches/peers/inverse.py)
+from_python=$("$PEERS_PYTHON" benches/peers/inverse.py && echo && "$PEERS_PYTHON" benches/peers/whole.py)
 
 cat <<END
 # Benchmarks
