@@ -155,7 +155,7 @@ fn main() {
     println!("|---|---:|{}", "---:|".repeat(FLAGS.len()));
     for example in EXAMPLES {
         let Ok(m) = Manipulator::read(example.text) else { continue };
-        let code = opm_generate::c(&m).expect("few choices");
+        let code = opm_generate::c(&m, opm_generate::Content::Kinematics).expect("few choices");
         let folder = tempfile::tempdir().expect("a directory for temporary files");
         for (name, text) in code.files() {
             fs::write(folder.path().join(name), text).expect("a file in it");

@@ -6,7 +6,7 @@ use crate::load;
 use crate::output::{Shown, is_stdout};
 use crate::target::Target;
 use opm_core::Manipulator;
-use opm_generate::{GenerateError, Package};
+use opm_generate::{Content, GenerateError, Package};
 use std::fs;
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub fn run(args: &GenerateArgs, output: &Output) -> Result<(), Failure> {
 /// Writes the files of a language.
 fn write(
     args: &CodeArgs,
-    generate: impl Fn(&Manipulator) -> Result<Package, GenerateError>,
+    generate: impl Fn(&Manipulator, Content) -> Result<Package, GenerateError>,
     output: &Output,
 ) -> Result<(), Failure> {
     if is_stdout(&args.output) {
@@ -32,7 +32,7 @@ fn write(
     }
     let loaded = load::open(&args.mechanism, output)?;
     let manipulator = loaded.compile()?;
-    let code = generate(&manipulator).map_err(|e| Failure::at(&loaded.label, e))?;
+    let code = generate(&manipulator, args.content()).map_err(|e| Failure::at(&loaded.label, e))?;
     let code = code.with_dimensions(&loaded.file);
     let folder = &args.output;
     let files: Vec<_> = code.files.iter().map(|(name, text)| (folder.join(name), text)).collect();

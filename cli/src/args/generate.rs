@@ -2,6 +2,7 @@
 
 use super::MechanismArgs;
 use clap::{Subcommand, ValueHint};
+use opm_generate::Content;
 use std::path::PathBuf;
 
 /// Write the kinematics of a mechanism as source code
@@ -11,6 +12,7 @@ Examples:
   opm generate c plano-spherical-5dof -o controller
   opm generate rust plano-spherical-5dof -o kinematics
   opm generate python plano-spherical-5dof -o .
+  opm generate c delta --dynamics -o controller
   opm generate matlab plano-spherical-5dof -o .
   opm generate st plano-spherical-5dof -o plc")]
 pub struct GenerateArgs {
@@ -29,7 +31,8 @@ pub enum Language {
     /// joint at a pose in a working mode, as `opm ik` does, or the number of the leg that is out of reach. One line of NAME.h
     /// makes all numbers float. The geometry is one struct: numbers of a calibration need no new code.
     ///
-    /// NAME_rates gives the joint rates, NAME_forward the pose for values of the actuated joints.
+    /// NAME_rates gives the joint rates, NAME_forward the pose for values of the actuated joints, and, with --dynamics,
+    /// NAME_inverse_dynamics their efforts.
     ///
     /// NAME_test.c compares the code with poses that opm solved, in NAME_golden.h; CMakeLists.txt builds both. NAME_linuxcnc.c is
     /// a kinematics module for LinuxCNC. Files that are there already are replaced.
@@ -102,13 +105,24 @@ Examples:
     St(CodeArgs),
 }
 
-/// Of what, and where to.
+/// Of what, how much of it, and where to.
 #[derive(Debug, clap::Args)]
 pub struct CodeArgs {
     /// The mechanism.
     #[command(flatten)]
     pub mechanism: MechanismArgs,
+    /// Write the inverse dynamics, too: the efforts of the actuated joints for a pose with its rates and accelerations, for
+    /// feed-forward. The masses of all bodies, rotors, gears, friction, the payload and gravity are in the geometry
+    #[arg(long)]
+    pub dynamics: bool,
     /// Directory that the files are written to; it is made if it is not there
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub output: PathBuf,
+}
+
+impl CodeArgs {
+    /// What the code computes.
+    pub fn content(&self) -> Content {
+        if self.dynamics { Content::Dynamics } else { Content::Kinematics }
+    }
 }

@@ -4,11 +4,11 @@ mod golden;
 mod linuxcnc;
 mod print;
 
-use crate::GenerateError;
 use crate::code::Writer;
 use crate::library;
 use crate::names::{comment, package};
 use crate::tree::Code;
+use crate::{Content, GenerateError};
 use opm_core::Manipulator;
 use print::Printer;
 
@@ -61,8 +61,8 @@ impl CCode {
 ///
 /// # Errors
 /// The mechanism has more two-valued choices than an `unsigned` has bits.
-pub fn c(manipulator: &Manipulator) -> Result<CCode, GenerateError> {
-    let writer = Writer::new(manipulator)?;
+pub fn c(manipulator: &Manipulator, content: Content) -> Result<CCode, GenerateError> {
+    let writer = Writer::new(manipulator, content)?;
     let code = writer.code();
     let name = package(&manipulator.mechanism().name, RESERVED);
     let title = comment(&manipulator.mechanism().name);
@@ -152,6 +152,6 @@ fn math(text: &str, name: &str) -> String {
 }
 
 /// The code as a tree, from which other languages are printed.
-pub(crate) fn tree(manipulator: &Manipulator) -> Result<Code, GenerateError> {
-    Ok(Writer::new(manipulator)?.code())
+pub(crate) fn tree(manipulator: &Manipulator, content: Content) -> Result<Code, GenerateError> {
+    Ok(Writer::new(manipulator, content)?.code())
 }

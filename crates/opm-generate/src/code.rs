@@ -9,6 +9,7 @@ mod complete;
 mod constrained;
 mod counts;
 mod displacement;
+mod dynamics;
 mod forward;
 mod geometry;
 mod interface;
@@ -22,7 +23,7 @@ use crate::names::identifiers;
 use crate::trace::{Any, Array, Bits, In, Parameters, Real, Truth, call_known, give, when};
 use crate::trace::{Int, Number};
 use crate::tree::{Code, Function, Member, Parameter, Pass, Struct, Type};
-use crate::{GenerateError, library};
+use crate::{Content, GenerateError, library};
 use leg::Given;
 use opm_core::Manipulator;
 use opm_core::chain::Chain;
@@ -56,6 +57,7 @@ pub struct Writer<'a> {
     pub manipulator: &'a Manipulator,
     pub task: &'a Task,
     pub forms: ClosedForms,
+    content: Content,
     /// The names of the joints' displacements, as members of a struct.
     fields: Vec<String>,
     /// The functions that are traced already.
@@ -63,7 +65,7 @@ pub struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    pub fn new(manipulator: &'a Manipulator) -> Result<Self, GenerateError> {
+    pub fn new(manipulator: &'a Manipulator, content: Content) -> Result<Self, GenerateError> {
         let choices = manipulator.choices();
         if choices > MOST_CHOICES {
             return Err(GenerateError::Choices { choices, most: MOST_CHOICES });
@@ -77,7 +79,13 @@ impl<'a> Writer<'a> {
         if matches!(&forms.whole, Some(WholeStep::Rows(rows)) if rows.slides) {
             return Err(GenerateError::Rail);
         }
-        Ok(Self { manipulator, task, forms, fields, functions: RefCell::default() })
+        let functions = RefCell::default();
+        let writer = Self { manipulator, task, forms, content, fields, functions };
+        match content {
+            Content::Kinematics => {}
+            Content::Dynamics => dynamics::refused(&writer)?,
+        }
+        Ok(writer)
     }
 
     /// The code of the mechanism.
@@ -90,6 +98,9 @@ impl<'a> Writer<'a> {
         }
         self.complete();
         self.interface();
+        if self.content == Content::Dynamics {
+            self.dynamics();
+        }
         let (geometry, default) = self.geometry();
         let own = self.functions.borrow().clone();
         let functions = [library::functions_for(&own), own].concat();

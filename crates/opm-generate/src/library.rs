@@ -4,6 +4,7 @@ mod bodies;
 mod complex;
 mod conditions;
 mod displacements;
+mod dynamics;
 mod joints;
 mod linear;
 mod numbers;
@@ -22,6 +23,7 @@ pub use bodies::*;
 pub use complex::*;
 pub use conditions::*;
 pub use displacements::*;
+pub use dynamics::*;
 pub use joints::*;
 pub use linear::*;
 pub use numbers::*;
@@ -52,6 +54,7 @@ pub fn functions() -> &'static [Function] {
             screws::functions(),
             orientation::functions(),
             linear::functions(),
+            dynamics::functions(),
         ]
         .concat()
     })
@@ -75,7 +78,7 @@ pub fn functions_for(others: &[Function]) -> Vec<Function> {
 /// The structs of a geometry, and others, that types need.
 pub fn structs_for(types: impl Iterator<Item = Type>) -> [Vec<Struct>; 2] {
     let others = [displacements::structs(), bodies::structs(), screws::structs()].concat();
-    let mut all = [types::structs(), others];
+    let mut all = [[types::structs(), dynamics::structs()].concat(), others];
     let mut used: Vec<String> = types.filter_map(Type::into_struct).collect();
     let mut needed = Vec::new();
     while let Some(name) = used.pop() {

@@ -10,7 +10,7 @@ use crate::names::package;
 use crate::text::commented;
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Function, Node, Type, visit};
-use crate::{GenerateError, Package, c};
+use crate::{Content, GenerateError, Package, c};
 use opm_core::Manipulator;
 use std::fmt::Write;
 
@@ -26,8 +26,8 @@ const RESERVED: &str = "break case catch classdef continue do else elseif end en
 ///
 /// # Errors
 /// The mechanism has more than 32 two-valued choices.
-pub fn matlab(manipulator: &Manipulator) -> Result<Package, GenerateError> {
-    let mut code = c::tree(manipulator)?;
+pub fn matlab(manipulator: &Manipulator, content: Content) -> Result<Package, GenerateError> {
+    let mut code = c::tree(manipulator, content)?;
     lower(&mut code, Has { choices: false });
     // Operators of MATLAB have the other names.
     visit::rename_functions(&mut code, &|name| {

@@ -10,12 +10,13 @@ use crate::names::package;
 use crate::text::{camel, commented};
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Struct, Type, Value};
-use crate::{GenerateError, Package, c};
+use crate::{Content, GenerateError, Package, c};
 use opm_core::Manipulator;
 use std::fmt::Write;
 
 const MODULE: &str = include_str!("python/package/module.py");
 const FORWARD: &str = include_str!("python/package/forward.py");
+const DYNAMICS: &str = include_str!("python/package/dynamics.py");
 const TEST: &str = include_str!("python/package/test.py");
 const PROJECT: &str = include_str!("python/package/pyproject.toml");
 
@@ -28,8 +29,8 @@ const RESERVED: &str = "False None True and as assert async await break class co
 ///
 /// # Errors
 /// The mechanism has more than 32 two-valued choices.
-pub fn python(manipulator: &Manipulator) -> Result<Package, GenerateError> {
-    let mut code = c::tree(manipulator)?;
+pub fn python(manipulator: &Manipulator, content: Content) -> Result<Package, GenerateError> {
+    let mut code = c::tree(manipulator, content)?;
     lower(&mut code, Has { choices: true });
     let name = package(&manipulator.mechanism().name, RESERVED);
     let files = vec![
@@ -86,6 +87,7 @@ fn module(m: &Manipulator, code: &Code) -> String {
         .replace("GEOMETRY", &format!("({geometry})"))
         .replace("NEAREST_ARGUMENTS", if takes_mode { "0, " } else { "" })
         .replace("FORWARD\n", if has("forward") { FORWARD } else { "" })
+        .replace("DYNAMICS\n", if has("inverse_dynamics") { DYNAMICS } else { "" })
         .replace("FUNCTIONS\n", &functions.join("\n\n"))
 }
 

@@ -8,11 +8,12 @@ mod print;
 use crate::golden::{angles, listed, rows};
 use crate::names::package;
 use crate::tree::Code;
-use crate::{GenerateError, Package, c};
+use crate::{Content, GenerateError, Package, c};
 use opm_core::Manipulator;
 
 const LIB: &str = include_str!("rust/package/lib.rs");
 const FORWARD: &str = include_str!("rust/package/forward.rs");
+const DYNAMICS: &str = include_str!("rust/package/dynamics.rs");
 const MATH: &str = include_str!("rust/package/math.rs");
 const TEST: &str = include_str!("rust/package/golden.rs");
 const CARGO: &str = include_str!("rust/package/Cargo.toml.txt");
@@ -27,8 +28,8 @@ const RESERVED: &str = "abstract alloc as async await become box break const con
 ///
 /// # Errors
 /// The mechanism has more two-valued choices than a `u32` has bits.
-pub fn rust(manipulator: &Manipulator) -> Result<Package, GenerateError> {
-    let code = c::tree(manipulator)?;
+pub fn rust(manipulator: &Manipulator, content: Content) -> Result<Package, GenerateError> {
+    let code = c::tree(manipulator, content)?;
     // A package has a lower-case name.
     let name = package(&manipulator.mechanism().name.to_lowercase(), RESERVED);
     let files = [
@@ -82,8 +83,11 @@ fn lib(m: &Manipulator, code: &Code, name: &str) -> String {
         "\n/// The pose at home.\npub const HOME: [Real; COORDINATES] = [{}];\n",
         listed(&m.home_pose())
     );
-    let forward = code.functions.iter().any(|function| function.name == "forward");
-    text + &home + if forward { FORWARD } else { "" }
+    let own = |name: &str, text: &'static str| {
+        let has = code.functions.iter().any(|function| function.name == name);
+        if has { text } else { "" }
+    };
+    text + &home + own("forward", FORWARD) + own("inverse_dynamics", DYNAMICS)
 }
 
 /// A test that compares the code with poses that opm solved.

@@ -12,8 +12,9 @@ use crate::names::prefix;
 use crate::text::commented;
 use crate::tree::lower::{Has, lower};
 use crate::tree::{Code, Function, Parameter, Pass, Type};
-use crate::{GenerateError, Package, c};
+use crate::{Content, GenerateError, Package, c};
 use opm_core::Manipulator;
+use opm_core::mechanism::joint::DriveLimit;
 use print::{Printer, comment, kind, real};
 use std::fmt::Write;
 
@@ -25,8 +26,8 @@ const TEST: &str = include_str!("st/package/test.st");
 ///
 /// # Errors
 /// The mechanism has more than 32 two-valued choices.
-pub fn st(manipulator: &Manipulator) -> Result<Package, GenerateError> {
-    let mut code = c::tree(manipulator)?;
+pub fn st(manipulator: &Manipulator, content: Content) -> Result<Package, GenerateError> {
+    let mut code = c::tree(manipulator, content)?;
     lower(&mut code, Has { choices: false });
     names::unique(&mut code);
     // The language has no infinite number (`print::real`).
@@ -141,6 +142,10 @@ fn described(m: &Manipulator, parameter: &str) -> String {
         }
         "joints" | "previous" => (0..m.coordinates().len()).map(joint).collect(),
         "actuated" => m.actuated().iter().map(|&i| joint(i)).collect(),
+        "efforts" => {
+            let all = m.actuated().iter().map(|&i| &m.coordinates()[i]);
+            all.map(|c| format!("{} [{}]", c.name, DriveLimit::Effort.unit(c.quantity))).collect()
+        }
         "imaginary" => {
             let imaginary = m.imaginary().iter();
             imaginary.map(|j| format!("{} [{}]", j.name, j.quantity.unit())).collect()

@@ -1,6 +1,7 @@
 //! The geometry of a mechanism: the members of its struct, and their values.
 
 use super::{GEOMETRY, Writer, word};
+use crate::Content;
 use crate::library::{Complex, Frame, Joint, LeaningLift, Lift, Part, Rotation, Vector};
 use crate::names::comment;
 use crate::trace::Handle;
@@ -16,19 +17,19 @@ use opm_core::numeric::Quantity;
 
 /// The members of the struct, with their values.
 #[derive(Default)]
-struct Geometry {
+pub struct Geometry {
     members: Vec<Member>,
     values: Vec<Value>,
 }
 
 impl Geometry {
-    fn add(&mut self, kind: Type, name: &str, comment: &str, value: Value) {
+    pub fn add(&mut self, kind: Type, name: &str, comment: &str, value: Value) {
         let (name, comment) = (name.to_owned(), comment.to_owned());
         self.members.push(Member { name, kind, comment });
         self.values.push(value);
     }
 
-    fn list(&mut self, kind: Type, name: &str, comment: &str, values: Vec<Value>) {
+    pub fn list(&mut self, kind: Type, name: &str, comment: &str, values: Vec<Value>) {
         self.add(Type::Array(Box::new(kind), values.len()), name, comment, Value::List(values));
     }
 }
@@ -90,9 +91,18 @@ impl Writer<'_> {
             let kind = Type::Struct(kind.to_owned());
             geometry.add(kind, &format!("check{place}"), &what, value);
         }
+        if self.content == Content::Dynamics {
+            self.add_dynamics(&mut geometry);
+        }
         let one = Struct {
             name: GEOMETRY.to_owned(),
-            comment: "The geometry of the mechanism, metres and radians.".to_owned(),
+            comment: match self.content {
+                Content::Kinematics => "The geometry of the mechanism, metres and radians.",
+                Content::Dynamics => {
+                    "The geometry of the mechanism and its bodies, metres, radians and kilograms."
+                }
+            }
+            .to_owned(),
             members: geometry.members,
         };
         (one, Value::List(geometry.values))
@@ -187,15 +197,15 @@ impl Writer<'_> {
 }
 
 /// A number; adding zero makes a negative zero positive.
-fn real(value: f64) -> Value {
+pub fn real(value: f64) -> Value {
     Value::Number(value + 0.0)
 }
 
-fn numbers(values: &[f64]) -> Value {
+pub fn numbers(values: &[f64]) -> Value {
     Value::List(values.iter().map(|&value| real(value)).collect())
 }
 
-fn vector(v: &nalgebra::Vector3<f64>) -> Value {
+pub fn vector(v: &nalgebra::Vector3<f64>) -> Value {
     numbers(v.as_slice())
 }
 

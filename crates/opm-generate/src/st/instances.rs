@@ -33,10 +33,10 @@ impl Instances<'_> {
     /// The length of an array of the interface; one where there is nothing.
     fn length(&self, parameter: &str) -> Result<usize, String> {
         let of = match parameter {
-            "pose" | "rates" => "COORDINATES",
+            "pose" | "rates" | "accelerations" => "COORDINATES",
             "joints" | "joint_rates" | "previous" => "JOINTS",
             "imaginary" => "IMAGINARY",
-            "actuated" => "ACTUATED",
+            "actuated" | "efforts" => "ACTUATED",
             other => return Err(format!("the array {other} has no length")),
         };
         Ok(self.code.number(of).unwrap_or_default().max(1))

@@ -4,7 +4,7 @@ use crate::comparison::{
     compare_all, float_closes_every_leg, forward_leads_from_home, reach_ends_where_it_does_for_opm,
 };
 use crate::compiled::{Compiled, Real, compiled_by, compilers_with, programs_of};
-use crate::drawn::{Drawn, covering, shipped};
+use crate::drawn::{Drawn, content, covering, shipped};
 use crate::program::Program;
 use fastrand::Rng;
 use opm_core::{Manipulator, Mode};
@@ -93,7 +93,7 @@ fn nothing_is_undefined() {
 #[test]
 fn the_test_beside_the_code_finds_errors() {
     for m in shipped().into_iter().step_by(5) {
-        let code = opm_generate::c(&m).unwrap();
+        let code = opm_generate::c(&m, content(&m)).unwrap();
         let wrong = code.source.replacen(".home + at.q_", ".home + R(0.01) + at.q_", 1);
         let told = programs_of(&code, &[&code.source, &wrong]);
         let Some([right, wrong]) = told.as_deref() else { return };
@@ -126,7 +126,7 @@ fn every_closed_form_is_compared() {
         include_str!("../../src/library/conditions.rs"),
     ];
     let all: Vec<Manipulator> = shipped().into_iter().chain(covering(2, EVERY)).collect();
-    let codes: Vec<_> = all.iter().map(|m| opm_generate::c(m).unwrap()).collect();
+    let codes: Vec<_> = all.iter().map(|m| opm_generate::c(m, content(m)).unwrap()).collect();
     let forms = library.iter().flat_map(|file| file.split("    fn ").skip(1));
     let forms = forms.filter_map(|rest| rest.split_once('(')).map(|(name, _)| name);
     let forms = forms.filter(|name| {
@@ -145,7 +145,7 @@ fn every_closed_form_is_compared() {
 fn every_compiler_accepts_the_code() {
     let manipulators =
         shipped().into_iter().step_by(4).chain(covering(2, 500).into_iter().step_by(4));
-    let codes: Vec<_> = manipulators.map(|m| opm_generate::c(&m).unwrap()).collect();
+    let codes: Vec<_> = manipulators.map(|m| opm_generate::c(&m, content(&m)).unwrap()).collect();
     let cpp = ["-x", "c++", "-std=c++17"];
     for (compiler, flags) in
         [("clang", &["-std=c99"][..]), ("c++", &cpp[..]), ("clang++", &cpp[..])]

@@ -3,8 +3,9 @@
 use crate::drawn::Drawn;
 use crate::program::{Answer, Program, Question};
 use fastrand::Rng;
+use opm_analysis::{Dynamics, Setup};
 use opm_core::manipulator::{ActuatedJoints, Solution};
-use opm_core::nalgebra::Isometry3;
+use opm_core::nalgebra::{DVector, Isometry3};
 use opm_core::velocity::Jacobians;
 use opm_core::{Manipulator, Quantity};
 use std::f64::consts::{PI, TAU};
@@ -17,6 +18,10 @@ const GAIN: f64 = 1e3;
 /// A parallel measure of singularity above this is far from a singularity.
 const REGULAR: f64 = 0.01;
 
+/// How far efforts may be off, of the largest one, where the joints move as fast as the pose, and not too near to a parallel
+/// singularity ([`REGULAR`]).
+const EFFORTS: f64 = 1e-10;
+
 /// How far the legs may be from the platform in `float`, radians or shares of the size: some ten operations' rounding.
 const FLOAT: f64 = 1e-5;
 
@@ -27,11 +32,15 @@ struct Comparison<'a> {
     near: Solution,
     actuated: ActuatedJoints,
     jacobians: Jacobians,
+    dynamics: Dynamics<'a>,
     reached: usize,
     missed: usize,
     /// Poses with rates; poses found by forward kinematics among those asked for.
     regular: usize,
     found: [usize; 2],
+    /// Poses with efforts, and whether there are any to compare.
+    driven: usize,
+    has_dynamics: bool,
 }
 
 impl<'a> Comparison<'a> {
@@ -39,8 +48,22 @@ impl<'a> Comparison<'a> {
         let [at, near] = [(), ()].map(|()| manipulator.solution());
         let actuated = manipulator.actuated_joints();
         let jacobians = manipulator.jacobians();
+        let dynamics = Dynamics::new(manipulator, &Setup::new(manipulator.characteristic_length()));
         let (reached, missed, regular, found) = (0, 0, 0, [0; 2]);
-        Self { manipulator, at, near, actuated, jacobians, reached, missed, regular, found }
+        Self {
+            manipulator,
+            at,
+            near,
+            actuated,
+            jacobians,
+            dynamics,
+            reached,
+            missed,
+            regular,
+            found,
+            driven: 0,
+            has_dynamics: false,
+        }
     }
 
     /// Whether a pose is reached in the mode at home, far from singularities.
@@ -85,6 +108,12 @@ impl<'a> Comparison<'a> {
             let written = written.chain(&answer.jacobian);
             assert!(written.copied().all(|value| value == -77.0), "{place}: {answer:?}");
             assert_eq!((answer.jacobian_status, answer.rates_status), (status, status), "{place}");
+            if let Some((found, efforts)) = &answer.dynamics {
+                assert!(
+                    *found == status && efforts.iter().all(|&e| e == -77.0),
+                    "{place}: {answer:?}"
+                );
+            }
             return;
         }
         self.reached += 1;
@@ -102,7 +131,39 @@ impl<'a> Comparison<'a> {
         assert_eq!(answer.limits == 0.0, self.at.within_limits(), "{place}: {:?}", answer.joints);
         self.compare_nearest(question, answer, &place);
         self.compare_rates(question, answer, (gain, &differences), &place);
+        self.compare_dynamics(question, answer, gain, &place);
         self.compare_forward(question, answer, gain, &place);
+    }
+
+    /// The efforts are opm's.
+    fn compare_dynamics(&mut self, question: &Question, answer: &Answer, gain: f64, place: &str) {
+        let Some((status, efforts)) = &answer.dynamics else { return };
+        self.has_dynamics = true;
+        let m = self.manipulator;
+        if gain > GAIN.sqrt() || !m.differentiate(&self.at, &mut self.jacobians).unwrap() {
+            return;
+        }
+        let mut measured = m.singularities();
+        m.measure_singularities(&self.jacobians, &mut measured);
+        if measured.whole.parallel.is_none_or(|parallel| parallel.abs() < REGULAR) {
+            return;
+        }
+        let of = |values: &[f64]| DVector::from_column_slice(values);
+        if !self.dynamics.update(&self.at).unwrap() {
+            return;
+        }
+        let expected = self.dynamics.inverse(&of(&question.next), &of(&question.pose));
+        let Some(expected) = expected else { return };
+        assert_eq!(*status, 0.0, "{place}: {gain:e} {answer:?}");
+        let most = expected.iter().fold(1.0, |most: f64, effort| most.max(effort.abs()));
+        for (found, expected) in efforts.iter().zip(&expected) {
+            let off = (found - expected).abs() / most;
+            assert!(
+                off <= EFFORTS * gain * gain,
+                "{place}: {off:e} {gain:e} {efforts:?} {expected}"
+            );
+        }
+        self.driven += 1;
     }
 
     /// The Jacobian is opm's, and that of differences; the rates are its product with those of the pose.
@@ -352,6 +413,7 @@ fn off(m: &Manipulator, found: (&[f64], &[f64]), expected: (&[f64], &[f64])) -> 
 pub fn compare_all(program: &impl Program, manipulators: &[Manipulator], poses: usize, seed: u64) {
     let mut rng = Rng::with_seed(seed);
     let (mut reached, mut missed, mut regular, mut found) = (0, 0, 0, [0; 2]);
+    let (mut driven, mut with_dynamics) = (0, 0);
     for (number, m) in manipulators.iter().enumerate() {
         let questions = Drawn { rng: &mut rng, manipulator: m }.questions(poses);
         let answers = program.ask(number, &questions);
@@ -362,13 +424,22 @@ pub fn compare_all(program: &impl Program, manipulators: &[Manipulator], poses: 
         reached += comparison.reached;
         missed += comparison.missed;
         regular += comparison.regular;
+        driven += comparison.driven;
+        with_dynamics += usize::from(comparison.has_dynamics);
+        assert_eq!(
+            comparison.has_dynamics,
+            opm_generate::check_dynamics(m).is_ok() && comparison.reached > 0
+        );
         (0..2).for_each(|i| found[i] += comparison.found[i]);
     }
     println!(
-        "{} mechanisms: {reached} poses in reach, {missed} out of it, {regular} regular, {found:?} found by forward kinematics",
+        "{} mechanisms: {reached} poses in reach, {missed} out of it, {regular} regular, {found:?} found by forward kinematics, {driven} \
+         with efforts of {with_dynamics} mechanisms",
         manipulators.len()
     );
     assert!(reached > missed / 4 && missed > 0, "{reached} {missed}");
+    // A few random mechanisms may have them at few poses.
+    assert!(with_dynamics < 20 || driven > 10 * with_dynamics, "{driven} {with_dynamics}");
     assert!(regular > reached / 2 && found[0] > found[1] / 10 * 9, "{regular} {found:?}");
 }
 

@@ -1,5 +1,6 @@
 //! Generated C, compiled by the C compiler at hand, and called through a small program that reads poses from its input.
 
+use crate::drawn::content;
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
 use std::fmt::Write as _;
@@ -45,7 +46,7 @@ pub struct Compiled {
 const RUN: &str = "
 #define WRITE(value) do { double out = (double)(value); fwrite(&out, sizeof out, 1, stdout); } while (0)
 #define WRITE_ALL(values, count) do { for (i = 0; i < (count); ++i) WRITE((values)[i]); } while (0)
-#define RUN(NAME, FORWARD) do { \\
+#define RUN(NAME, FORWARD, DYNAMICS) do { \\
     uint32_t mode; \\
     double given[2 * NAME##_COORDINATES]; \\
     int i, status; \\
@@ -89,6 +90,7 @@ const RUN: &str = "
         WRITE_ALL(twist, 6 * NAME##_COORDINATES); \\
         WRITE(NAME##_rates(g, pose, mode, pose + NAME##_COORDINATES, next)); \\
         WRITE_ALL(next, NAME##_JOINTS); \\
+        DYNAMICS(NAME); \\
         FORWARD(NAME); \\
     } \\
 } while (0)
@@ -105,6 +107,14 @@ const FORWARD: &str = "
     WRITE(NAME##_forward(g, actuated, mode, pose, &residual)); \\
 } while (0)
 #define NO_FORWARD(NAME) do { (void)residual; WRITE(0); } while (0)
+#define DYNAMICS(NAME) do { \\
+    NAME##_real efforts[NAME##_ACTUATED]; \\
+    for (i = 0; i < NAME##_ACTUATED; ++i) efforts[i] = -77; \\
+    WRITE(1); \\
+    WRITE(NAME##_inverse_dynamics(g, pose, mode, pose + NAME##_COORDINATES, pose, efforts)); \\
+    WRITE_ALL(efforts, NAME##_ACTUATED); \\
+} while (0)
+#define NO_DYNAMICS(NAME) WRITE(0)
 ";
 
 impl Program for Compiled {
@@ -129,7 +139,7 @@ impl Compiled {
         );
         let mut calls = String::new();
         for (number, manipulator) in manipulators.iter().enumerate() {
-            let code = opm_generate::c(manipulator).expect("few choices");
+            let code = opm_generate::c(manipulator, content(manipulator)).expect("few choices");
             for (name, text) in code.files() {
                 if ["_test.c", "_linuxcnc.c", "CMakeLists.txt"]
                     .iter()
@@ -158,7 +168,10 @@ impl Compiled {
             let has_forward = code.header.contains("_forward(");
             let forward = if has_forward { "FORWARD" } else { "NO_FORWARD" };
             let _ = writeln!(main, "#include \"{name}.h\"");
-            let _ = writeln!(calls, "    case {number}: RUN({name}, {forward}); break;");
+            let has_dynamics = code.header.contains("_inverse_dynamics(");
+            let dynamics = if has_dynamics { "DYNAMICS" } else { "NO_DYNAMICS" };
+            let _ =
+                writeln!(calls, "    case {number}: RUN({name}, {forward}, {dynamics}); break;");
         }
         let _ = write!(
             main,

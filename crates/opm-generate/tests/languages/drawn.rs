@@ -3,9 +3,12 @@
 use crate::program::Question;
 use fastrand::Rng;
 use opm_core::mechanism::Cone;
+use opm_core::mechanism::Payload;
 use opm_core::mechanism::examples::SPLIT;
-use opm_core::mechanism::joint::JointKind;
+use opm_core::mechanism::joint::{Drive, JointKind};
+use opm_core::nalgebra::{Matrix3, Vector3};
 use opm_core::{Manipulator, Quantity};
+use opm_generate::Content;
 use opm_tests::random::{self, Options};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
@@ -18,7 +21,36 @@ pub fn shipped() -> Vec<Manipulator> {
     let example = |name: &str| Manipulator::example(name).expect("it is shipped");
     let whole = ["delta", "quadrupteron", "tricept", "ankle"].map(example);
     let typed = [with_cones(&example("stewart")), three_rps(), omni_wrist(), generator()];
-    split.chain(whole).chain(typed).collect()
+    split.chain(whole).chain(typed).map(|m| driven(&m)).collect()
+}
+
+/// The dynamics, too, where they can be written.
+pub fn content(m: &Manipulator) -> Content {
+    opm_generate::check_dynamics(m).map_or(Content::Kinematics, |()| Content::Dynamics)
+}
+
+/// The same mechanism with motors, friction in all joints but balls, and a payload.
+fn driven(m: &Manipulator) -> Manipulator {
+    let mut mechanism = m.mechanism().clone();
+    for joint in mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints) {
+        if joint.kind == JointKind::Spherical {
+            continue;
+        }
+        for (number, coordinate) in (1..).zip(&mut joint.coordinates) {
+            coordinate.drive = Drive {
+                rotor_inertia: if joint.actuated { 3e-4 } else { 0.0 },
+                gear: if joint.actuated { 7.0 } else { 1.0 },
+                viscous_friction: 0.2 * f64::from(number),
+                coulomb_friction: 0.3,
+            };
+        }
+    }
+    mechanism.bodies.payload = Some(Payload {
+        mass: 0.6,
+        centre: Some(mechanism.platform + Vector3::new(0.01, -0.02, 0.03)),
+        inertia: Matrix3::new(4e-4, 1e-5, -2e-5, 1e-5, 3e-4, 3e-5, -2e-5, 3e-5, 5e-4),
+    });
+    Manipulator::new(mechanism).expect("it moves as before")
 }
 
 /// Two legs of a hinge, two parallelograms in a row, and a hinge (the Schoenflies Motion Generator).
@@ -120,7 +152,7 @@ pub fn covering(seed: u64, every: usize) -> Vec<Manipulator> {
     let mut number = 0;
     all.retain(|m| {
         number += 1;
-        let code = opm_generate::c(m).expect("few choices");
+        let code = opm_generate::c(m, Content::Kinematics).expect("few choices");
         let prefix = format!("{}_", code.name);
         let before = known.len();
         let functions = code.source.split(&*prefix).filter_map(|rest| rest.split_once('('));

@@ -112,7 +112,7 @@ struct Module {
 impl Module {
     /// `None` where there is no module, or no compiler.
     fn new(m: &Manipulator) -> Option<Self> {
-        let code = opm_generate::c(m).unwrap();
+        let code = opm_generate::c(m, opm_generate::Content::Kinematics).unwrap();
         code.linuxcnc.as_ref()?;
         let compiler = compiler()?;
         let folder = tempfile::tempdir().expect("a directory for temporary files");

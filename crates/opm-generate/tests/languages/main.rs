@@ -4,6 +4,7 @@ mod c;
 mod comparison;
 mod compiled;
 mod drawn;
+mod dynamics;
 mod linuxcnc;
 mod matlab;
 mod names;

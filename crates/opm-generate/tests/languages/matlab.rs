@@ -1,7 +1,7 @@
 //! Generated MATLAB, run by Octave and compared with `opm-core`.
 
 use crate::comparison::{compare_all, forward_leads_from_home, reach_ends_where_it_does_for_opm};
-use crate::drawn::{random_mechanisms, shipped};
+use crate::drawn::{content, random_mechanisms, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
 use opm_generate::Package;
@@ -35,7 +35,7 @@ impl Packages {
         let folder = tempfile::tempdir().expect("a directory for temporary files");
         let mut names = Vec::new();
         for m in manipulators {
-            let Package { name, files } = opm_generate::matlab(m).expect("few choices");
+            let Package { name, files } = opm_generate::matlab(m, content(m)).expect("few choices");
             for (file, text) in files {
                 let path = folder.path().join(file);
                 std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder in it");

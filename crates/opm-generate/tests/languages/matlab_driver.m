@@ -11,6 +11,10 @@ function driver(name, counts)
   if has_forward
     forward = f('forward');
   end
+  has_dynamics = exist(fullfile(getenv('CODE'), ['+' name], 'inverse_dynamics.m'), 'file') > 0;
+  if has_dynamics
+    inverse_dynamics = f('inverse_dynamics');
+  end
   default_geometry = f('default');
   g = default_geometry();
   size_of = 4 + 16 * n;
@@ -41,6 +45,12 @@ function driver(name, counts)
     out = [out, one(status, found)];
     [status, found] = rates(g, pose, mode, next);
     out = [out, one(status, found)];
+    if has_dynamics
+      [status, found] = inverse_dynamics(g, pose, mode, next, pose);
+      out = [out, 1, one(status, found)];
+    else
+      out = [out, 0];
+    end
     if has_forward
       if ~reached
         driven = -77 * ones(1, n_actuated);

@@ -3,10 +3,10 @@
 use crate::python::interpreter;
 use opm_core::Manipulator;
 use opm_core::mechanism::examples::EXAMPLES;
-use opm_generate::{GenerateError, Package};
+use opm_generate::{Content, GenerateError, Package};
 use std::process::Command;
 
-type Generate = fn(&Manipulator) -> Result<Package, GenerateError>;
+type Generate = fn(&Manipulator, Content) -> Result<Package, GenerateError>;
 
 fn named(name: &str) -> Manipulator {
     let example = EXAMPLES.iter().find(|example| example.name == "planar-3rrr").unwrap();
@@ -24,9 +24,9 @@ fn words_of_a_language_are_no_names_of_packages() {
     ];
     for (generate, words) in cases {
         for word in words {
-            let package = generate(&named(word)).unwrap();
+            let package = generate(&named(word), Content::Dynamics).unwrap();
             assert_eq!(package.name.to_lowercase(), format!("m_{}", word.to_lowercase()));
-            let other = generate(&named(&format!("{word}-2"))).unwrap();
+            let other = generate(&named(&format!("{word}-2")), Content::Dynamics).unwrap();
             assert_eq!(other.name.to_lowercase(), format!("{}_2", word.to_lowercase()));
         }
     }
@@ -36,7 +36,7 @@ fn words_of_a_language_are_no_names_of_packages() {
 #[test]
 fn a_module_that_is_called_by_a_keyword_is_imported() {
     let Some(python) = interpreter() else { return };
-    let Package { name, files } = opm_generate::python(&named("class")).unwrap();
+    let Package { name, files } = opm_generate::python(&named("class"), Content::Dynamics).unwrap();
     let folder = tempfile::tempdir().unwrap();
     for (file, text) in files {
         std::fs::write(folder.path().join(file), text).unwrap();
@@ -59,11 +59,11 @@ fn comments_are_true_in_other_languages() {
             })
             .collect()
     };
-    let c = all(opm_generate::c_package(&manipulator).unwrap());
+    let c = all(opm_generate::c_package(&manipulator, Content::Dynamics).unwrap());
     assert!(c.contains("nothing is written") && c.contains("infinite without limits"));
-    let matlab = all(opm_generate::matlab(&manipulator).unwrap());
+    let matlab = all(opm_generate::matlab(&manipulator, Content::Dynamics).unwrap());
     assert!(!matlab.contains("nothing is written"));
     assert!(matlab.contains("Unless it returns 0, the others are NaN."));
-    let st = all(opm_generate::st(&manipulator).unwrap());
+    let st = all(opm_generate::st(&manipulator, Content::Dynamics).unwrap());
     assert!(!st.contains("infinite") && st.contains("(the largest number without limits)"));
 }

@@ -61,6 +61,9 @@ pub struct Answer {
     /// Of `NAME_rates`, for the coordinates of the next pose as rates.
     pub rates_status: f64,
     pub rates: Vec<f64>,
+    /// Of `NAME_inverse_dynamics`, for the next pose as rates and the pose as accelerations: the status and the efforts; nothing
+    /// where there is no such function.
+    pub dynamics: Option<(f64, Vec<f64>)>,
     /// Of `NAME_forward`, from the next pose to the actuated joints; nothing where there is no such function.
     pub forward: Option<Forward>,
 }
@@ -145,6 +148,7 @@ impl Answer {
             twist: take(6 * shape.coordinates),
             rates_status: one(take(1)),
             rates: take(shape.joints),
+            dynamics: (one(take(1)) == 1.0).then(|| (one(take(1)), take(shape.actuated))),
             forward: (one(take(1)) == 1.0).then(|| Forward {
                 status: one(take(1)),
                 residual: one(take(1)),

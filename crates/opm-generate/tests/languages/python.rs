@@ -1,7 +1,7 @@
 //! Generated Python, run by the interpreter at hand and compared with `opm-core`.
 
 use crate::comparison::{compare_all, forward_leads_from_home, reach_ends_where_it_does_for_opm};
-use crate::drawn::{covering, shipped};
+use crate::drawn::{content, covering, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
 use opm_generate::Package;
@@ -50,7 +50,7 @@ impl Modules {
         let folder = tempfile::tempdir().expect("a directory for temporary files");
         let mut names = Vec::new();
         for m in manipulators {
-            let Package { name, files } = opm_generate::python(m).expect("few choices");
+            let Package { name, files } = opm_generate::python(m, content(m)).expect("few choices");
             for (file, text) in files {
                 std::fs::write(folder.path().join(file), text).expect("a file in it");
             }

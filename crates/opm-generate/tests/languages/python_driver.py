@@ -35,6 +35,11 @@ status, rates = m.jacobian(pose, mode)
 write(status, rates)
 write(*m.twist(pose, mode))
 write(*m.rates(pose, mode, following))
+if hasattr(m, "inverse_dynamics"):
+    columns.append(np.ones((len(asked), 1)))
+    write(*m.inverse_dynamics(pose, mode, following, pose))
+else:
+    columns.append(np.zeros((len(asked), 1)))
 if hasattr(m, "forward"):
     columns.append(np.ones((len(asked), 1)))
     status, found, residual = m.forward(actuated, following, mode)

@@ -29,6 +29,8 @@ for wrong in (pose[:-1], np.append(pose, 0.0), pose[0]):
     refused("pose", m.nearest, wrong, joints)
     refused("pose", m.rates, wrong, 0, pose)
     refused("rates", m.rates, pose, 0, wrong)
+    refused("rates", m.inverse_dynamics, pose, 0, wrong, pose)
+    refused("accelerations", m.inverse_dynamics, pose, 0, pose, wrong)
     refused("near", m.forward, actuated, wrong)
 for wrong in (joints[:-1], np.append(joints, 0.0), joints[0]):
     refused("previous", m.nearest, pose, wrong)

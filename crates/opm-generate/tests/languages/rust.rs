@@ -3,7 +3,7 @@
 use crate::comparison::{
     compare_all, float_closes_every_leg, forward_leads_from_home, reach_ends_where_it_does_for_opm,
 };
-use crate::drawn::{covering, shipped};
+use crate::drawn::{content, covering, shipped};
 use crate::program::{Answer, Program, Question, Shape, ask};
 use opm_core::Manipulator;
 use opm_generate::Package;
@@ -53,7 +53,7 @@ impl Compiled {
         let mut main = DRIVER.to_owned();
         let mut calls = String::new();
         for (number, m) in manipulators.iter().enumerate() {
-            let package = opm_generate::rust(m).expect("few choices");
+            let package = opm_generate::rust(m, content(m)).expect("few choices");
             let line = "pub type Real = f64;";
             let lib = &package.files[1].1;
             assert_eq!((&*package.files[1].0, lib.matches(line).count()), ("src/lib.rs", 1));
@@ -68,7 +68,8 @@ impl Compiled {
                 "#[path = \"m{number}/src/lib.rs\"]\n#[allow(dead_code, unused_imports)]\nmod m{number};"
             );
             let forward = lib.contains("pub fn forward(");
-            let _ = writeln!(calls, "        {number} => run!(m{number}, {forward}),");
+            let dynamics = lib.contains("pub fn inverse_dynamics(");
+            let _ = writeln!(calls, "        {number} => run!(m{number}, {forward}, {dynamics}),");
         }
         main = main.replace("        CALLS\n", &calls);
         std::fs::write(folder.path().join("driver.rs"), main).expect("a file in it");
@@ -117,7 +118,7 @@ fn rust_in_f32_closes_every_leg() {
 #[test]
 fn rust_needs_no_standard_library() {
     let m = Manipulator::example("plano-spherical-5dof").unwrap();
-    let package = opm_generate::rust(&m).expect("few choices");
+    let package = opm_generate::rust(&m, content(&m)).expect("few choices");
     let folder = tempfile::tempdir().expect("a directory for temporary files");
     write(folder.path(), &package, str::to_owned);
     // The lock file of opm names a version of libm that is there.

@@ -10,7 +10,7 @@ mod parser;
 mod words;
 
 use crate::comparison::{compare_all, forward_leads_from_home, reach_ends_where_it_does_for_opm};
-use crate::drawn::{covering, shipped};
+use crate::drawn::{content, covering, shipped};
 use crate::program::{Answer, Forward, Program, Question, Shape};
 use machine::{Instance, Machine};
 use opm_core::Manipulator;
@@ -27,7 +27,7 @@ impl Texts {
         let machines = manipulators
             .iter()
             .map(|m| {
-                let package = opm_generate::st(m).expect("few choices");
+                let package = opm_generate::st(m, content(m)).expect("few choices");
                 (RefCell::new(Machine::new(&[&package.files[0].1])), package.name)
             })
             .collect();
@@ -108,6 +108,13 @@ impl Asked<'_> {
         let (twist_status, twist) = self.run("twist", at, &["twist"]);
         let moving = [at, &[("rates", &question.next)]].concat();
         let (rates_status, rates) = self.run("rates", &moving, &["joint_rates"]);
+        let named = format!("{}_inverse_dynamics", self.name);
+        let dynamics = self.machine.instance(&named).map(|_| {
+            let accelerations = [("accelerations", &*question.pose)];
+            let moving = [&*moving, &accelerations].concat();
+            let (status, efforts) = self.run("inverse_dynamics", &moving, &["efforts"]);
+            (status, last(efforts))
+        });
         let has_forward = self.machine.instance(&format!("{}_forward", self.name)).is_some();
         let forward = has_forward.then(|| {
             let (forward_status, residual, pose) = self.forward(&actuated, mode, &question.next);
@@ -139,6 +146,7 @@ impl Asked<'_> {
             twist: last(twist),
             rates_status,
             rates: last(rates),
+            dynamics,
             forward,
         }
     }
@@ -186,7 +194,7 @@ fn st_solves_random_mechanisms_as_opm() {
 #[test]
 fn the_test_beside_st_finds_errors() {
     for m in shipped() {
-        let package = opm_generate::st(&m).expect("few choices");
+        let package = opm_generate::st(&m, content(&m)).expect("few choices");
         let [(_, code), (_, test)] = &package.files[..] else { panic!("two files") };
         let run = |code: &str| {
             let mut machine = Machine::new(&[code, test]);

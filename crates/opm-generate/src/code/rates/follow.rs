@@ -8,7 +8,7 @@ use opm_core::numeric::Quantity;
 /// The functions of the rates by all coordinates, and of their sums for those that are given.
 impl Writer<'_> {
     /// The coordinates that are given, and those that follow.
-    fn own_and_follow(&self) -> [Vec<usize>; 2] {
+    pub fn own_and_follow(&self) -> [Vec<usize>; 2] {
         let own = self.forms.independent.clone();
         let follow = (0..self.task.coordinates.len()).filter(|i| !own.contains(i)).collect();
         [own, follow]

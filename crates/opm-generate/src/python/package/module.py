@@ -146,6 +146,7 @@ def rates(pose, mode, rates, geometry=DEFAULT):
     return status, _array(found, shape, status)
 
 FORWARD
+DYNAMICS
 def _poses(pose, mode):
     """The numbers of poses, the modes, and the axes of results."""
     pose, mode = _rows("pose", pose, COORDINATES, "coordinates"), _modes(mode)
