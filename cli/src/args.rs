@@ -178,7 +178,7 @@ pub struct MechanismArgs {
 pub struct ChangeArgs {
     /// Change numbers of the file: a parameter that it names (rb=120mm,rod=350mm), one of a family's leg (leg1.h=140mm) or
     /// of all its legs (h=140mm), or limits (limits.S=-0.2:0.2, or none); in a list of joints S1.limits=...,
-    /// S1.max_rate=... and S1.home=...
+    /// S1.max_rate=..., S1.gear=... and S1.home=...; masses (masses.platform=2, payload.mass=0.5)
     #[arg(help_heading = heading::MECHANISM, long, value_name = "NAME=VALUE", allow_hyphen_values = true, value_delimiter = ',')]
     pub set: Vec<Change>,
     /// Angles of orientations: `euler-angles` (zeta xi psi), `tilt-torsion` (azimuth tilt torsion) or `roll-pitch-yaw` (roll

@@ -78,7 +78,7 @@ impl Change {
                     self.name
                 ))
             }),
-            None if file.is_plain(&self.name) => number.bare(&self.name),
+            None if is_bare(file, &self.name) => number.bare(&self.name),
             None => number.value_of(&self.name, Quantity::Length).or(Ok(0.0)),
         };
         Ok(match self.value {
@@ -87,6 +87,11 @@ impl Change {
             ChangedTo::Pair([low, high]) => ParameterValue::Pair([si(low)?, si(high)?]),
         })
     }
+}
+
+/// Whether a number is given without a unit: it has none, or one that is the same in all files, as masses have.
+fn is_bare(file: &file::MechanismFile, name: &str) -> bool {
+    file.is_plain(name) || file.drive_number(name).is_some() || file.is_of_bodies(name)
 }
 
 impl Loaded {
@@ -145,7 +150,7 @@ impl Loaded {
             return Err(Failure::flag("--vary", problem));
         }
         let quantity = self.file.quantity_of(name);
-        if quantity.is_none() && !self.file.is_plain(name) {
+        if quantity.is_none() && !is_bare(&self.file, name) {
             let unknown = self.file.with([(name, ParameterValue::Number(0.0))]);
             let problem = unknown.err().map_or_else(String::new, |errors| errors.to_string());
             return Err(Failure::flag("--vary", problem));

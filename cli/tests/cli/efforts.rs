@@ -190,3 +190,49 @@ fn the_fastest_timing_keeps_the_largest_effort() {
     assert_eq!(unused.code, Some(2));
     assert!(unused.stderr.contains("nothing uses it"), "{}", unused.stderr);
 }
+
+/// Rotors, gears, friction, masses and a payload are set by their names as the file would give them, in lists of joints and in families.
+#[test]
+fn drives_and_masses_are_set_by_name() {
+    let folder = Folder::new();
+    let (lift, motion) = (folder.write("lift.toml", LIFT), folder.write("up.toml", MOTION));
+    let typed = LIFT
+        .replace("platform = 3 }", "platform = 4 }\npayload = { mass = 0.5 }")
+        .replace("rotor_inertia = 1e-4", "rotor_inertia = 2e-4")
+        .replace("coulomb_friction = 11", "coulomb_friction = 5")
+        .replace("viscous_friction = 0.7", "viscous_friction = 1.4");
+    let typed = folder.write("typed.toml", &typed);
+    let efforts = |file: &str, set: &[&str]| {
+        let asked = ["trajectory", file, "--motion", &motion, "--efforts", "--format", "json"];
+        opm(&[&asked[..], set].concat()).json()["efforts"].clone()
+    };
+    let set = "S.rotor_inertia=2e-4,S.coulomb_friction=5,P.viscous_friction=1.4,masses.platform=4,payload.mass=0.5";
+    assert!(!efforts(&lift, &[]).is_null());
+    assert_eq!(efforts(&lift, &["--set", set]), efforts(&typed, &[]));
+    assert_ne!(efforts(&lift, &["--set", set]), efforts(&lift, &[]));
+    let set_to = |what: &str| opm(&["analyze", &lift, "--set", what]);
+    set_to("S.rotor_inertia=-1").fails(2, &["`S.rotor_inertia` is -1, expected 0 to"]);
+    set_to("S.gear=2mm").fails(2, &["S.gear has a unit"]);
+    set_to("masses.plaftorm=1").fails(2, &["did you mean `masses.platform`?"]);
+    set_to("payload.mass=0").fails(2, &["`payload.mass` is 0 kg"]);
+
+    let set = [
+        "--set",
+        "rotor_inertia.S=1e-5,gear.S=1500,leg1.coulomb_friction.phi1=0.25,masses.platform=2",
+    ];
+    let family = folder.arg("family.toml");
+    opm(&[&["convert", "plano-spherical-5dof", "-q", "-o", &family], &set[..]].concat()).text();
+    let text = folder.read("family.toml");
+    // Its unit of length is a millimetre.
+    assert!(
+        text.contains("gear = { S = 1.5 }") && text.contains("rotor_inertia = { S = 1e-5 }"),
+        "{text}"
+    );
+    let sinusoids = |file: &str, set: &[&str]| {
+        let motion = ["--motion", "plano-spherical-sinusoids", "--efforts", "--format", "json"];
+        opm(&[&["trajectory", file], &motion[..], set].concat()).json()["efforts"].clone()
+    };
+    let of_family = sinusoids("plano-spherical-5dof", &set);
+    assert_eq!(sinusoids(&family, &[]), of_family);
+    assert_ne!(sinusoids("plano-spherical-5dof", &[]), of_family);
+}

@@ -97,3 +97,33 @@ fn wrong_input_is_told() {
     generate(&["five-bar", "-o", "-"]).fails_with_one_line(2, &["--output: -: expected a folder"]);
     assert!(!std::path::Path::new("-").exists());
 }
+
+/// The inverse dynamics are written on request, and refused where efforts are not determined.
+#[test]
+fn dynamics_are_written_on_request() {
+    let folder = Folder::new();
+    let into = folder.arg("code");
+    for language in ["c", "rust", "python", "matlab", "st"] {
+        let run = |rest: &[&str]| {
+            opm(&[&["generate", language, "delta", "-q", "-o", &into], rest].concat()).text();
+            let mut folders = vec![std::path::PathBuf::from(&into)];
+            let mut all = String::new();
+            while let Some(folder) = folders.pop() {
+                for entry in std::fs::read_dir(folder).unwrap() {
+                    let path = entry.unwrap().path();
+                    match path.is_dir() {
+                        true => folders.push(path),
+                        false => all += &std::fs::read_to_string(path).unwrap(),
+                    }
+                }
+            }
+            std::fs::remove_dir_all(&into).unwrap();
+            all
+        };
+        assert!(!run(&[]).contains("payload"), "{language}");
+        let text = run(&["--dynamics"]);
+        assert!(text.contains("inverse_dynamics") && text.contains("payload"), "{language}");
+    }
+    let refused = opm(&["generate", "c", "ankle", "--dynamics", "-o", &into]);
+    refused.fails_with_one_line(1, &["ankle: inverse dynamics: leg leg1 has 7 freedoms"]);
+}

@@ -1,6 +1,7 @@
 //! Joints: a kind, an axis at the assembled home, and the coordinates that measure them.
 
 use super::Cone;
+use super::file::FileUnits;
 use crate::chain::limits::Limits;
 use crate::group::screw::Screw;
 pub use crate::numeric::Quantity;
@@ -172,6 +173,8 @@ pub struct JointLimits {
     pub motion: MotionLimits,
     /// Largest absolute effort of the joint's actuator, newtons or newton metres; positive.
     pub max_effort: Option<f64>,
+    /// The numbers of its drive that are given, in the order of [`DriveNumber::ALL`], SI.
+    pub drive: [Option<f64>; 4],
     /// The joint's value where the family's formulas have its zero, radians or metres: the offset of its encoder. Without it,
     /// zero.
     pub offset: Option<f64>,
@@ -230,23 +233,9 @@ impl Default for Drive {
 }
 
 impl Drive {
-    /// The keys in mechanism files.
-    pub const KEYS: [&'static str; 4] =
-        ["rotor_inertia", "gear", "viscous_friction", "coulomb_friction"];
-
-    /// The numbers, in the order of the keys.
+    /// The numbers, in the order of [`DriveNumber::ALL`].
     pub fn numbers(&self) -> [f64; 4] {
-        [self.rotor_inertia, self.gear, self.viscous_friction, self.coulomb_friction]
-    }
-
-    /// One of the numbers, in the order of the keys.
-    pub(crate) fn number_mut(&mut self, key: usize) -> &mut f64 {
-        match key {
-            0 => &mut self.rotor_inertia,
-            1 => &mut self.gear,
-            2 => &mut self.viscous_friction,
-            _ => &mut self.coulomb_friction,
-        }
+        DriveNumber::ALL.map(|number| number.of(self))
     }
 
     /// The inertia of the rotor at the joint, kg m² or kg.
@@ -260,6 +249,67 @@ impl Drive {
         self.inertia() * acceleration
             + self.viscous_friction * rate
             + self.coulomb_friction * against
+    }
+}
+
+/// One of the numbers of a [`Drive`]. None of them is negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DriveNumber {
+    /// The inertia of the rotor.
+    RotorInertia,
+    /// The gear.
+    Gear,
+    /// The friction in proportion to the rate.
+    ViscousFriction,
+    /// The friction whatever the rate is.
+    CoulombFriction,
+}
+
+impl DriveNumber {
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::RotorInertia, Self::Gear, Self::ViscousFriction, Self::CoulombFriction];
+
+    /// The key in mechanism files.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::RotorInertia => "rotor_inertia",
+            Self::Gear => "gear",
+            Self::ViscousFriction => "viscous_friction",
+            Self::CoulombFriction => "coulomb_friction",
+        }
+    }
+
+    /// Its value.
+    pub fn of(self, drive: &Drive) -> f64 {
+        match self {
+            Self::RotorInertia => drive.rotor_inertia,
+            Self::Gear => drive.gear,
+            Self::ViscousFriction => drive.viscous_friction,
+            Self::CoulombFriction => drive.coulomb_friction,
+        }
+    }
+
+    pub(crate) fn of_mut(self, drive: &mut Drive) -> &mut f64 {
+        match self {
+            Self::RotorInertia => &mut drive.rotor_inertia,
+            Self::Gear => &mut drive.gear,
+            Self::ViscousFriction => &mut drive.viscous_friction,
+            Self::CoulombFriction => &mut drive.coulomb_friction,
+        }
+    }
+
+    /// The number of a joint without a drive.
+    pub(crate) fn usual(self) -> f64 {
+        self.of(&Drive::default())
+    }
+
+    /// What the number of a file is of one in SI: the gear of a slider is per unit of length.
+    pub(crate) fn in_file(self, quantity: Quantity, units: FileUnits) -> f64 {
+        match (self, quantity) {
+            (Self::Gear, Quantity::Length) => units.factor(Quantity::Length),
+            _ => 1.0,
+        }
     }
 }
 
@@ -441,6 +491,11 @@ impl Joint {
         self.coordinates[0].home = limits.offset.unwrap_or(0.0);
         self.coordinates[0].motion_limits = limits.motion;
         self.coordinates[0].max_effort = limits.max_effort;
+        for (number, value) in DriveNumber::ALL.into_iter().zip(limits.drive) {
+            if let Some(value) = value {
+                *number.of_mut(&mut self.coordinates[0].drive) = value;
+            }
+        }
         self.within(limits.range)
     }
 

@@ -3,7 +3,7 @@
 
 use super::Family;
 use crate::mechanism::file::{FileUnits, checks, nearest, quoted};
-use crate::mechanism::joint::{DriveLimit, JointLimits, MotionLimit, MotionLimits};
+use crate::mechanism::joint::{DriveLimit, DriveNumber, JointLimits, MotionLimit, MotionLimits};
 use crate::numeric::Quantity;
 use std::fmt::Write;
 
@@ -28,6 +28,7 @@ pub(in crate::mechanism) enum ParameterRef<'a> {
     Point(&'a mut [f64; 2]),
     Limits(Quantity, &'a mut Option<[f64; 2]>),
     DriveLimit(DriveLimit, Quantity, &'a mut Option<f64>),
+    Drive(DriveNumber, Quantity, &'a mut Option<f64>),
     Offset(Quantity, &'a mut Option<f64>),
 }
 
@@ -36,15 +37,20 @@ pub(in crate::mechanism) enum ParameterRef<'a> {
 pub(in crate::mechanism) enum JointTable {
     Limits,
     Drive(DriveLimit),
+    Number(DriveNumber),
     Offset,
 }
 
 impl JointTable {
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 9] = [
         Self::Limits,
         Self::Drive(DriveLimit::Motion(MotionLimit::Rate)),
         Self::Drive(DriveLimit::Motion(MotionLimit::Acceleration)),
         Self::Drive(DriveLimit::Effort),
+        Self::Number(DriveNumber::RotorInertia),
+        Self::Number(DriveNumber::Gear),
+        Self::Number(DriveNumber::ViscousFriction),
+        Self::Number(DriveNumber::CoulombFriction),
         Self::Offset,
     ];
 
@@ -53,6 +59,7 @@ impl JointTable {
         match self {
             Self::Limits => "limits",
             Self::Drive(limit) => limit.key(),
+            Self::Number(number) => number.key(),
             Self::Offset => "offset",
         }
     }
@@ -121,16 +128,29 @@ impl Parameter<'_> {
         }
     }
 
-    /// What it measures, in the units of the file; `None` for an effort, which is in newtons or newton metres.
+    /// What it measures, in the units of the file; `None` for an effort, which is in newtons or newton metres, and for a number of a
+    /// drive.
     pub(in crate::mechanism) fn quantity(&self) -> Option<Quantity> {
         match self.target {
             ParameterRef::DriveLimit(limit, ..) if !limit.has_units_of_file() => None,
+            ParameterRef::Drive(..) => None,
             ParameterRef::Number(quantity, _)
             | ParameterRef::Optional(quantity, _)
             | ParameterRef::Limits(quantity, _)
             | ParameterRef::DriveLimit(_, quantity, _)
             | ParameterRef::Offset(quantity, _) => Some(quantity),
             ParameterRef::Point(_) => Some(Quantity::Length),
+        }
+    }
+
+    /// A number of its value, SI, in the units of a file.
+    pub(in crate::mechanism) fn number_in(&self, value: f64, units: FileUnits) -> f64 {
+        match (&self.target, self.quantity()) {
+            (ParameterRef::Drive(number, quantity, _), _) => {
+                value * number.in_file(*quantity, units)
+            }
+            (_, Some(quantity)) => units.number_of(value, quantity),
+            (_, None) => value,
         }
     }
 
@@ -143,7 +163,9 @@ impl Parameter<'_> {
             ParameterRef::Limits(_, limits) => {
                 Some(limits.map_or(ParameterValue::None, ParameterValue::Pair))
             }
-            ParameterRef::DriveLimit(.., limit) | ParameterRef::Offset(_, limit) => {
+            ParameterRef::DriveLimit(.., limit)
+            | ParameterRef::Drive(.., limit)
+            | ParameterRef::Offset(_, limit) => {
                 Some(limit.map_or(ParameterValue::None, ParameterValue::Number))
             }
         }
@@ -173,6 +195,10 @@ impl Parameter<'_> {
                 let value = checks::finite(value)?;
                 **target = Some(checks::drive_limit(value, *limit, *quantity, units)?);
             }
+            (ParameterRef::Drive(.., target), ParameterValue::None) => **target = None,
+            (ParameterRef::Drive(.., target), Number(value)) => {
+                **target = Some(checks::drive_number(value)?);
+            }
             (ParameterRef::Offset(_, target), ParameterValue::None) => **target = None,
             (ParameterRef::Offset(quantity, target), Number(value)) => {
                 **target = Some(size(value, *quantity)?);
@@ -187,7 +213,9 @@ impl Parameter<'_> {
                     ParameterRef::Number(..) | ParameterRef::Optional(..) => "a number",
                     ParameterRef::Point(_) => "a point [x, y]",
                     ParameterRef::Limits(..) => "limits [lowest, highest] or none",
-                    ParameterRef::DriveLimit(..) | ParameterRef::Offset(..) => "a number or none",
+                    ParameterRef::DriveLimit(..)
+                    | ParameterRef::Drive(..)
+                    | ParameterRef::Offset(..) => "a number or none",
                 };
                 return Err(format!("is {found}, expected {expected}"));
             }
@@ -307,10 +335,7 @@ impl Family {
         let mut body = String::new();
         for group in family.groups() {
             let entry = |p: &Parameter<'_>| {
-                let number = |value: f64| match p.quantity() {
-                    Some(quantity) => units.number_of(value, quantity),
-                    None => value,
-                };
+                let number = |value: f64| p.number_in(value, units);
                 let value = match p.value()? {
                     ParameterValue::None => return None,
                     ParameterValue::Number(value) => format!("{:?}", number(value)),
@@ -398,12 +423,10 @@ fn known(groups: &[Group<'_>]) -> String {
         let mut names = of(None).join(", ");
         let joints = of(Some(JointTable::Limits));
         if let Some(first) = joints.first() {
-            let [limits, rate, acceleration, effort, offset] = JointTable::ALL.map(JointTable::key);
-            let joints = joints.join(", ");
-            let _ = write!(
-                names,
-                ", and {limits}, {rate}, {acceleration}, {effort} and {offset} ({limits}.{first}, ...) of {joints}"
-            );
+            let [most @ .., last] = &JointTable::ALL.map(JointTable::key);
+            let (most, joints) = (most.join(", "), joints.join(", "));
+            let limits = JointTable::Limits.key();
+            let _ = write!(names, ", and {most} and {last} ({limits}.{first}, ...) of {joints}");
         }
         match kinds.iter_mut().find(|(_, known)| *known == names) {
             Some((legs, _)) => legs.push(&group.name),
@@ -442,8 +465,9 @@ impl<'a> Parameter<'a> {
         joints: [(&'static str, Quantity, &'a mut JointLimits); N],
     ) -> Vec<Self> {
         let mut tables = JointTable::ALL.map(|_| Vec::new());
-        for (key, quantity, JointLimits { range, motion, max_effort, offset }) in joints {
+        for (key, quantity, JointLimits { range, motion, max_effort, drive, offset }) in joints {
             let MotionLimits { max_rate, max_acceleration } = motion;
+            let [rotor, gear, viscous, coulomb] = drive;
             let targets = [
                 ParameterRef::Limits(quantity, range),
                 ParameterRef::DriveLimit(DriveLimit::Motion(MotionLimit::Rate), quantity, max_rate),
@@ -453,6 +477,10 @@ impl<'a> Parameter<'a> {
                     max_acceleration,
                 ),
                 ParameterRef::DriveLimit(DriveLimit::Effort, quantity, max_effort),
+                ParameterRef::Drive(DriveNumber::RotorInertia, quantity, rotor),
+                ParameterRef::Drive(DriveNumber::Gear, quantity, gear),
+                ParameterRef::Drive(DriveNumber::ViscousFriction, quantity, viscous),
+                ParameterRef::Drive(DriveNumber::CoulombFriction, quantity, coulomb),
                 ParameterRef::Offset(quantity, offset),
             ];
             for ((table, parameters), target) in

@@ -1,5 +1,6 @@
 //! Reading `[bodies]`: what the bodies of a mechanism weigh, and how thick they are.
 
+use super::checks::{self, DENSITIES, MASSES};
 use super::hint::expected_one_of;
 use super::reader::{Table, Value, all};
 use crate::mechanism::{BodyMasses, Mechanism, Payload, Shapes};
@@ -11,10 +12,6 @@ pub(super) const KEYS: &[&str] =
 /// The keys of a payload.
 pub(super) const PAYLOAD: &[&str] = &["mass", "centre", "inertia"];
 
-/// The densities that bodies may have, kilograms per cubic metre: from less than air to more than any metal.
-pub(super) const DENSITIES: [f64; 2] = [1e-3, 1e6];
-/// The masses that bodies may have, kilograms: from a microgram to a thousand tons.
-pub(super) const MASSES: [f64; 2] = [1e-9, 1e6];
 /// The largest entry of a tensor of inertia, kilograms times square metres: a thousand tons at a kilometre.
 pub(super) const INERTIA: f64 = 1e12;
 /// The share of a principal moment of inertia that is rounding.
@@ -115,11 +112,7 @@ fn by_name<T>(
 }
 
 /// Reads a number in a range.
-fn within(value: &Value<'_>, [least, most]: [f64; 2], unit: &str) -> Option<f64> {
-    let number = value.number()?;
-    if (least..=most).contains(&number) {
-        return Some(number);
-    }
-    value.report(format!("is {number} {unit}, expected {least:?} to {most:?} {unit}"));
-    None
+fn within(value: &Value<'_>, range: [f64; 2], unit: &str) -> Option<f64> {
+    let checked = checks::within(value.number()?, range, unit);
+    checked.map_err(|problem| value.report(problem)).ok()
 }

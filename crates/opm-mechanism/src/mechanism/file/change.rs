@@ -6,9 +6,10 @@ use super::{
     checks, nearest, write, writer,
 };
 use crate::mechanism::family::{Family, ParameterErrors, ParameterValue};
-use crate::mechanism::joint::{DriveLimit, JointCoordinate};
-use crate::mechanism::{Mechanism, TaskHints};
+use crate::mechanism::joint::{DriveLimit, DriveNumber, JointCoordinate};
+use crate::mechanism::{Mechanism, Payload, TaskHints};
 use crate::numeric::Quantity;
+use nalgebra::Matrix3;
 
 impl MechanismFile {
     /// The dimensions that the file gives by name, SI: its named parameters that are numbers and follow from no others, then
@@ -35,7 +36,8 @@ impl MechanismFile {
     }
 
     /// What a number of the file measures, by the name that [`MechanismFile::with`] takes; `None` if there is no such
-    /// number, if it is an effort ([`MechanismFile::is_effort`]), and if it has no unit ([`MechanismFile::is_plain`]).
+    /// number, if it is an effort ([`MechanismFile::is_effort`]) or of a drive ([`MechanismFile::drive_number`]), and if it has no unit
+    /// ([`MechanismFile::is_plain`]).
     pub fn quantity_of(&self, name: &str) -> Option<Quantity> {
         if let Some(parameter) = self.parameter(name) {
             return parameter.unit.quantity();
@@ -44,7 +46,7 @@ impl MechanismFile {
             Some(family) => family.quantity_of(name),
             None => {
                 let (joint, part) = split(name)?;
-                if part == JointEntry::Drive(DriveLimit::Effort) {
+                if matches!(part, JointEntry::Drive(DriveLimit::Effort) | JointEntry::Number(_)) {
                     return None;
                 }
                 let mut all = self.mechanism.coordinates();
@@ -60,19 +62,37 @@ impl MechanismFile {
             && name.split('.').any(|part| part == DriveLimit::Effort.key())
     }
 
-    /// Whether a name that [`MechanismFile::with`] takes is that of a largest rate, acceleration or effort, and not that of a
-    /// length or an angle.
+    /// The number of a drive that a name which [`MechanismFile::with`] takes is that of, if it is.
+    pub fn drive_number(&self, name: &str) -> Option<DriveNumber> {
+        let is = |number: &DriveNumber| name.split('.').any(|part| part == number.key());
+        let found = DriveNumber::ALL.into_iter().find(is);
+        found.filter(|_| self.parameter(name).is_none())
+    }
+
+    /// Whether a name that [`MechanismFile::with`] takes is that of a largest rate, acceleration or effort, or of a number of a drive, and
+    /// not that of a length or an angle.
     pub fn is_of_drive(&self, name: &str) -> bool {
         let of = |part: &str| DriveLimit::ALL.iter().any(|limit| limit.key() == part);
-        self.parameter(name).is_none() && name.split('.').any(of)
+        let limited = self.parameter(name).is_none() && name.split('.').any(of);
+        limited || self.drive_number(name).is_some()
+    }
+
+    /// Whether a name that [`MechanismFile::with`] takes is that of a mass, kg, or of the density of bodies, kg/m³.
+    pub fn is_of_bodies(&self, name: &str) -> bool {
+        let is = name.starts_with("masses.") || ["payload.mass", "density"].contains(&name);
+        is && self.parameter(name).is_none()
     }
 
     /// The same file with some numbers changed, SI.
     ///
     /// A name may be one of [`MechanismFile::parameters`]: everything that the file gives by it follows.
     /// The names are those of [`Family::parameters`] (see [`Family::with`]). In a list of joints, `S1.limits` are the
-    /// limits of a joint coordinate, `S1.max_rate`, `S1.max_acceleration` and `S1.max_effort` those of how it is driven, and
-    /// `S1.home` is its value at home; `limits` alone are those of all joints that have any, and so are the other limits.
+    /// limits of a joint coordinate, `S1.max_rate`, `S1.max_acceleration` and `S1.max_effort` those of how it is driven,
+    /// `S1.rotor_inertia` and the other keys of [`DriveNumber`] the numbers of its drive, and
+    /// `S1.home` is its value at home; `limits` alone are those of all joints that have any, and so are the others.
+    ///
+    /// In every file, `masses.NAME` is the mass of a body, `payload.mass` that of what the platform carries, and `density` the density of the
+    /// bodies whose masses are not given.
     ///
     /// # Errors
     /// A name or a value is wrong, or a leg does not reach home.
@@ -84,6 +104,9 @@ impl MechanismFile {
         let (named, others): (Vec<_>, Vec<_>) =
             changes.into_iter().partition(|(name, _)| self.parameter(name).is_some());
         let file = if named.is_empty() { self.clone() } else { self.with_named(&named)? };
+        let (masses, others): (Vec<_>, Vec<_>) =
+            others.into_iter().partition(|(name, _)| self.is_of_bodies(name));
+        let file = if masses.is_empty() { file } else { file.with_masses(masses)? };
         if others.is_empty() { Ok(file) } else { file.with_others(others) }
     }
 
@@ -152,6 +175,55 @@ impl MechanismFile {
         self
     }
 
+    /// The same with other masses.
+    fn with_masses(&self, changes: Vec<(&str, ParameterValue)>) -> Result<Self, ParameterErrors> {
+        let mut file = self.clone();
+        let names: Vec<String> = file.mechanism.body_names().map(str::to_owned).collect();
+        let bodies = &mut file.mechanism.bodies;
+        let mut problems = Vec::new();
+        for (name, value) in changes {
+            let range = if name == "density" { checks::DENSITIES } else { checks::MASSES };
+            let unit = if name == "density" { "kg/m^3" } else { "kg" };
+            let mut set = || {
+                let ParameterValue::Number(value) = value else {
+                    return Err("expected a number".to_owned());
+                };
+                let value = checks::within(value, range, unit)?;
+                match name.strip_prefix("masses.") {
+                    None if name == "density" => bodies.density = Some(value),
+                    None => {
+                        let none = Payload { mass: value, centre: None, inertia: Matrix3::zeros() };
+                        bodies.payload.get_or_insert(none).mass = value;
+                    }
+                    Some(body) if !names.iter().any(|known| known == body) => {
+                        let hint = nearest(body, &names);
+                        let hint = hint.map_or_else(String::new, |meant| {
+                            format!("did you mean `masses.{meant}`? ")
+                        });
+                        return Err(format!(
+                            "names no body {body}; {hint}expected one of {}",
+                            names.join(", ")
+                        ));
+                    }
+                    Some(body) => match bodies.masses.iter_mut().find(|(known, _)| known == body) {
+                        Some((_, mass)) => *mass = value,
+                        None => bodies.masses.push((body.to_owned(), value)),
+                    },
+                }
+                Ok(())
+            };
+            problems.extend(set().err().map(|problem| format!("`{name}` {problem}")));
+        }
+        // In the order in which they are read.
+        let place = |body: &String| names.iter().position(|known| known == body);
+        bodies.masses.sort_by_key(|(body, _)| place(body));
+        if !problems.is_empty() {
+            return Err(ParameterErrors { problems });
+        }
+        file.places = Locations::default();
+        Ok(if file.parameters.is_empty() { file } else { file.settled() })
+    }
+
     /// The same with other numbers than those of named parameters changed.
     fn with_others(&self, changes: Vec<(&str, ParameterValue)>) -> Result<Self, ParameterErrors> {
         let mut file = self.clone();
@@ -213,15 +285,17 @@ enum JointEntry {
     Home,
     Limits,
     Drive(DriveLimit),
+    Number(DriveNumber),
 }
 
 impl JointEntry {
-    /// Whether it is a limit that the coordinate has.
+    /// Whether it is a limit, or a number of a drive, that the coordinate has.
     fn is_limit_of(self, coordinate: &JointCoordinate) -> bool {
         match self {
             Self::Home => false,
             Self::Limits => coordinate.limits.is_some(),
             Self::Drive(limit) => limit.of(coordinate).is_some(),
+            Self::Number(number) => number.of(&coordinate.drive) != number.usual(),
         }
     }
 }
@@ -235,7 +309,11 @@ fn split(name: &str) -> Option<(Option<&str>, JointEntry)> {
     let part = match part {
         "home" if joint.is_some() => JointEntry::Home,
         "limits" => JointEntry::Limits,
-        part => JointEntry::Drive(DriveLimit::ALL.into_iter().find(|limit| limit.key() == part)?),
+        part => {
+            let limit = DriveLimit::ALL.into_iter().find(|limit| limit.key() == part);
+            let number = || DriveNumber::ALL.into_iter().find(|number| number.key() == part);
+            limit.map(JointEntry::Drive).or_else(|| number().map(JointEntry::Number))?
+        }
     };
     Some((joint, part))
 }
@@ -252,6 +330,7 @@ fn change(
     let list = || names.join(", ");
     let Some((joint, part)) = split(name) else {
         let parts = ["limits", "home"].into_iter().chain(DriveLimit::ALL.map(DriveLimit::key));
+        let parts = parts.chain(DriveNumber::ALL.map(DriveNumber::key));
         let parts =
             names.iter().flat_map(|name| parts.clone().map(move |part| format!("{name}.{part}")));
         let named: Vec<String> = file.parameters.iter().map(|p| p.name.clone()).collect();
@@ -263,7 +342,8 @@ fn change(
         };
         return Err(format!(
             "is not a number of a list of joints; {hint}expected {parameters}JOINT.limits, JOINT.home, JOINT.max_rate, \
-             JOINT.max_acceleration or JOINT.max_effort, JOINT one of {}",
+             JOINT.max_acceleration, JOINT.max_effort, {}, JOINT one of {}",
+            DriveNumber::ALL.map(|number| format!("JOINT.{}", number.key())).join(", "),
             list()
         ));
     };
@@ -299,8 +379,16 @@ fn change(
                 let value = checks::drive_limit(value, limit, quantity, units)?;
                 *limit.of_mut(coordinate) = Some(value);
             }
+            (JointEntry::Number(number), ParameterValue::None) => {
+                *number.of_mut(&mut coordinate.drive) = number.usual();
+            }
+            (JointEntry::Number(number), ParameterValue::Number(value)) => {
+                *number.of_mut(&mut coordinate.drive) = checks::drive_number(value)?;
+            }
             (JointEntry::Home, _) => return Err("expected a number".into()),
-            (JointEntry::Drive(_), _) => return Err("expected a number, or none".into()),
+            (JointEntry::Drive(_) | JointEntry::Number(_), _) => {
+                return Err("expected a number, or none".into());
+            }
             (JointEntry::Limits, _) => return Err("expected limits LOWEST:HIGHEST, or none".into()),
         }
     }

@@ -56,3 +56,24 @@ pub(crate) fn drive_limit(
         false => format!("is {found}, expected a value above 0"),
     })
 }
+
+/// Checks that a number of a joint's drive is at least zero and not larger than [`LARGEST`].
+pub(crate) fn drive_number(value: f64) -> Result<f64, String> {
+    match (0.0..=LARGEST).contains(&value) {
+        true => Ok(value),
+        false => Err(format!("is {value}, expected 0 to {LARGEST:e}")),
+    }
+}
+
+/// The densities that bodies may have, kilograms per cubic metre: from less than air to more than any metal.
+pub(crate) const DENSITIES: [f64; 2] = [1e-3, 1e6];
+/// The masses that bodies may have, kilograms: from a microgram to a thousand tons.
+pub(crate) const MASSES: [f64; 2] = [1e-9, 1e6];
+
+/// Checks that a number is in a range.
+pub(crate) fn within(value: f64, [least, most]: [f64; 2], unit: &str) -> Result<f64, String> {
+    match (least..=most).contains(&value) {
+        true => Ok(value),
+        false => Err(format!("is {value} {unit}, expected {least:?} to {most:?} {unit}")),
+    }
+}

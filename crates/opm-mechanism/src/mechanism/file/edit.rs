@@ -5,8 +5,8 @@
 
 use super::{FileUnits, quoted};
 use crate::mechanism::family::{Family, Group, JointTable, Parameter, ParameterValue, TableKey};
-use crate::mechanism::joint::{DriveLimit, Joint, JointCoordinate, JointKind};
-use crate::mechanism::{Mechanism, TaskHints};
+use crate::mechanism::joint::{DriveLimit, DriveNumber, Joint, JointCoordinate, JointKind};
+use crate::mechanism::{BodyMasses, Mechanism, Payload, TaskHints};
 use crate::numeric::Quantity;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -60,8 +60,7 @@ pub(super) fn family(
                     Some(ParameterValue::Pair(pair)) => pair.to_vec(),
                     Some(ParameterValue::None) | None => vec![],
                 };
-                let quantity = new.quantity();
-                let of = |value: f64| quantity.map_or(value, |q| units.number_of(value, q));
+                let of = |value: f64| new.number_in(value, units);
                 let change = Change {
                     before: flat(old.value()),
                     after: flat(new.value()),
@@ -86,7 +85,6 @@ pub(super) fn joints(
     units: FileUnits,
 ) -> Option<String> {
     let same = before.name == after.name
-        && before.bodies == after.bodies
         && before.shapes == after.shapes
         && before.legs.len() == after.legs.len();
     if !same {
@@ -94,6 +92,7 @@ pub(super) fn joints(
     }
     edited(text, |root, edits| {
         task(root, [&before.task, &after.task], edits)?;
+        masses(root, [&before.bodies, &after.bodies], edits)?;
         if before.platform != after.platform {
             let flat = |mechanism: &Mechanism| mechanism.platform.coords.as_slice().to_vec();
             let number = |value| units.number_of(value, Quantity::Length);
@@ -156,11 +155,6 @@ fn edit_joint(
             && before.actuated == after.actuated
             && before.turns_back == after.turns_back
             && before.cone == after.cone
-            && before
-                .coordinates
-                .iter()
-                .map(|c| c.drive)
-                .eq(after.coordinates.iter().map(|c| c.drive))
             && (is_pattern || before.name == after.name)
     };
     if !pairs.iter().all(alike) {
@@ -174,7 +168,7 @@ fn edit_joint(
             joint
                 .coordinates
                 .iter()
-                .map(|c| (c.home, c.limits, c.motion_limits, c.max_effort))
+                .map(|c| (c.home, c.limits, c.motion_limits, c.max_effort, c.drive))
                 .collect()
         };
         if moved || pairs.iter().any(|[_, after]| values(after) != values(new)) {
@@ -232,6 +226,22 @@ fn edit_joint(
             Some(vec![if limit.has_units_of_file() { number(c, value) } else { value }])
         });
     }
+    for number in DriveNumber::ALL {
+        let flat = |joint: &Joint| -> Vec<f64> {
+            let all = joint.coordinates.iter();
+            let is_usual = |c: &JointCoordinate| number.of(&c.drive) == number.usual();
+            match all.clone().all(is_usual) {
+                true => Vec::new(),
+                false => {
+                    all.map(|c| number.of(&c.drive) * number.in_file(c.quantity, units)).collect()
+                }
+            }
+        };
+        let [before, after] = [flat(old), flat(new)];
+        if before != after {
+            Change { before, after, number: &plain, rows: 1 }.apply(table, number.key(), edits);
+        }
+    }
     Some(())
 }
 
@@ -259,14 +269,76 @@ fn edit_end(
     Some(())
 }
 
-/// The text with other angles of an orientation.
+/// Edits `[bodies]`, of which masses and a density can be changed.
+fn masses(
+    root: &Place<'_>,
+    [before, after]: [&BodyMasses; 2],
+    edits: &mut Edits<'_>,
+) -> Option<()> {
+    let [old, new] = [before, after].map(|bodies| {
+        let payload = bodies.payload.map(|payload| Payload { mass: 0.0, ..payload });
+        (&bodies.centres, &bodies.inertias, payload)
+    });
+    let placed = (old.0, old.1) == (new.0, new.1);
+    let carries = old.2.is_none() || old.2 == new.2;
+    if before == after || !placed || !carries {
+        return (before == after).then_some(());
+    }
+    let table = root.table("bodies");
+    let mut lines = String::new();
+    let mut set = |key: &str, value: String, edits: &mut Edits<'_>| match &table {
+        Some(table) => edits.set(table, key, Some(value)),
+        None => lines += &format!("{key} = {value}\n"),
+    };
+    let changed = |(name, mass): &&(String, f64)| before.of(name) != Some(*mass);
+    if before.density != after.density {
+        set("density", literal(after.density?), edits);
+    }
+    let masses: Vec<_> = after.masses.iter().filter(changed).collect();
+    match table.as_ref().and_then(|table| table.table("masses")) {
+        Some(own) => {
+            for (name, mass) in masses {
+                edits.set(&own, &key(name), Some(literal(*mass)));
+            }
+        }
+        None if masses.is_empty() => {}
+        None => {
+            let each =
+                masses.iter().map(|(name, mass)| format!("{} = {}", key(name), literal(*mass)));
+            set("masses", format!("{{ {} }}", each.collect::<Vec<_>>().join(", ")), edits);
+        }
+    }
+    if before.payload != after.payload {
+        let mass = literal(after.payload?.mass);
+        match table.as_ref().and_then(|table| table.table("payload")) {
+            Some(own) => edits.set(&own, "mass", Some(mass)),
+            None => set("payload", format!("{{ mass = {mass} }}"), edits),
+        }
+    }
+    if !lines.is_empty() {
+        edits.append(&format!("\n[bodies]\n{lines}"));
+    }
+    Some(())
+}
+
+/// A name as a key.
+fn key(name: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
+    if !name.is_empty() && name.chars().all(plain) { name.to_owned() } else { quoted(name) }
+}
+
+/// The text with other angles of an orientation, and other masses.
 pub(super) fn angles(text: &str, [before, after]: [&Mechanism; 2]) -> Option<String> {
+    let bodies = [&before.bodies, &after.bodies];
     let hints = |mechanism: &Mechanism| TaskHints {
         coordinates: mechanism.task.coordinates,
         ..TaskHints::default()
     };
     let [before, after] = [hints(before), hints(after)];
-    edited(text, |root, edits| task(root, [&before, &after], edits))
+    edited(text, |root, edits| {
+        task(root, [&before, &after], edits)?;
+        masses(root, bodies, edits)
+    })
 }
 
 /// Edits `[task]`, of which the angles of an orientation can be changed.

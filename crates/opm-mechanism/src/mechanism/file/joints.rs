@@ -5,7 +5,7 @@ use super::pattern::{self, Pattern, Placement};
 use super::problem::Locations;
 use super::reader::{Table, UniqueNames, Value, all};
 use super::{FileUnits, LegPattern};
-use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointKind};
+use crate::mechanism::joint::{DriveLimit, DriveNumber, Joint, JointKind};
 use crate::mechanism::leg::{Leg, Section, placed};
 use crate::mechanism::{
     BodyMasses, Cone, FrameHints, HOME_COORDINATES, Mechanism, OrientationCoordinates, Shapes,
@@ -75,7 +75,7 @@ impl Type {
     pub(super) fn keys(self) -> Vec<&'static str> {
         let mut keys = vec!["name", "type", "point", "actuated", "home", "limits"];
         keys.extend(DriveLimit::ALL.map(DriveLimit::key));
-        keys.extend(Drive::KEYS);
+        keys.extend(DriveNumber::ALL.map(DriveNumber::key));
         keys.extend(self.directions().iter().chain(self.lengths()));
         if self.tilts() {
             keys.push("cone");
@@ -554,14 +554,12 @@ fn read_coordinates(table: &Table<'_>, joint: &mut Joint) {
             *limit.of_mut(coordinate) = Some(given);
         }
     }
-    for (number, key) in Drive::KEYS.into_iter().enumerate() {
-        let value = table.get(key);
-        let given = value.and_then(|value| value.per_coordinate(&quantities, Value::not_negative));
+    for number in DriveNumber::ALL {
+        let value = table.get(number.key());
+        let read = |item: &Value<'_>, quantity| item.drive_number(number, quantity);
+        let given = value.and_then(|value| value.per_coordinate(&quantities, read));
         for (coordinate, given) in joint.coordinates.iter_mut().zip(given.into_iter().flatten()) {
-            let per_length = key == "gear" && coordinate.quantity == Quantity::Length;
-            let units = table.reader.units();
-            let unit = if per_length { units.factor(Quantity::Length) } else { 1.0 };
-            *coordinate.drive.number_mut(number) = given / unit;
+            *number.of_mut(&mut coordinate.drive) = given;
         }
     }
     let limits = table.get("limits");

@@ -65,6 +65,9 @@ pub(in crate::mechanism) fn read_leg(leg: Option<&Table<'_>>, parameters: Vec<Pa
             ParameterRef::DriveLimit(limit, quantity, target) => {
                 *target = of_joint().and_then(|value| value.drive_limit(limit, quantity));
             }
+            ParameterRef::Drive(number, quantity, target) => {
+                *target = of_joint().and_then(|value| value.drive_number(number, quantity));
+            }
             ParameterRef::Offset(quantity, target) => {
                 *target = of_joint().and_then(|value| value.quantity(quantity));
             }

@@ -9,7 +9,7 @@ use super::hint::expected_one_of;
 use super::named::Names;
 use super::problem::{FileErrors, Lines, Problem};
 use super::units::FileUnits;
-use crate::mechanism::joint::DriveLimit;
+use crate::mechanism::joint::{DriveLimit, DriveNumber};
 use crate::numeric::Quantity;
 use crate::text::{is_unseen, quoted};
 use std::cell::{Cell, RefCell};
@@ -449,14 +449,12 @@ impl<'a> Value<'a> {
         checked.map_err(|problem| self.report(problem)).ok()
     }
 
-    /// Reads a number of at least zero without a unit.
-    pub(super) fn not_negative(&self, _: Quantity) -> Option<f64> {
-        let number = self.number()?;
-        if (0.0..=checks::LARGEST).contains(&number) {
-            return Some(number);
-        }
-        self.report(format!("is {number}, expected 0 to {:e}", checks::LARGEST));
-        None
+    /// Reads a number of a joint's drive, which is at least zero; returns it in SI.
+    pub(crate) fn drive_number(&self, number: DriveNumber, quantity: Quantity) -> Option<f64> {
+        let given = self.number()?;
+        let checked = checks::drive_number(given);
+        let checked = checked.map_err(|problem| self.report(problem)).ok()?;
+        Some(checked / number.in_file(quantity, self.reader.units()))
     }
 
     /// Whether the value is a table.

@@ -1,7 +1,7 @@
 //! Writing a mechanism as the text of a file that lists its joints.
 
 use super::FileUnits;
-use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointCoordinate, JointKind};
+use crate::mechanism::joint::{DriveLimit, DriveNumber, Joint, JointCoordinate, JointKind};
 use crate::mechanism::{
     Cone, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape, Payload, TaskHints,
 };
@@ -239,16 +239,14 @@ impl Writer {
                 entries.push(format!("{} = {}", limit.key(), one_or_all(largest)));
             }
         }
-        for (number, key) in Drive::KEYS.into_iter().enumerate() {
-            let of = |drive: Drive| drive.numbers()[number];
+        for number in DriveNumber::ALL {
             let value = |c: &JointCoordinate| {
-                let per_length = key == "gear" && c.quantity == Quantity::Length;
-                let unit = if per_length { self.units.factor(Quantity::Length) } else { 1.0 };
-                format!("{:?}", of(c.drive) * unit)
+                let unit = number.in_file(c.quantity, self.units);
+                format!("{:?}", number.of(&c.drive) * unit)
             };
-            if coordinates.iter().any(|c| of(c.drive) != of(Drive::default())) {
+            if coordinates.iter().any(|c| number.of(&c.drive) != number.usual()) {
                 let values = coordinates.iter().map(value).collect();
-                entries.push(format!("{key} = {}", one_or_all(values)));
+                entries.push(format!("{} = {}", number.key(), one_or_all(values)));
             }
         }
         entries

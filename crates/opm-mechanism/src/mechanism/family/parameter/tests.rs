@@ -149,8 +149,8 @@ fn every_problem_is_reported_with_its_parameter() {
         .problems;
     let expected = [
         "`leg1.hh` is not a parameter; did you mean `leg1.h`? home has x, y, zeta, xi, psi; leg1, leg2, leg3 have alpha, h, \
-         a1, a2, alpha1, alpha2, eta, beta, and limits, max_rate, max_acceleration, max_effort and offset (limits.S, ...) of S, phi1, phi2, \
-         theta2, theta3; leg4 has base, b1, b2, and limits, max_rate, max_acceleration, max_effort and offset (limits.phi1, ...) of phi1, \
+         a1, a2, alpha1, alpha2, eta, beta, and limits, max_rate, max_acceleration, max_effort, rotor_inertia, gear, viscous_friction, coulomb_friction and offset (limits.S, ...) of S, phi1, phi2, \
+         theta2, theta3; leg4 has base, b1, b2, and limits, max_rate, max_acceleration, max_effort, rotor_inertia, gear, viscous_friction, coulomb_friction and offset (limits.phi1, ...) of phi1, \
          phi2",
         "`a1` is 10000000000 m, expected an absolute value of at most 1000000000 m",
         "`base` is a number, expected a point [x, y]",

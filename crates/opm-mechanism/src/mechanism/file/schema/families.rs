@@ -11,7 +11,8 @@ use crate::mechanism::family::{
 use crate::mechanism::file::joints::FAMILY_TASK_KEYS;
 use crate::mechanism::file::parameters::{joint_keys, keys};
 use crate::mechanism::file::read::FAMILY_KEYS;
-use crate::mechanism::joint::{DriveLimit, MotionLimit};
+use crate::mechanism::joint::{DriveLimit, DriveNumber, MotionLimit};
+use crate::numeric::Quantity;
 use serde_json::{Value, json};
 
 /// The keys of each family, with its name.
@@ -104,9 +105,34 @@ fn joint_table(table: JointTable) -> &'static str {
         JointTable::Drive(DriveLimit::Effort) => {
             "The largest efforts of the leg's actuators, from which the capacity of a pose follows."
         }
+        JointTable::Number(DriveNumber::RotorInertia) => {
+            "The inertias of the rotors of the leg's actuators, kg m^2."
+        }
+        JointTable::Number(DriveNumber::Gear) => {
+            "How much faster than the leg's joints the rotors turn, 1 if it is not given."
+        }
+        JointTable::Number(DriveNumber::ViscousFriction) => {
+            "The friction of the leg's joints for a rate of one."
+        }
+        JointTable::Number(DriveNumber::CoulombFriction) => {
+            "The friction of the leg's joints against their rates."
+        }
         JointTable::Offset => {
             "The values of the leg's joints where the family's formulas have their zeros: the offsets of encoders."
         }
+    }
+}
+
+/// The unit of a number of a drive, as a sentence.
+fn drive_unit(number: DriveNumber, quantity: Quantity) -> &'static str {
+    match (number, quantity) {
+        (DriveNumber::RotorInertia, _) => " In kg m^2.",
+        (DriveNumber::Gear, Quantity::Angle) => "",
+        (DriveNumber::Gear, Quantity::Length) => " In radians per units.length.",
+        (DriveNumber::ViscousFriction, Quantity::Angle) => " In N m s/rad.",
+        (DriveNumber::ViscousFriction, Quantity::Length) => " In N s/m.",
+        (DriveNumber::CoulombFriction, Quantity::Angle) => " In N m.",
+        (DriveNumber::CoulombFriction, Quantity::Length) => " In N.",
     }
 }
 
@@ -119,6 +145,11 @@ fn joint(Parameter { key, target, .. }: &Parameter<'_>) -> Option<Value> {
         }
         ParameterRef::DriveLimit(limit, quantity, _) => {
             Some(drive_limit(&format!("Of the joint {key}."), *limit, *quantity))
+        }
+        ParameterRef::Drive(of, quantity, _) => {
+            let unit = drive_unit(*of, *quantity);
+            let description = format!("Of the joint {key}.{unit} At least 0.");
+            Some(json!({ "description": description, "type": ["number", "string"], "minimum": 0 }))
         }
         ParameterRef::Offset(quantity, _) => {
             Some(number(&format!("Of the joint {key}."), *quantity))
@@ -136,7 +167,10 @@ fn meanings(group: &Group<'_>) -> Properties {
                 number(&format!("{expected}; only for legs that have one"), *quantity)
             }
             ParameterRef::Point(_) => point(expected, 2),
-            ParameterRef::Limits(..) | ParameterRef::DriveLimit(..) | ParameterRef::Offset(..) => {
+            ParameterRef::Limits(..)
+            | ParameterRef::DriveLimit(..)
+            | ParameterRef::Drive(..)
+            | ParameterRef::Offset(..) => {
                 return None;
             }
         };
@@ -190,6 +224,7 @@ fn is_required(parameter: &Parameter<'_>) -> bool {
         ParameterRef::Optional(..)
         | ParameterRef::Limits(..)
         | ParameterRef::DriveLimit(..)
+        | ParameterRef::Drive(..)
         | ParameterRef::Offset(..) => false,
     }
 }

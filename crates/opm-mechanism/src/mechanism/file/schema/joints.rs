@@ -7,7 +7,7 @@ use super::values::{
 use crate::mechanism::file::joints::{
     FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
 };
-use crate::mechanism::joint::{Drive, DriveLimit, Joint, JointKind, MotionLimit};
+use crate::mechanism::joint::{DriveLimit, DriveNumber, Joint, JointKind, MotionLimit};
 use crate::mechanism::{HOME_COORDINATES, OrientationCoordinates};
 use crate::numeric::Quantity;
 use nalgebra::{Point3, Vector3};
@@ -149,10 +149,10 @@ fn joint() -> Value {
             json!({ "description": MAX_ACCELERATION }),
         ),
         (DriveLimit::Effort.key(), json!({ "description": MAX_EFFORT })),
-        (Drive::KEYS[0], json!({ "description": ROTOR_INERTIA })),
-        (Drive::KEYS[1], json!({ "description": GEAR })),
-        (Drive::KEYS[2], json!({ "description": VISCOUS })),
-        (Drive::KEYS[3], json!({ "description": COULOMB })),
+        (DriveNumber::RotorInertia.key(), json!({ "description": ROTOR_INERTIA })),
+        (DriveNumber::Gear.key(), json!({ "description": GEAR })),
+        (DriveNumber::ViscousFriction.key(), json!({ "description": VISCOUS })),
+        (DriveNumber::CoulombFriction.key(), json!({ "description": COULOMB })),
     ];
     let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
     let mut joint = described("A joint, at home.", object(properties));
@@ -226,6 +226,6 @@ fn joint_form(kind: Type) -> Value {
         });
     let [rate, acceleration, effort] = DriveLimit::ALL.map(|limit| (limit.key(), largest.clone()));
     let mut narrower = vec![("home", home), ("limits", limits), rate, acceleration, effort];
-    narrower.extend(Drive::KEYS.map(|key| (key, drive.clone())));
+    narrower.extend(DriveNumber::ALL.map(|number| (number.key(), drive.clone())));
     form(&kind.keys(), &kind.needs(), &narrower)
 }

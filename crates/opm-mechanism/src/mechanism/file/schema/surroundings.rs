@@ -3,7 +3,8 @@
 use super::values::{
     array, cases, closed, described, direction, form, in_units, name, numbers, object, point,
 };
-use crate::mechanism::file::bodies::{DENSITIES, INERTIA, MASSES};
+use crate::mechanism::file::bodies::INERTIA;
+use crate::mechanism::file::checks::{DENSITIES, MASSES};
 use crate::mechanism::file::obstacles::TYPES;
 use crate::numeric::Quantity;
 use serde_json::{Value, json};
