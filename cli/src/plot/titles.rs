@@ -29,6 +29,8 @@ pub fn shown(trace: &Trace) -> &'static str {
         Some(Index::EffortPerForce | Index::EffortPerMoment) => "Largest effort for a unit load",
         Some(Index::Effort) => "Largest effort",
         Some(Index::EffortShare) => "Largest share of a max_effort",
+        Some(Index::HoldingTorque) => "Largest torque that holds it",
+        Some(Index::HoldingForce) => "Largest force that holds it",
         Some(Index::Payload | Index::PayloadMoment | Index::PayloadBall) => "Payload",
         Some(Index::Stiffness | Index::RotationalStiffness) => "Least stiffness",
         Some(Index::NaturalFrequency) => "Lowest natural frequency",

@@ -191,6 +191,29 @@ fn the_fastest_timing_keeps_the_largest_effort() {
     assert!(unused.stderr.contains("nothing uses it"), "{}", unused.stderr);
 }
 
+/// Three upright sliders bear a third of the weight each, where the mechanism is symmetric; the motors of a Delta turn.
+#[test]
+fn what_holds_a_mechanism_is_an_index() {
+    let json =
+        opm(&["analyze", "linear-delta", "--gravity", "0,0,-9.81", "--format", "json"]).json();
+    let mass = json["gravity"]["mass"].as_f64().unwrap();
+    let force = json["indices"]["holding_force"].as_f64().unwrap();
+    assert!((force - mass * 9.81 / 3.0).abs() < 1e-9 * force, "{force} {mass}");
+    // It needs no flag, and a payload counts.
+    let loaded = ["analyze", "linear-delta", "--set", "payload.mass=3", "--format", "json"];
+    let found = opm(&loaded).json()["indices"]["holding_force"].as_f64().unwrap();
+    assert!((found - force - 9.81).abs() < 1e-9, "{found} {force}");
+    assert!(json["indices"].get("holding_torque").is_none());
+    let folder = Folder::new();
+    let out = folder.arg("out.mcap");
+    let grid = ["--grid", "x=0:0:1", "--grid", "y=0:0:1", "--grid", "z=-10mm:10mm:3"];
+    let sweep = |name: &str| {
+        opm(&[&["workspace", "linear-delta", "--color", name, "-o", &out], &grid[..]].concat())
+    };
+    sweep("holding_force").text();
+    sweep("holding_torque").fails(2, &["holding_torque: no actuated joint turns"]);
+}
+
 /// Rotors, gears, friction, masses and a payload are set by their names as the file would give them, in lists of joints and in families.
 #[test]
 fn drives_and_masses_are_set_by_name() {

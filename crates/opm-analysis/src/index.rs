@@ -35,6 +35,11 @@ pub enum Index {
     Effort,
     /// The largest share of its `max_effort` that an actuator needs under the load.
     EffortShare,
+    /// The largest torque of an actuator that turns its joint, with which the mechanism is held at rest under its weight, its payload
+    /// and the load.
+    HoldingTorque,
+    /// The largest force of an actuator that slides its joint, likewise.
+    HoldingForce,
     /// The largest force that the actuators bear in every direction on top of the load, within their `max_effort`.
     Payload,
     /// The largest moment that they bear about every axis, likewise.
@@ -112,6 +117,14 @@ pub enum IndexError {
     /// No two bodies can interfere.
     #[error("{0}: no two bodies that could interfere")]
     NoBodies(Index),
+    /// No actuator has such an effort.
+    #[error("{index}: no actuated joint {what}")]
+    NoActuator {
+        /// The index.
+        index: Index,
+        /// What none does.
+        what: &'static str,
+    },
     /// The platform cannot be accelerated so.
     #[error("{index}: the platform {what}")]
     NoMotion {
@@ -124,7 +137,7 @@ pub enum IndexError {
 
 impl Index {
     /// All of them.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 19] = [
         Self::Iti,
         Self::Oti,
         Self::Lti,
@@ -133,6 +146,8 @@ impl Index {
         Self::EffortPerMoment,
         Self::Effort,
         Self::EffortShare,
+        Self::HoldingTorque,
+        Self::HoldingForce,
         Self::Payload,
         Self::PayloadMoment,
         Self::PayloadBall,
@@ -157,6 +172,12 @@ impl Index {
             }
             Self::Effort => bad("effort", "N", "largest effort under the load"),
             Self::EffortShare => bad("effort_share", "", "largest share of a max_effort"),
+            Self::HoldingTorque => {
+                bad("holding_torque", "N m", "largest torque of an actuator that holds it at rest")
+            }
+            Self::HoldingForce => {
+                bad("holding_force", "N", "largest force of an actuator that holds it at rest")
+            }
             Self::Payload => good("payload", "N", "largest force that is borne in every direction"),
             Self::PayloadMoment => {
                 good("payload_moment", "N m", "largest moment that is borne about every axis")
@@ -210,6 +231,8 @@ impl Index {
             self,
             Self::Effort
                 | Self::EffortShare
+                | Self::HoldingTorque
+                | Self::HoldingForce
                 | Self::Payload
                 | Self::PayloadMoment
                 | Self::PayloadBall
@@ -225,7 +248,23 @@ impl Index {
 
     /// Whether its value depends on the masses of bodies.
     pub fn depends_on_masses(self) -> bool {
-        matches!(self, Self::NaturalFrequency | Self::Acceleration | Self::AngularAcceleration)
+        matches!(
+            self,
+            Self::NaturalFrequency
+                | Self::Acceleration
+                | Self::AngularAcceleration
+                | Self::HoldingTorque
+                | Self::HoldingForce
+        )
+    }
+
+    /// What the actuators measure whose efforts at rest it is.
+    fn held_by(self) -> Option<Quantity> {
+        match self {
+            Self::HoldingTorque => Some(Quantity::Angle),
+            Self::HoldingForce => Some(Quantity::Length),
+            _ => None,
+        }
     }
 
     /// Whether a value is as good as a bound, or better. A value that is not a number is not.
@@ -397,7 +436,18 @@ impl<'a> Indices<'a> {
                 self.distances = Some(Distances::owned(interference));
                 return Ok(());
             }
-            Index::EffortPerForce | Index::EffortPerMoment | Index::Effort | Index::EffortShare
+            Index::HoldingTorque | Index::HoldingForce
+                if !actuated.iter().any(|&c| Some(coordinates[c].quantity) == index.held_by()) =>
+            {
+                let what = if index == Index::HoldingTorque { "turns" } else { "slides" };
+                return Err(IndexError::NoActuator { index, what });
+            }
+            Index::EffortPerForce
+            | Index::EffortPerMoment
+            | Index::Effort
+            | Index::EffortShare
+            | Index::HoldingTorque
+            | Index::HoldingForce
                 if actuators != freedoms =>
             {
                 return Err(IndexError::Efforts { index, actuators, freedoms });
@@ -411,6 +461,9 @@ impl<'a> Indices<'a> {
                 if !actuated.iter().any(limited) =>
             {
                 return Err(IndexError::NoLimits(index));
+            }
+            Index::HoldingTorque | Index::HoldingForce => {
+                self.heavy = Some(Loads::of(manipulator, &setup.heavy()));
             }
             Index::Acceleration | Index::AngularAcceleration => {
                 self.heavy = Some(Loads::of(manipulator, &setup.heavy()));
@@ -498,7 +551,12 @@ impl<'a> Indices<'a> {
             })
             .then(capacity)
             .flatten();
-        let radius = statics.zip(heavy.as_mut());
+        let held = indices.iter().any(|index| index.held_by().is_some());
+        let held = statics.zip(heavy.as_mut().filter(|_| held));
+        let held = held.and_then(|(statics, loads)| Some((statics, loads.work(statics, at)?)));
+        let pushed =
+            |index: &Index| matches!(index, Index::Acceleration | Index::AngularAcceleration);
+        let radius = statics.zip(heavy.as_mut().filter(|_| indices.iter().any(pushed)));
         let radius = radius.and_then(|(statics, loads)| loads.acceleration_radius(statics, at));
         let stiffness = compliant.as_mut().and_then(|compliant| {
             let found = compliant.stiffness(at)?;
@@ -525,6 +583,9 @@ impl<'a> Indices<'a> {
                 Index::Effort => loaded().map(|(statics, work)| statics.largest_under(work, false)),
                 Index::EffortShare => {
                     loaded().map(|(statics, work)| statics.largest_under(work, true))
+                }
+                Index::HoldingTorque | Index::HoldingForce => {
+                    held.as_ref().map(|(statics, work)| statics.largest_of(work, index.held_by()))
                 }
                 Index::Payload => capacity.map(|found| found.force),
                 Index::PayloadMoment => capacity.map(|found| found.moment),
@@ -575,6 +636,15 @@ impl Statics<'_> {
             };
             effort.abs() / unit
         });
+        each.fold(0.0, f64::max)
+    }
+
+    /// The largest effort for a load of the actuators that measure something; infinite as above.
+    fn largest_of(&self, work: &Velocity, quantity: Option<Quantity>) -> f64 {
+        let slides = quantity == Some(Quantity::Length);
+        let rows =
+            (0..self.manipulator().actuated().len()).filter(|&row| self.slides(row) == slides);
+        let each = rows.map(|row| self.effort_under(row, work).map_or(f64::INFINITY, f64::abs));
         each.fold(0.0, f64::max)
     }
 

@@ -22,6 +22,8 @@ const NAMES: &[&str] = &[
     "effort_per_moment",
     "effort",
     "effort_share",
+    "holding_torque",
+    "holding_force",
     "payload",
     "payload_moment",
     "payload_ball",
