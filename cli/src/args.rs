@@ -18,6 +18,7 @@ mod pose;
 mod recording;
 mod setup;
 mod table;
+mod tool;
 mod workspace;
 
 pub use accuracy::AccuracyArgs;
@@ -38,6 +39,7 @@ pub use pose::{FkArgs, IkArgs, VelocityArgs};
 pub use recording::{InspectArgs, LayoutArgs, PlotArgs, RecoverArgs};
 pub use setup::SetupArgs;
 pub use table::MotionTableArgs;
+pub use tool::ToolArgs;
 pub use workspace::{CloudArgs, MergeArgs, WorkspaceArgs};
 
 use crate::change::Change;

@@ -13,7 +13,7 @@ use crate::motion::{self, LoadedMotion, Reading};
 use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
 use crate::text::count;
-use opm_analysis::Gravity;
+use opm_analysis::{Gravity, time_optimal_with_tool};
 use opm_core::manipulator::Manipulator;
 use opm_core::motion::TimingError;
 use opm_mcap::RecordError;
@@ -108,14 +108,17 @@ fn motion(
     let mode = motion.motion.mode.unwrap_or_else(|| manipulator.home_mode());
     // What acts besides springs takes part of the largest efforts.
     let acting = SetupOptions { springs: None, ..args.setup.options(None)? };
-    let timed =
-        opm_analysis::time_optimal(&motion.motion, manipulator, mode, &acting.check(manipulator)?);
+    let (acting, tool) = (acting.check(manipulator)?, args.tool.limits());
+    let timed = time_optimal_with_tool(&motion.motion, (manipulator, mode), &acting, tool);
     motion.motion = timed.map_err(|error| {
-        let of = match error {
-            TimingError::NoLimits { .. } => &args.mechanism.file,
-            _ => &args.motion,
+        let (of, flags) = match error {
+            TimingError::NoLimits { .. } => (
+                &args.mechanism.file,
+                "--time-optimal, --tool-acceleration, --tool-angular-acceleration",
+            ),
+            _ => (&args.motion, "--time-optimal"),
         };
-        Failure::work(format!("{}: {error} (--time-optimal)", of.shown()))
+        Failure::work(format!("{}: {error} ({flags})", of.shown()))
     })?;
     Ok((motion, Some(given_duration)))
 }

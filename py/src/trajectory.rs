@@ -15,10 +15,10 @@ use crate::pickle::{attribute, attributes, equal};
 use crate::velocity::characteristic_length;
 pub use events::{Contact, Violation};
 use numpy::{PyArray1, PyArray2};
-use opm_analysis::Setup;
+use opm_analysis::{Setup, time_optimal_with_tool};
 use opm_core::manipulator::Mode;
 use opm_core::mechanism;
-use opm_core::motion::{Ends, PlatformMotion};
+use opm_core::motion::{Ends, PlatformMotion, ToolLimits};
 use opm_core::table::ColumnNames;
 use opm_core::trajectory as core_trajectory;
 use opm_interference::{Distances, Interference, Watch, Watched};
@@ -129,8 +129,8 @@ struct Source {
     rate: f64,
     /// How the motion through the poses of a table starts and ends.
     ends: Ends,
-    /// Whether the motion has the fastest timing instead of its own.
-    time_optimal: bool,
+    /// The caps of the tool's motion if the motion has the fastest timing instead of its own.
+    time_optimal: Option<ToolLimits>,
     /// The least distance of two bodies that is no contact, metres.
     clearance: Option<f64>,
 }
@@ -138,11 +138,11 @@ struct Source {
 /// The motion with its fastest timing.
 fn timed(
     motion: &PlatformMotion,
-    inner: &opm_core::Manipulator,
-    mode: Mode,
+    (inner, mode): (&opm_core::Manipulator, Mode),
+    tool: ToolLimits,
 ) -> PyResult<PlatformMotion> {
     let setup = Setup::new(characteristic_length(inner, None)?);
-    opm_analysis::time_optimal(motion, inner, mode, &setup).map_err(|error| failed(&error))
+    time_optimal_with_tool(motion, (inner, mode), &setup, tool).map_err(|error| failed(&error))
 }
 
 /// Follow a motion of the platform.
@@ -173,6 +173,11 @@ fn timed(
 ///     The fastest timing along the same path, from rest to rest, within ``max_rate``, ``max_acceleration`` and
 ///     ``max_effort`` of the joints in the mechanism file. Every actuated joint needs one of the last two. Efforts are those of
 ///     :meth:`Manipulator.inverse_dynamics`, with 9.81 m/s² along -z.
+/// tool_speed, tool_acceleration : float, optional
+///     With `time_optimal`: the largest speed of the platform's reference point, m/s, and its largest acceleration, m/s².
+/// tool_angular_speed, tool_angular_acceleration : float, optional
+///     With `time_optimal`: the largest angular speed of the platform, rad/s, and its largest angular acceleration, rad/s².
+///     Joints need no limits where both accelerations are capped, or the one that the platform has.
 /// clearance : float, optional
 ///     Least distance of two bodies, metres: where it is less, they are in contact (:attr:`Trajectory.contacts`); 0 for
 ///     overlaps.
@@ -190,7 +195,7 @@ fn timed(
 ///     Lists every problem of the file with its line and column; or waypoints are not poses, or times do not increase (the
 ///     message gives the index of the waypoint, counted from zero).
 #[pyfunction]
-#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None, columns = None, relative_time = false, time_optimal = false, clearance = None))]
+#[pyo3(signature = (manipulator, motion, /, *, times = None, rate = None, mode = None, ends = None, columns = None, relative_time = false, time_optimal = false, tool_speed = None, tool_acceleration = None, tool_angular_speed = None, tool_angular_acceleration = None, clearance = None))]
 #[allow(clippy::too_many_arguments)]
 pub fn trajectory(
     py: Python<'_>,
@@ -203,8 +208,22 @@ pub fn trajectory(
     columns: Option<BTreeMap<String, String>>,
     relative_time: bool,
     time_optimal: bool,
+    tool_speed: Option<f64>,
+    tool_acceleration: Option<f64>,
+    tool_angular_speed: Option<f64>,
+    tool_angular_acceleration: Option<f64>,
     clearance: Option<f64>,
 ) -> PyResult<Trajectory> {
+    let tool = ToolLimits {
+        speed: tool_speed,
+        acceleration: tool_acceleration,
+        angular_speed: tool_angular_speed,
+        angular_acceleration: tool_angular_acceleration,
+    };
+    if tool != ToolLimits::default() && !time_optimal {
+        let problem = "tool_speed, tool_acceleration, tool_angular_speed and tool_angular_acceleration are caps of the fastest timing, expected time_optimal=True";
+        return Err(wrong(problem.to_owned()));
+    }
     if let Some(odd) = clearance.filter(|least| !(*least >= 0.0 && least.is_finite())) {
         return Err(wrong(format!("clearance is {odd:?} m, expected a length of 0 or more")));
     }
@@ -235,9 +254,10 @@ pub fn trajectory(
     };
     let rate = rate.or(motion.rate).unwrap_or(DEFAULT_RATE);
     let inner = &*manipulator.inner;
+    let time_optimal = time_optimal.then_some(tool);
     let motion = match time_optimal {
-        true => timed(&motion, inner, mode)?,
-        false => motion,
+        Some(tool) => timed(&motion, (inner, mode), tool)?,
+        None => motion,
     };
     let followed = core_trajectory::Trajectory::new(inner, &motion, mode, rate);
     let followed = followed.map_err(|error| failed(&error))?;
@@ -289,12 +309,15 @@ const ATTRIBUTES: [&str; 26] = [
     "rows",
 ];
 
-/// The pickled input of a trajectory: manipulator, name and text of the file, rate, ends of a table, whether it has the
-/// fastest timing, and the clearance.
-type Followable = (Py<Manipulator>, String, String, f64, &'static str, bool, Option<f64>);
+/// The pickled input of a trajectory: manipulator, name and text of the file, rate, ends of a table, the caps of the fastest
+/// timing if it has that, and the clearance.
+type Followable = (Py<Manipulator>, String, String, f64, &'static str, Caps, Option<f64>);
 
 /// The same, as it is read.
-type Restored = (Py<Manipulator>, String, String, f64, String, bool, Option<f64>);
+type Restored = (Py<Manipulator>, String, String, f64, String, Caps, Option<f64>);
+
+/// The pickled caps of the tool's motion: speed, acceleration, angular speed and angular acceleration.
+type Caps = Option<[Option<f64>; 4]>;
 
 #[pymethods]
 impl Trajectory {
@@ -310,14 +333,24 @@ impl Trajectory {
             &slf.get().source;
         let manipulator = manipulator.clone_ref(slf.py());
         let (file_name, text, ends) = (file_name.clone(), text.clone(), ends.name());
-        let source = (manipulator, file_name, text, *rate, ends, *time_optimal, *clearance);
+        let caps = time_optimal.map(|tool| {
+            [tool.speed, tool.acceleration, tool.angular_speed, tool.angular_acceleration]
+        });
+        let source = (manipulator, file_name, text, *rate, ends, caps, *clearance);
         let attributes = attributes(slf.as_any(), &ATTRIBUTES)?;
         Ok((slf.get_type().getattr("_restored")?, (attributes, source)))
     }
 
     #[staticmethod]
     fn _restored(attributes: &Bound<'_, PyDict>, source: Restored) -> PyResult<Self> {
-        let (manipulator, file_name, text, rate, ends, time_optimal, clearance) = source;
+        let (manipulator, file_name, text, rate, ends, caps, clearance) = source;
+        let time_optimal =
+            caps.map(|[speed, acceleration, angular_speed, angular_acceleration]| ToolLimits {
+                speed,
+                acceleration,
+                angular_speed,
+                angular_acceleration,
+            });
         let ends = spline_ends(&ends)?;
         let csv = file_name.to_ascii_lowercase().ends_with(".csv").then_some(ends);
         let reading = Reading { ends: csv, ..Default::default() };
@@ -325,8 +358,8 @@ impl Trajectory {
         let mode: String = attribute(attributes, "mode")?;
         let signs = manipulator.get().mode(&mode)?;
         let motion = match time_optimal {
-            true => timed(&motion, &manipulator.get().inner, signs)?,
-            false => motion,
+            Some(tool) => timed(&motion, (&manipulator.get().inner, signs), tool)?,
+            None => motion,
         };
         Ok(Self {
             times: attribute(attributes, "times")?,

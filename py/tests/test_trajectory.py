@@ -224,6 +224,30 @@ def test_the_fastest_timing_keeps_the_limits_and_the_poses(tmp_path):
         opm.trajectory(opm.examples.load("translational-helical-3dof"), poses, times=times, time_optimal=True)
 
 
+def test_the_tool_keeps_caps_of_its_own(tmp_path):
+    """A hexapod without limits of its joints, by differences of its poses; caps are pickled."""
+    hexapod = opm.examples.load("stewart")
+    home = np.array(hexapod.home)
+    poses = home + np.array([[0, 0, 0, 0, 0, 0], [0.05, 0.02, 0, 0.1, 0, 0], [0.05, 0, 0.02, 0, 0.1, 0]])
+    caps = {"tool_speed": 0.2, "tool_acceleration": 1.0, "tool_angular_speed": 0.5, "tool_angular_acceleration": 3.0}
+    found = opm.trajectory(hexapod, poses, rate=2000, time_optimal=True, **caps)
+    place = found.poses[:, [hexapod.pose_names.index(name) for name in "xyz"]]
+    first, second = np.diff(place, axis=0) * 2000, np.diff(place, n=2, axis=0) * 2000**2
+    assert 0.9 < np.linalg.norm(second[:-2], axis=1).max() < 1.0 + 1e-3
+    assert np.linalg.norm(first[:-1], axis=1).max() < 0.2 * (1 + 1e-6)
+    again = pickle.loads(pickle.dumps(found))
+    assert again == found
+    one, other = tmp_path / "one.csv", tmp_path / "other.csv"
+    found.write_table(one), again.write_table(other)
+    assert one.read_bytes() == other.read_bytes()
+    with pytest.raises(opm.OpmError, match="largest speed of the tool is -1, expected a number above 0"):
+        opm.trajectory(hexapod, poses, time_optimal=True, tool_speed=-1.0)
+    with pytest.raises(opm.OpmError, match="caps of the fastest timing, expected time_optimal=True"):
+        opm.trajectory(hexapod, poses, times=[0, 1, 2], tool_speed=1.0)
+    with pytest.raises(opm.OpmError, match="caps of the tool's acceleration, and of its angular"):
+        opm.trajectory(hexapod, poses, time_optimal=True, tool_acceleration=1.0)
+
+
 PLAIN = "t,x,xi\n0,0,0\n0.5,0.01,0.1\n"
 
 

@@ -9,6 +9,7 @@ pub const COUNTS: &str = "Which poses count";
 pub const ALSO: &str = "What is also found";
 pub const COMPARE: &str = "Tables of several results";
 pub const WRITTEN: &str = "What is written";
+pub const TIMING: &str = "The fastest timing";
 pub const TABLE: &str = "How tables are read";
 pub const WORK: &str = "Parts of the work, and threads";
 pub const FIT: &str = "How parameters are fitted";

@@ -1,6 +1,6 @@
 //! Arguments of the commands that follow a motion: of a platform, or of a single loop.
 
-use super::{MechanismArgs, MotionTableArgs, SetupArgs, heading};
+use super::{MechanismArgs, MotionTableArgs, SetupArgs, ToolArgs, heading};
 use crate::linkage::input::{CouplerPoint, InputValue};
 use crate::pose::{GridAxis, Number};
 use clap::{ValueEnum, ValueHint};
@@ -87,7 +87,9 @@ pub struct LinkageArgs {
 ///
 /// --time-optimal keeps the sequence of poses and replaces the times: the platform starts and ends at rest, and moves
 /// as fast as the limits of rates, accelerations and efforts (max_effort) in the mechanism file let it. Every actuated joint needs a
-/// max_acceleration or a max_effort. Efforts are those of --efforts, with the same gravity and --wrench.
+/// max_acceleration or a max_effort. Efforts are those of --efforts, with the same gravity and --wrench. --tool-speed,
+/// --tool-acceleration, --tool-angular-speed and --tool-angular-acceleration cap the motion of the platform's reference point, and how
+/// the platform turns, too. Joints need no limits where both accelerations are capped, or the one that the platform has.
 ///
 /// --indices needs -o. --wrench, --gravity and --link-stiffness are those of `opm analyze`, and need --indices, --efforts or
 /// --reactions.
@@ -116,6 +118,8 @@ Examples:
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids --rate 1000
   opm trajectory translational-helical-3dof --motion translational-helical-sinusoids \\
     --time-optimal --set max_acceleration.S=2
+  opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --time-optimal \\
+    --tool-speed 200mm/s --tool-acceleration 2m/s2 --tool-angular-acceleration 5rad/s2
   opm trajectory plano-spherical-5dof --motion plano-spherical-sinusoids --strict --format json")]
 pub struct TrajectoryArgs {
     /// The mechanism.
@@ -166,6 +170,9 @@ pub struct TrajectoryArgs {
     /// The fastest timing along the same path, from rest to rest, within the joints' max_rate, max_acceleration and max_effort
     #[arg(long)]
     pub time_optimal: bool,
+    /// Caps of the tool's motion in the fastest timing.
+    #[command(flatten)]
+    pub tool: ToolArgs,
     /// Least distance of two bodies, for example 5mm: where it is less, they interfere; with --strict that is a failure,
     /// too
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]

@@ -59,7 +59,7 @@ pub use capacity::{Capacity, Facet};
 pub use dynamics::Dynamics;
 pub use efforts::{Balance, Efforts, Worst};
 pub use index::{Facts, Index, IndexBounds, IndexError, Indices};
-pub use path::time_optimal;
+pub use path::{time_optimal, time_optimal_with_tool};
 pub use response::{Damping, Response};
 pub use screws::{Freedom, Screws};
 pub use setup::{Loads, Setup};

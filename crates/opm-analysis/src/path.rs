@@ -4,7 +4,9 @@ use crate::setup::{Loads, Setup};
 use crate::statics::{Statics, Velocity};
 use crate::weights::{JointMotion, Part};
 use opm_core::manipulator::{Manipulator, Mode, Solution};
-use opm_core::motion::{PathEffort, PathEfforts, PlatformMotion, TimingError};
+use opm_core::motion::{
+    PathEffort, PathEfforts, PathLimits, PlatformMotion, TimingError, ToolLimits,
+};
 use opm_core::velocity::JointMotion as Derivatives;
 
 /// A motion along the same path, from rest to rest, in the shortest time within `max_rate`, `max_acceleration` and `max_effort` of all
@@ -39,10 +41,22 @@ pub fn time_optimal(
     mode: Mode,
     setup: &Setup,
 ) -> Result<PlatformMotion, TimingError> {
-    match Limited::new(manipulator, setup) {
-        Some(mut limited) => motion.time_optimal_within(manipulator, mode, &mut limited),
-        None => motion.time_optimal(manipulator, mode),
-    }
+    time_optimal_with_tool(motion, (manipulator, mode), setup, ToolLimits::default())
+}
+
+/// The same ([`time_optimal`]), also within caps of the tool's speed and acceleration.
+///
+/// # Errors
+/// As there, and for a cap that is not above zero.
+pub fn time_optimal_with_tool(
+    motion: &PlatformMotion,
+    (manipulator, mode): (&Manipulator, Mode),
+    setup: &Setup,
+    tool: ToolLimits,
+) -> Result<PlatformMotion, TimingError> {
+    let mut limited = Limited::new(manipulator, setup);
+    let efforts = limited.as_mut().map(|limited| limited as &mut dyn PathEfforts);
+    motion.time_optimal_within(manipulator, mode, PathLimits { tool, efforts })
 }
 
 /// The actuators that have a `max_effort`.

@@ -22,7 +22,7 @@ use crate::manipulator::Mode;
 pub use moves::{Move, MoveProblem, Moves, MovesError};
 pub use spline::{Ends, Spline, SplineError};
 use std::f64::consts::TAU;
-pub use time_optimal::{PathEffort, PathEfforts, TimingError};
+pub use time_optimal::{PathEffort, PathEfforts, PathLimits, TimingError, ToolLimits};
 pub use timing::{TimedPath, Timing};
 
 /// A sinusoid `amplitude · sin(2π · frequency · t + phase)`.

@@ -1381,6 +1381,10 @@ def trajectory(
     columns: Mapping[str, str] | None = None,
     relative_time: bool = False,
     time_optimal: bool = False,
+    tool_speed: float | None = None,
+    tool_acceleration: float | None = None,
+    tool_angular_speed: float | None = None,
+    tool_angular_acceleration: float | None = None,
     clearance: float | None = None,
 ) -> Trajectory: ...
 

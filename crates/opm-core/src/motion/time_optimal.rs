@@ -1,4 +1,5 @@
-//! The fastest timing along the path of a motion, within the limits of the joints' rates and accelerations.
+//! The fastest timing along the path of a motion, within the limits of the joints' rates and accelerations, of efforts ([`efforts`])
+//! and of the tool's motion ([`tool`]).
 //!
 //! The parameter `s` is the motion's own time, so the joints' derivatives by it, `q'` and `q''`, are the rates and
 //! accelerations along the motion. With `x = (ds/dt)²` and `u = d²s/dt²`, the joints have the rate `q' √x` and the
@@ -20,9 +21,13 @@
 mod efforts;
 mod error;
 mod half_planes;
+mod limits;
+mod tool;
 
 pub use efforts::{PathEffort, PathEfforts};
 pub use error::TimingError;
+pub use limits::PathLimits;
+pub use tool::ToolLimits;
 
 use super::{Instant, Path, PlatformMotion, TimedPath, Timing};
 use crate::manipulator::{Manipulator, Mode, Solution};
@@ -30,6 +35,8 @@ use crate::mechanism::joint::DriveLimit;
 use crate::velocity::{JointMotion, VelocityError};
 use efforts::Effort;
 use half_planes::{HalfPlane, largest_end, largest_start};
+use limits::{Limit, all_limited, limits};
+use tool::{Tool, Twists};
 
 /// The smallest number of intervals of the grid. The duration is above the shortest by a share of the order of one in
 /// this number, because accelerations are at their limits at one end of each interval.
@@ -78,34 +85,36 @@ impl PlatformMotion {
     /// # Errors
     /// [`TimingError`]: an actuated joint has no limit, nothing moves, or the motion cannot be followed.
     pub fn time_optimal(&self, manipulator: &Manipulator, mode: Mode) -> Result<Self, TimingError> {
-        self.timed(manipulator, mode, None)
+        self.time_optimal_within(manipulator, mode, PathLimits::default())
     }
 
-    /// The same, also within the largest efforts of actuators: each of these needs a `max_acceleration` or a `max_effort`.
+    /// The same, also within the largest efforts of actuators and caps of the tool's motion. Each actuator needs a
+    /// `max_acceleration` or a `max_effort`, if the caps do not limit all accelerations: that of the reference point where
+    /// a task coordinate is a length, and the angular one where one is an angle.
     ///
     /// # Errors
-    /// As for [`PlatformMotion::time_optimal`]; also if an actuator cannot stand what there is at rest, or efforts are not known.
+    /// As for [`PlatformMotion::time_optimal`]; also if an actuator cannot stand what there is at rest, efforts are not known,
+    /// or a cap is not above zero.
     pub fn time_optimal_within(
         &self,
         manipulator: &Manipulator,
         mode: Mode,
-        efforts: &mut dyn PathEfforts,
+        PathLimits { tool, efforts }: PathLimits<'_>,
     ) -> Result<Self, TimingError> {
-        self.timed(manipulator, mode, Some(efforts))
-    }
-
-    fn timed(
-        &self,
-        manipulator: &Manipulator,
-        mode: Mode,
-        efforts: Option<&mut dyn PathEfforts>,
-    ) -> Result<Self, TimingError> {
-        let limits = limits(manipulator, efforts.as_deref())?;
+        if let Some((name, cap)) = tool.odd() {
+            return Err(TimingError::Cap { name, cap });
+        }
+        if !tool.limit_all(manipulator) {
+            all_limited(manipulator, efforts.as_deref())?;
+        }
+        let (numbers, mut limits) = limits(manipulator);
+        limits.extend(tool.rows());
         let (given, expected) = (self.coordinate_count(), manipulator.task_coordinates().len());
         if given != expected {
             return Err(TimingError::Coordinates { given, expected });
         }
-        let mut joints = Joints::new((self, manipulator, mode), &limits, efforts);
+        let moving = (self, manipulator, mode);
+        let mut joints = Joints::new(moving, (&numbers, &limits), PathLimits { tool, efforts });
         let mut grid = Grid::new(&mut joints)?;
         let (mut squares, mut excess);
         let mut round = 0;
@@ -130,48 +139,16 @@ impl PlatformMotion {
     }
 }
 
-/// The limits of one joint coordinate, infinite where there is none.
-#[derive(Clone, Copy)]
-struct Limit {
-    coordinate: usize,
-    rate: f64,
-    acceleration: f64,
-}
-
-/// The limits of all joint coordinates that have any.
-fn limits(
-    manipulator: &Manipulator,
-    efforts: Option<&dyn PathEfforts>,
-) -> Result<Vec<Limit>, TimingError> {
-    let mut joints = Vec::new();
-    for &number in manipulator.actuated() {
-        let coordinate = &manipulator.coordinates()[number];
-        let mut limited = efforts.iter().flat_map(|efforts| efforts.limits());
-        if coordinate.motion_limits.max_acceleration.is_none()
-            && !limited.any(|(of, _)| *of == number)
-        {
-            joints.push(coordinate.name.clone());
-        }
-    }
-    if !joints.is_empty() {
-        return Err(TimingError::NoLimits { joints });
-    }
-    let each = manipulator.coordinates().iter().enumerate().map(|(coordinate, c)| Limit {
-        coordinate,
-        rate: c.motion_limits.max_rate.unwrap_or(f64::INFINITY),
-        acceleration: c.motion_limits.max_acceleration.unwrap_or(f64::INFINITY),
-    });
-    Ok(each.filter(|limit| limit.rate.min(limit.acceleration).is_finite()).collect())
-}
-
-/// The first and the second derivative of a limited joint by the parameter.
+/// The first and the second derivative by the parameter of a limited joint, or of what else is limited.
 type Derivatives = [f64; 2];
 
 /// What is limited at a point of the path.
 #[derive(Clone, Debug)]
 struct Place {
-    /// The derivatives of every limited joint.
+    /// The derivatives of every limited joint, and of the tool.
     joints: Vec<Derivatives>,
+    /// What the tool's rows follow from.
+    twists: Twists,
     /// The efforts of every limited actuator.
     efforts: Vec<Effort>,
 }
@@ -181,7 +158,11 @@ struct Joints<'a, 'e> {
     motion: &'a PlatformMotion,
     manipulator: &'a Manipulator,
     mode: Mode,
+    /// The numbers of the joint coordinates that have limits.
+    numbers: &'a [usize],
+    /// Their limits, and then those of the tool.
     limits: &'a [Limit],
+    tool: Option<Tool<'a>>,
     instant: Instant,
     solution: Solution,
     rates: JointMotion,
@@ -191,17 +172,18 @@ struct Joints<'a, 'e> {
 impl<'a, 'e> Joints<'a, 'e> {
     fn new(
         (motion, manipulator, mode): (&'a PlatformMotion, &'a Manipulator, Mode),
-        limits: &'a [Limit],
-        efforts: Option<&'e mut (dyn PathEfforts + 'e)>,
+        (numbers, limits): (&'a [usize], &'a [Limit]),
+        PathLimits { tool, efforts }: PathLimits<'e>,
     ) -> Self {
+        let tool = Tool::new(manipulator, mode, tool);
         let instant = Instant::new(manipulator.task_coordinates().len());
         let (solution, rates) = (manipulator.solution(), manipulator.joint_motion());
-        Self { motion, manipulator, mode, limits, instant, solution, rates, efforts }
+        Self { motion, manipulator, mode, numbers, limits, tool, instant, solution, rates, efforts }
     }
 
     /// What is limited at a point.
     fn at(&mut self, time: f64) -> Result<Place, TimingError> {
-        let Self { motion, manipulator, mode, limits, instant, solution, rates, .. } = self;
+        let Self { motion, manipulator, mode, numbers, tool, instant, solution, rates, .. } = self;
         motion.at(time, instant);
         let reached = manipulator.inverse(&instant.pose, *mode, solution);
         if reached.map_err(|source| TimingError::Pose { time, source })?.is_none() {
@@ -218,12 +200,13 @@ impl<'a, 'e> Joints<'a, 'e> {
             }
             Err(source) => return Err(TimingError::Velocity { time, source }),
         }
-        let of = |limit: &Limit| {
-            let number = limit.coordinate;
-            [rates.joint_rates[number], rates.joint_accelerations[number]]
+        let of = |&number: &usize| [rates.joint_rates[number], rates.joint_accelerations[number]];
+        let mut joints: Vec<Derivatives> = numbers.iter().map(of).collect();
+        let twists = match tool {
+            Some(tool) => tool.at(instant, time, &mut joints)?,
+            None => Twists::default(),
         };
-        let joints = limits.iter().map(of).collect();
-        Ok(Place { joints, efforts: self.efforts_at(time)? })
+        Ok(Place { joints, twists, efforts: self.efforts_at(time)? })
     }
 
     /// The efforts of every limited actuator at the solution.
@@ -311,7 +294,7 @@ impl Grid {
                 (by_rate * by_rate).min(by_acceleration)
             };
             if !rests(velocity) {
-                let Place { joints, efforts } = &interval.0[0];
+                let Place { joints, efforts, .. } = &interval.0[0];
                 let by_effort = efforts.iter().map(|effort| effort.usual_square(motion.duration));
                 let each = limits.iter().zip(joints).map(of).chain(by_effort);
                 usual.push(each.fold(f64::INFINITY, f64::min));
@@ -417,9 +400,10 @@ impl Grid {
         squares: &[f64],
     ) -> Result<Vec<f64>, TimingError> {
         let mut excesses = Vec::with_capacity(self.intervals.len());
-        // Shares of the limits of each joint: of the square of its rate, and of its acceleration.
+        // Shares of the limits of each joint, of the tool twice, and of each effort: of the square of its rate, and of its acceleration.
         let count = joints.efforts.as_ref().map_or(0, |efforts| efforts.limits().len());
-        let mut shares = vec![[[0.0; QUARTERS.len()]; 2]; joints.limits.len() + count];
+        let (own, tool) = (joints.numbers.len(), joints.tool.as_ref().map(|tool| tool.limits));
+        let mut shares = vec![[[0.0; QUARTERS.len()]; 2]; own + 2 + count];
         for (i, Interval(ends)) in self.intervals.iter().enumerate() {
             let [from, to] = [self.points[i], self.points[i + 1]];
             let [x, y] = [squares[i], squares[i + 1]];
@@ -427,7 +411,7 @@ impl Grid {
             for (place, share) in QUARTERS.into_iter().enumerate() {
                 let square = x + share * (y - x);
                 let between;
-                let Place { joints: derivatives, efforts } = match share {
+                let Place { joints: derivatives, twists, efforts } = match share {
                     0.0 => &ends[0],
                     1.0 => &ends[1],
                     share => {
@@ -435,13 +419,17 @@ impl Grid {
                         &between
                     }
                 };
-                let each = joints.limits.iter().zip(derivatives).zip(&mut shares);
+                let each = joints.limits.iter().zip(derivatives).zip(&mut shares[..own]);
                 for ((limit, [first, second]), shares) in each {
                     let rate = first / limit.rate;
                     shares[0][place] = rate * rate * square;
                     shares[1][place] = (first * u + second * square) / limit.acceleration;
                 }
-                for (effort, shares) in efforts.iter().zip(&mut shares[joints.limits.len()..]) {
+                let of_tool = tool.map(|tool| tool.shares(twists, u, square));
+                for (shares, found) in shares[own..].iter_mut().zip(of_tool.iter().flatten()) {
+                    [shares[0][place], shares[1][place]] = *found;
+                }
+                for (effort, shares) in efforts.iter().zip(&mut shares[own + 2..]) {
                     // A slower clock lessens viscous friction by half as much as what else there is.
                     let weight = if effort.of.viscous == 0.0 { 1.0 } else { 2.0 };
                     for (to, share) in shares.iter_mut().zip(effort.shares(u, square)) {

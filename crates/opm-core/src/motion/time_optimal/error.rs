@@ -9,12 +9,20 @@ use crate::velocity::VelocityError;
 pub enum TimingError {
     /// Actuated joints have no limit of their accelerations, nor of their efforts.
     #[error(
-        "no max_acceleration of {}: the fastest timing needs one, or a max_effort, for every actuated joint, and max_rate where there is one",
+        "no max_acceleration of {}: the fastest timing needs one, or a max_effort, for every actuated joint, and max_rate where there is one; caps of the tool's acceleration, and of its angular acceleration where it turns, do instead",
         .joints.join(", ")
     )]
     NoLimits {
         /// The names of the joints.
         joints: Vec<String>,
+    },
+    /// A cap of the tool's motion is not above zero, or no number.
+    #[error("the largest {name} of the tool is {cap}, expected a number above 0")]
+    Cap {
+        /// What is capped.
+        name: &'static str,
+        /// The cap.
+        cap: f64,
     },
     /// The motion is for a manipulator with another number of task coordinates.
     #[error("the motion has {given} task coordinates, expected {expected}, as the manipulator has")]

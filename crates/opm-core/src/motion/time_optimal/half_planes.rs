@@ -10,32 +10,35 @@ pub(super) struct HalfPlane {
 
 /// The largest `x` for which some `y` is within all half-planes, with both between zero and their own largest values.
 ///
-/// `y` is eliminated (Fourier and Motzkin): every upper limit of `y`, `y <= k - m x`, must be above every lower one, `y >= m x - k`.
+/// At each `x`, `y` is below every upper limit `k - m x` and above every lower one `m x - k`. The gap between the lowest and the
+/// highest is concave in `x`, and not negative at 0. From the largest `x` on, the place where the two that cross there meet is
+/// taken, until there is a gap: Newton's method, which ends because each step leaves a pair of limits for good.
 pub(super) fn largest_start(planes: &[HalfPlane], [most_x, most_y]: [f64; 2]) -> f64 {
-    let mut most = most_x;
-    for one in planes {
-        match one.line() {
-            None if one.a > 0.0 => most = most.min(one.c / one.a),
-            None => {}
-            // With the lower limit of `y` itself.
-            Some((Side::Above, [k, m])) => {
-                if m > 0.0 {
-                    most = most.min(k / m);
-                }
-                for other in planes {
-                    if let Some((Side::Below, [below, slope])) = other.line()
-                        && m + slope > 0.0
-                    {
-                        most = most.min((k + below) / (m + slope));
-                    }
-                }
-            }
-            // With its upper limit.
-            Some((Side::Below, [k, m])) if m > 0.0 => most = most.min((most_y + k) / m),
-            Some((Side::Below, _)) => {}
-        }
+    let mut x = most_x;
+    for plane in planes.iter().filter(|plane| plane.line().is_none() && plane.a > 0.0) {
+        x = x.min(plane.c / plane.a);
     }
-    most
+    loop {
+        // The limits of `y` itself, then those of the half-planes; each with its value there.
+        let (mut above, mut below) = ((most_y, [most_y, 0.0]), (0.0, [0.0, 0.0]));
+        for plane in planes {
+            match plane.line() {
+                Some((Side::Above, line @ [k, m])) if k - m * x < above.0 => {
+                    above = (k - m * x, line);
+                }
+                Some((Side::Below, line @ [k, m])) if m * x - k > below.0 => {
+                    below = (m * x - k, line);
+                }
+                _ => {}
+            }
+        }
+        let [[k, m], [other_k, other_m]] = [above.1, below.1];
+        let meet = (k + other_k) / (m + other_m);
+        if above.0 >= below.0 || meet.is_nan() || meet >= x {
+            return x;
+        }
+        x = meet.max(0.0);
+    }
 }
 
 /// The largest `y` within all half-planes for this `x`.
