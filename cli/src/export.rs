@@ -28,6 +28,7 @@ fn run_mjcf(args: &MjcfArgs, output: &Output) -> Result<(), Failure> {
     // MuJoCo takes the format of a file from its ending.
     path.map_or(Ok(()), |path| ends_in(path, &["xml"]))?;
     let loaded = load::open(&args.mechanism, output)?;
+    warn_of_differences(&loaded, output);
     let Some(motion) = &args.trajectory else {
         if let Some(flag) = args.table.given() {
             return Err(Failure::flag(flag, "nothing uses it; --trajectory does"));
@@ -65,6 +66,7 @@ fn run_urdf(args: &UrdfArgs, output: &Output) -> Result<(), Failure> {
     let path = args.output.as_deref().filter(|path| !is_stdout(path));
     path.map_or(Ok(()), |path| ends_in(path, &["urdf"]))?;
     let loaded = load::open(&args.mechanism, output)?;
+    warn_of_differences(&loaded, output);
     let model = urdf(&loaded.file.mechanism, density);
     let legs = loaded.file.mechanism.legs.len() as u64;
     let note = plural(legs - 1, "closure");
@@ -114,6 +116,19 @@ impl Files<'_> {
         let names: Vec<_> = files.iter().map(|(path, _)| path.shown()).collect();
         output.note(format_args!("{}: {note}", names.join(", ")));
         Ok(())
+    }
+}
+
+/// Warns of limits that models do not have.
+fn warn_of_differences(loaded: &Loaded, output: &Output) {
+    let differences = loaded.file.mechanism.joint_differences().unwrap_or_default();
+    if !differences.is_empty() {
+        let names: Vec<_> = differences.iter().map(|difference| &*difference.name).collect();
+        output.warn(format_args!(
+            "{}: the model has no limits of differences of joints ({})",
+            loaded.label,
+            names.join(", ")
+        ));
     }
 }
 

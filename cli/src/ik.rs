@@ -23,7 +23,7 @@ use opm_core::mechanism::joint::{JointCoordinate, Quantity};
 use opm_core::task::TaskCoordinate;
 use opm_interference::{self as bodies, Distances, Interference};
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// Largest number of two-valued choices for which every combination is listed.
@@ -125,6 +125,9 @@ struct JsonSolution {
     /// The dependent coordinates, which may differ from mode to mode.
     #[serde(skip_serializing_if = "Map::is_empty")]
     dependent: Map<String, Value>,
+    /// The differences of joints that have limits.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    differences: Vec<Value>,
     /// Where the platform is, which follows from the pose alone where no coordinate is dependent.
     #[serde(skip_serializing_if = "Option::is_none")]
     transform: Option<Value>,
@@ -228,6 +231,7 @@ impl<'a> Answer<'a> {
                 joints: named(joints.zip(solution.joints().iter().copied())),
                 imaginary: named(imaginary.zip(solution.imaginary().iter().copied())),
                 dependent: named(dependent().zip(solution.dependent().iter().copied())),
+                differences: differences(self.manipulator, solution),
                 transform: dependent().next().map(|_| transform::at(self.manipulator, solution)),
                 nearest: interference::nearest_json(&self.interference, self.nearest(solution)),
             }
@@ -296,6 +300,9 @@ impl<'a> Answer<'a> {
                     },
                     self.joint_table(solution)
                 );
+                if let Some(differences) = self.differences_text(solution) {
+                    let _ = writeln!(text, "{differences}");
+                }
                 let nearest = self.nearest(solution);
                 let nearest = text::nearest_text(&self.interference, nearest, units);
                 let _ = writeln!(text, "{nearest}");
@@ -309,6 +316,23 @@ impl<'a> Answer<'a> {
             }
         }
         text
+    }
+
+    /// The differences of joints that have limits, a row for each; `None` if there are none.
+    fn differences_text(&self, solution: &Solution) -> Option<Table> {
+        let units = self.loaded.file.units;
+        let mut table = Table::new(["difference", ">value", "unit", ">limits", ""]);
+        for difference in self.manipulator.differences() {
+            let quantity = difference.quantity;
+            table.row([
+                &*difference.name,
+                &text::number(difference.value(solution.joints()), quantity, units),
+                units.symbol(quantity),
+                &text::range(difference.limits, quantity, units),
+                if difference.allows(solution.joints()) { "" } else { "*" },
+            ]);
+        }
+        (!self.manipulator.differences().is_empty()).then_some(table)
     }
 
     /// Every joint of one solution, leg by leg.
@@ -450,7 +474,21 @@ impl Of<'_> {
     }
 }
 
-/// The names of the joint coordinates that are beyond their limits in a solution, or the first of a joint beyond its cone.
+/// The values of the differences of joints that have limits, and whether they are within these.
+fn differences(manipulator: &Manipulator, solution: &Solution) -> Vec<Value> {
+    let each = manipulator.differences().iter().map(|difference| {
+        json!({
+            "joints": difference.coordinates.map(|i| &*manipulator.coordinates()[i].name),
+            "value": difference.value(solution.joints()),
+            "limits": difference.limits,
+            "within_limits": difference.allows(solution.joints()),
+        })
+    });
+    each.collect()
+}
+
+/// The names of the joint coordinates that are beyond their limits in a solution, or the first of a joint beyond its cone; and
+/// of differences of joints, as `a - b`.
 pub fn beyond<'a>(manipulator: &'a Manipulator, solution: &Solution) -> Vec<&'a str> {
     let cones: Vec<usize> =
         manipulator.beyond_cones(solution.joints()).map(|(_, first)| first).collect();
@@ -459,7 +497,9 @@ pub fn beyond<'a>(manipulator: &'a Manipulator, solution: &Solution) -> Vec<&'a 
     let beyond = all.filter(|&(i, (c, (limits, &value)))| {
         !Of::Joint(c, limits).admits(value) || cones.contains(&i)
     });
-    beyond.map(|(_, (c, _))| &*c.name).collect()
+    let differences = manipulator.beyond_differences(solution.joints());
+    let differences = differences.map(|number| &*manipulator.differences()[number].name);
+    beyond.map(|(_, (c, _))| &*c.name).chain(differences).collect()
 }
 
 /// The distance and the direction of a transform from the motion, and the point that it places if coordinates place another.

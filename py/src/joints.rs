@@ -1,7 +1,7 @@
 //! Mechanisms from joints as data, and their joints.
 
 use crate::arguments::shown;
-use crate::error::wrong;
+use crate::error::{failed, wrong};
 use crate::joint::{Joint, place};
 use crate::manipulator::Manipulator;
 use crate::snap;
@@ -9,7 +9,7 @@ use nalgebra::Point3;
 use opm_core::mechanism::file::hint::expected_one_of;
 use opm_core::mechanism::file::{self, Digits, FileUnits};
 use opm_core::mechanism::leg::Leg;
-use opm_core::mechanism::{BodyMasses, Mechanism, Shapes, TaskHints};
+use opm_core::mechanism::{BodyMasses, Difference, Mechanism, Shapes, TaskHints};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
@@ -23,6 +23,8 @@ impl Manipulator {
     ///     The joints of each leg, from base to platform, by the leg's name; without names the legs are leg1, leg2, ...
     /// platform : (3,) sequence of float
     ///     Reference point of the platform at home, metres; the base's origin if not given.
+    /// differences : sequence of (str, str, float, float), optional
+    ///     Limits of the differences of two joints, as :attr:`differences` has them.
     /// name : str
     ///     Name of the mechanism.
     /// tolerance : float, optional
@@ -51,11 +53,12 @@ impl Manipulator {
     /// >>> [c.name for c in m.task_coordinates]
     /// ['x', 'y', 'theta']
     #[staticmethod]
-    #[pyo3(signature = (legs, *, platform = [0.0; 3], name = "mechanism", tolerance = None))]
+    #[pyo3(signature = (legs, *, platform = [0.0; 3], differences = Vec::new(), name = "mechanism", tolerance = None))]
     fn from_joints(
         py: Python<'_>,
         legs: &Bound<'_, PyAny>,
         platform: [f64; 3],
+        differences: Vec<(String, String, f64, f64)>,
         name: &str,
         tolerance: Option<f64>,
     ) -> PyResult<Self> {
@@ -81,12 +84,25 @@ impl Manipulator {
             name: name.to_owned(),
             legs: legs.collect::<PyResult<_>>()?,
             platform: Point3::from(platform),
+            differences: differences.into_iter().map(difference).collect(),
             task: TaskHints::default(),
             bodies: BodyMasses::default(),
             shapes: Shapes::default(),
             units: FileUnits::SI,
         };
+        mechanism.joint_differences().map_err(|error| failed(&error))?;
         Self::of_text(py, file::write(&mechanism, FileUnits::SI, Digits::All), name, tolerance)
+    }
+
+    /// Limits of the differences of two joints: their names, and the lowest and the highest value of the first less the second,
+    /// radians or metres.
+    #[getter]
+    fn differences(&self) -> Vec<(String, String, f64, f64)> {
+        let each = self.inner.mechanism().differences.iter();
+        each.map(|Difference { joints: [one, other], limits: [low, high] }| {
+            (one.clone(), other.clone(), *low, *high)
+        })
+        .collect()
     }
 
     /// The same mechanism with some joints changed.
@@ -178,4 +194,9 @@ impl Manipulator {
         let (file, text) = snap::within(py, (file, text), label, tolerance)?;
         Self::compile(file, text, label.to_owned())?.warned(py)
     }
+}
+
+/// Limits of a difference as Python gives them.
+fn difference((one, other, low, high): (String, String, f64, f64)) -> Difference {
+    Difference { joints: [one, other], limits: [low, high] }
 }

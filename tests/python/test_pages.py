@@ -39,6 +39,7 @@ ELSEWHERE = {
     ("docs/exporting.md", "yaml"): "tests/python/test_urdf.py",
     ("cli/src/format.md", "toml"): "tests/python/test_schema.py",
     ("cli/src/format.md", "toml (obstacles of plano-spherical-5dof)"): "tests/python/test_schema.py",
+    ("cli/src/format.md", "toml (differences of plano-spherical-5dof)"): "tests/python/test_schema.py",
     ("cli/src/format.md", "toml (joints)"): "tests/python/test_schema.py",
     ("docs/scaling.md", "console"): "tests/python/test_shards.py",
     ("docs/scaling.md", "sh"): "tests/python/test_shards.py",

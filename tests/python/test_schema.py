@@ -64,6 +64,10 @@ type = "half-space"
 point = [0, 0, -99]
 normal = [0, 0, 1]
 
+[[difference]]
+joints = ["r1", "h1"]
+limits = [-1, 0.5]
+
 [[leg]]
 name = "left"
 joints = [
@@ -162,6 +166,7 @@ UNSAYABLE = [
     "`pitch` is 0, expected",
     "are reversed: ",
     "exclude home: ",
+    "`joints` cannot be used: ",
     "^(?!.*`(radius|base|platform|S1)`).*expected a length above 0",
     "expected a length of at least 0",
     "expected an arc between 0 and",
@@ -258,8 +263,8 @@ def fragments():
             other = '{ name = "other", type = "spherical", point = [0, 0, 0] }'
             text = head.replace('angle = "rad"', 'angle = "deg"').partition("[task]")[0]
             yield text + f"[[leg]]\njoints = [\n{joints}\n]\n[[leg]]\njoints = [{other}]\n"
-        elif kind.startswith("obstacles of "):
-            yield named[kind.removeprefix("obstacles of ")] + "\n" + block
+        elif kind.startswith(("obstacles of ", "differences of ")):
+            yield named[kind.partition(" of ")[2]] + "\n" + block
         elif kind.startswith("part of "):
             yield named[kind.removeprefix("part of ")].partition("[[leg]]")[0] + block
         else:
@@ -318,7 +323,7 @@ def test_every_key_is_explained(schema):
         for key, value in found:
             assert len(value.get("description", "")) > 10, (kind, key)
             for word in [key, *value.get("enum", [])]:
-                assert word in {*page, "platform", "task", "bodies", "obstacle", "leg", "slider_leg", "arm_leg", "coordinates", "points", "moves", "parameters"}, (kind, word)
+                assert word in {*page, "platform", "task", "bodies", "obstacle", "difference", "leg", "slider_leg", "arm_leg", "coordinates", "points", "moves", "parameters"}, (kind, word)
 
 
 def toml(value):

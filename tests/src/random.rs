@@ -264,6 +264,7 @@ pub fn mechanism(
         name: format!("{pair:?}"),
         legs,
         platform: displacement * Point3::from(vector(rng)),
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

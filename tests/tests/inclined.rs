@@ -51,6 +51,7 @@ fn described(legs: Vec<Vec<Joint>>) -> Mechanism {
         name: "inclined".into(),
         legs: legs.into_iter().enumerate().map(leg).collect(),
         platform: ON_AXIS,
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

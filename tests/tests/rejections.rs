@@ -56,6 +56,7 @@ fn name(manipulator: &Manipulator, leg: usize, cause: Cause) -> String {
         Cause::Lowest(number) => format!("{} lowest", joint(number)),
         Cause::Highest(number) => format!("{} highest", joint(number)),
         Cause::Cone(number) => format!("{} cone", joint(number)),
+        Cause::Difference(number) => manipulator.differences()[number].name.clone(),
     }
 }
 

@@ -215,6 +215,7 @@ fn level(rng: &mut Rng, rise: f64) -> Mechanism {
         name: "level".into(),
         legs: legs.collect(),
         platform: centres[1] + vector(rng) * 0.1,
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

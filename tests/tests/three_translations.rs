@@ -42,6 +42,7 @@ fn mechanism(legs: Vec<Vec<Joint>>) -> Mechanism {
         name: "translations".into(),
         legs: legs.into_iter().enumerate().map(leg).collect(),
         platform: Point3::new(0.1, -0.2, 0.3),
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

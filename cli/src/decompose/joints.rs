@@ -2,12 +2,13 @@
 
 use super::triple_json;
 use crate::parameters;
+use opm_core::mechanism::Difference;
 use opm_core::mechanism::file::{LegPattern, MechanismFile};
 use opm_core::mechanism::joint::{Joint, JointCoordinate, JointKind};
 use serde_json::{Map, Value, json};
 
 /// Adds the reference point, and every joint with the keys of a mechanism file; the named parameters and the patterns of the
-/// file. All of it is at home, SI.
+/// file, and the limits of differences. All of it is at home, SI.
 pub fn insert(json: &mut Map<String, Value>, file: &MechanismFile) {
     let mechanism = &file.mechanism;
     if !file.parameters.is_empty() {
@@ -23,6 +24,10 @@ pub fn insert(json: &mut Map<String, Value>, file: &MechanismFile) {
         .iter()
         .flat_map(|leg| leg.joints.iter().map(|joint| joint_json(&leg.name, joint)));
     json.insert("joints".to_owned(), of_leg.collect());
+    if !mechanism.differences.is_empty() {
+        let one = |Difference { joints, limits }: &Difference| json!({ "joints": joints, "limits": limits });
+        json.insert("differences".to_owned(), mechanism.differences.iter().map(one).collect());
+    }
 }
 
 fn joint_json(leg: &str, joint: &Joint) -> Value {

@@ -127,6 +127,11 @@ impl Report<'_> {
                 line(&"roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll)\n");
             }
         }
+        for difference in mechanism.joint_differences().unwrap_or_default() {
+            let limits = text::range(difference.limits, difference.quantity, units);
+            let unit = units.symbol(difference.quantity);
+            line(&format_args!("limits of {}: {limits} {unit}", difference.name));
+        }
         line(&actuation(self.loaded, self.mobility));
         if let Some(manipulator) = self.manipulator {
             line(&self.inverse_kinematics(manipulator));

@@ -3,9 +3,9 @@
 use crate::text::{self, Table, count, short};
 use opm_core::Quantity;
 use opm_core::manipulator::part_of;
-use opm_core::mechanism::Cone;
 use opm_core::mechanism::file::FileUnits;
 use opm_core::mechanism::joint::Joint;
+use opm_core::mechanism::{Cone, JointDifference};
 use opm_study::Workspace;
 use opm_workspace::{Cause, Rejection, Rejections};
 use serde_json::{Value, json};
@@ -27,8 +27,14 @@ impl Report<'_> {
             Cause::Lowest(joint) => (joint, 0),
             Cause::Highest(joint) => (joint, 1),
             Cause::Cone(joint) => return self.cone(joint).map(|(_, cone)| cone.half_angle),
+            // There are two.
+            Cause::Difference(_) => return None,
         };
         Some(self.workspace.manipulator().coordinates()[joint].limits?[end])
+    }
+
+    fn difference(&self, number: usize) -> &JointDifference {
+        &self.workspace.manipulator().differences()[number]
     }
 
     /// The joint with a cone that has a first coordinate.
@@ -48,6 +54,9 @@ impl Report<'_> {
                     Cause::Lowest(joint) => (None, Some(&*coordinates[joint].name), Some("lowest")),
                     Cause::Highest(joint) => {
                         (None, Some(&*coordinates[joint].name), Some("highest"))
+                    }
+                    Cause::Difference(number) => {
+                        (None, Some(&*self.difference(number).name), Some("difference"))
                     }
                     Cause::Cone(joint) => {
                         (None, self.cone(joint).map(|(joint, _)| &*joint.name), Some("cone"))
@@ -86,11 +95,15 @@ impl Report<'_> {
                     let limit = text::number(limit, Quantity::Angle, units);
                     format!("{name} beyond its cone of {limit} {}", units.symbol(Quantity::Angle))
                 }
+                Cause::Difference(number) => {
+                    let JointDifference { name, limits, quantity, .. } = self.difference(number);
+                    format!("{name} beyond its limits {}", text::range(*limits, *quantity, units))
+                }
                 Cause::Lowest(joint) | Cause::Highest(joint) => {
                     let coordinate = &coordinates[joint];
                     let past = match rejection.cause {
                         Cause::Lowest(_) => "below",
-                        Cause::Highest(_) | Cause::Cone(_) | Cause::Reach(_) => "above",
+                        _ => "above",
                     };
                     let limit = self.limit(rejection.cause).unwrap_or(f64::NAN);
                     let limit = text::number(limit, coordinate.quantity, units);

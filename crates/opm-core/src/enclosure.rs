@@ -272,7 +272,7 @@ struct Request<'a> {
 impl Manipulator {
     /// Whether boxes of poses have bounds. They have none where several legs impose the same constraint: whether it is
     /// obeyed is a matter of a tolerance; nor where legs are solved whole and coordinates depend on each other, or spherical
-    /// joints are limited; nor where joints have cones.
+    /// joints are limited; nor where joints have cones, or their differences limits.
     ///
     /// ```
     /// # use opm_core::Manipulator;
@@ -280,7 +280,7 @@ impl Manipulator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn has_enclosures(&self) -> bool {
-        if self.has_cones() {
+        if self.shares_limits() {
             return false;
         }
         if self.is_whole() {

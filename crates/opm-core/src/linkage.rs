@@ -70,8 +70,8 @@ use crate::decomposition::mobility::{frame, mobility};
 use crate::decomposition::{DecomposeError, Decomposition, decompose};
 use crate::group::JointDisplacement;
 use crate::manipulator::ImaginaryJoint;
-use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
+use crate::mechanism::{DifferenceError, JointDifference, Mechanism};
 use crate::task::TaskError;
 use sections::Sections;
 use traced::Traced;
@@ -92,6 +92,9 @@ pub enum LinkageError {
     /// The home value of a task coordinate is given that the mechanism does not have.
     #[error(transparent)]
     Task(#[from] TaskError),
+    /// Two joints have no difference, or it excludes home.
+    #[error(transparent)]
+    Difference(#[from] DifferenceError),
 }
 
 /// A single-loop linkage. It is immutable and can be shared between threads. See the example in the docs of
@@ -108,16 +111,23 @@ pub struct Linkage {
 struct Joints {
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
+    differences: Vec<JointDifference>,
     /// The mechanism's size, metres.
     size: f64,
 }
 
 impl Joints {
-    fn new(mechanism: &Mechanism) -> Self {
+    fn new(mechanism: &Mechanism) -> Result<Self, DifferenceError> {
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
         let size = frame(mechanism).length;
         let limits = coordinates.iter().map(|c| c.displacement_limits(size)).collect();
-        Self { coordinates, limits, size }
+        let differences = mechanism.joint_differences()?;
+        Ok(Self { coordinates, limits, differences, size })
+    }
+
+    /// Whether the differences of joints with limits are within them.
+    fn differences_allow(&self, joints: &[f64]) -> bool {
+        self.differences.iter().all(|difference| difference.allows(joints))
     }
 
     fn home(&self) -> Vec<f64> {
@@ -159,7 +169,7 @@ impl Linkage {
         };
         for way in ways {
             if let Some(sections) = Sections::new(mechanism, way)? {
-                return Ok(Self::with(mechanism, Solver::Sections(Box::new(sections))));
+                return Self::with(mechanism, Solver::Sections(Box::new(sections)));
             }
         }
         Self::traced(mechanism)
@@ -175,11 +185,12 @@ impl Linkage {
         }
         // Says what is wrong with the joints first.
         mobility(mechanism).map_err(DecomposeError::from)?;
-        Ok(Self::with(mechanism, Solver::Traced(Box::new(Traced::new(mechanism)?))))
+        Self::with(mechanism, Solver::Traced(Box::new(Traced::new(mechanism)?)))
     }
 
-    fn with(mechanism: &Mechanism, solver: Solver) -> Self {
-        Self { mechanism: mechanism.clone(), joints: Joints::new(mechanism), solver }
+    fn with(mechanism: &Mechanism, solver: Solver) -> Result<Self, LinkageError> {
+        let joints = Joints::new(mechanism)?;
+        Ok(Self { mechanism: mechanism.clone(), joints, solver })
     }
 
     /// The mechanism.

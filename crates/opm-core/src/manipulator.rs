@@ -22,6 +22,7 @@ mod closure;
 mod cones;
 mod continued;
 pub(crate) mod dependent;
+mod differences;
 pub mod form;
 mod inverse;
 mod judged;
@@ -59,9 +60,9 @@ use crate::chain::limits::Limits;
 use crate::decomposition::mobility::frame;
 use crate::decomposition::{DecomposeError, Decomposition, decompose, rerooted};
 use crate::group::{JointDisplacement, MotionType, SubspaceKind};
-use crate::mechanism::Mechanism;
 use crate::mechanism::joint::JointCoordinate;
 use crate::mechanism::leg::Leg;
+use crate::mechanism::{DifferenceError, JointDifference, Mechanism};
 use crate::numeric::Quantity;
 use crate::numeric::four_wide::FourWide;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
@@ -120,6 +121,9 @@ pub enum CompileError {
     /// Some of the coordinates depend on the others in a way that has no closed form.
     #[error(transparent)]
     Constraint(#[from] ConstraintError),
+    /// Two joints have no difference, or it excludes home.
+    #[error(transparent)]
+    Difference(#[from] DifferenceError),
     /// There are more two-valued choices than a [`Mode`] can hold.
     #[error("the legs have {0} two-valued choices, expected at most {MOST_CHOICES}")]
     Choices(u32),
@@ -155,6 +159,7 @@ pub struct Manipulator {
     pub(crate) legs: Vec<CompiledLeg>,
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
+    differences: Vec<JointDifference>,
     actuated: Vec<usize>,
     imaginary: Vec<ImaginaryJoint>,
     modes: ModeLayout,
@@ -506,6 +511,7 @@ struct Compiled {
     legs: Vec<CompiledLeg>,
     coordinates: Vec<JointCoordinate>,
     limits: Vec<Limits>,
+    differences: Vec<JointDifference>,
     actuated: Vec<usize>,
     imaginary: Vec<ImaginaryJoint>,
     modes: ModeLayout,
@@ -528,6 +534,7 @@ impl Compiled {
     fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
         let task = Task::new(mechanism, decomposition)?;
         let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
+        let differences = mechanism.joint_differences()?;
         let length = frame(mechanism).length;
         let limits: Vec<_> = coordinates.iter().map(|c| c.displacement_limits(length)).collect();
         let mut actuated = Vec::new();
@@ -583,12 +590,33 @@ impl Compiled {
         if modes.count() > MOST_CHOICES {
             return Err(CompileError::Choices(modes.count()));
         }
-        Ok(Self { task, dependent, legs, coordinates, limits, actuated, imaginary, modes, length })
+        Ok(Self {
+            task,
+            dependent,
+            legs,
+            coordinates,
+            limits,
+            differences,
+            actuated,
+            imaginary,
+            modes,
+            length,
+        })
     }
 
     fn complete(self, mechanism: Mechanism, decomposition: Decomposition) -> Manipulator {
-        let Self { task, dependent, legs, coordinates, limits, actuated, imaginary, modes, length } =
-            self;
+        let Self {
+            task,
+            dependent,
+            legs,
+            coordinates,
+            limits,
+            differences,
+            actuated,
+            imaginary,
+            modes,
+            length,
+        } = self;
         let (mut independent, mut dependent_coordinates) = (Vec::new(), Vec::new());
         for (number, coordinate) in task.coordinates.iter().enumerate() {
             let follows = dependent.as_ref().is_some_and(|d| d.coordinates.contains(&number));
@@ -611,6 +639,7 @@ impl Compiled {
             legs,
             coordinates,
             limits,
+            differences,
             actuated,
             imaginary,
             modes,

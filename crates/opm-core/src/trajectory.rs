@@ -469,6 +469,11 @@ impl Solver<'_> {
                     Bound::Highest => high - value,
                 })
             }
+            Gauge::Difference { number } => {
+                let difference = &self.manipulator.differences()[number];
+                let closed = difference.legs.into_iter().all(|leg| deficit(leg).is_none());
+                closed.then(|| difference.room(&solution.joints))
+            }
             Gauge::Motion { coordinate, limit } => {
                 let motion = &sample.motion;
                 let derivatives = match limit {

@@ -5,6 +5,7 @@
 
 mod bodies;
 mod cone;
+mod difference;
 pub mod family;
 pub mod file;
 mod hints;
@@ -15,6 +16,7 @@ mod shapes;
 
 pub use bodies::{BodyMasses, Payload};
 pub use cone::{Cone, JointCone};
+pub use difference::{Difference, DifferenceError, JointDifference};
 #[doc(hidden)]
 pub use hints::HOME_COORDINATES;
 pub use hints::{FrameHints, OrientationCoordinates, TaskHints, TaskKey};
@@ -51,6 +53,9 @@ pub struct Mechanism {
     pub legs: Vec<Leg>,
     /// The platform's reference point at home, metres.
     pub platform: Point3<f64>,
+    /// Limits of the differences of joints.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub differences: Vec<Difference>,
     /// How the platform's pose is measured.
     pub task: TaskHints,
     /// What the bodies weigh.

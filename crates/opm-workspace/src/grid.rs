@@ -45,7 +45,7 @@ pub enum GridError {
     /// The grid is of one section alone, but one section depends on the other.
     #[error(
         "the sections of this mechanism have no grids of their own: its legs tie its coordinates together, joints have \
-         cones, or the sections share an inclined translation"
+         cones or limits of their differences, or the sections share an inclined translation"
     )]
     NotAlone,
     /// No coordinate has the name of the axis.
@@ -271,7 +271,7 @@ impl Grid {
             return Err(GridError::NoUpperSection);
         }
         let alone = manipulator.dependent_coordinates().is_empty()
-            && !manipulator.has_cones()
+            && !manipulator.shares_limits()
             && !manipulator.task().shares_height();
         if sections != Sections::Whole && !alone {
             return Err(GridError::NotAlone);

@@ -25,6 +25,8 @@ pub enum Cause {
     Highest(usize),
     /// A joint is beyond its cone, by the number of its first coordinate.
     Cone(usize),
+    /// A difference of joints, by its number in [`Manipulator::differences`], is beyond its limits.
+    Difference(usize),
 }
 
 /// The number of poses that one cause rejects.

@@ -282,6 +282,7 @@ class Manipulator:
         limits: Sequence[Sequence[tuple[float, float] | None]] | NDArray[np.float64] | None = None,
         joints: Sequence[Sequence[str]] | None = None,
         platform: _Vector = ...,
+        differences: Sequence[tuple[str, str, float, float]] = ...,
         name: str = "mechanism",
         tolerance: float | None = None,
     ) -> Manipulator: ...
@@ -304,6 +305,8 @@ class Manipulator:
         name: str = "mechanism",
         tolerance: float | None = None,
     ) -> Manipulator: ...
+    @property
+    def differences(self) -> list[tuple[str, str, float, float]]: ...
     def with_joints(self, changes: Mapping[str, Mapping[str, Any]]) -> Manipulator: ...
     def parameter_jacobian(
         self,

@@ -135,6 +135,10 @@ impl Sweep {
                 Cause::Lowest(joint) => (None, name(joint), Some("lowest".to_owned())),
                 Cause::Highest(joint) => (None, name(joint), Some("highest".to_owned())),
                 Cause::Cone(joint) => (None, joint_of(joint), Some("cone".to_owned())),
+                Cause::Difference(number) => {
+                    let name = manipulator.differences()[number].name.clone();
+                    (None, Some(name), Some("difference".to_owned()))
+                }
             };
             let leg = manipulator.mechanism().legs[rejection.leg].name.clone();
             let (alone, with_others) = (rejection.alone, rejection.with_others);

@@ -317,6 +317,7 @@ fn turntable(rng: &mut Rng) -> Option<Manipulator> {
         name: "turntable".to_owned(),
         legs,
         platform: Point3::origin(),
+        differences: Vec::new(),
         task: Default::default(),
         bodies: Default::default(),
         shapes: Default::default(),

@@ -129,6 +129,7 @@ pub fn linkage(rng: &mut Rng, pattern: [usize; 2]) -> Mechanism {
         name: "random".into(),
         legs,
         platform: far,
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

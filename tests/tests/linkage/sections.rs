@@ -185,6 +185,7 @@ fn mechanism(rng: &mut Rng, shared: Shared, mut sections: [Section; 2]) -> Mecha
         name: "random".into(),
         legs,
         platform,
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

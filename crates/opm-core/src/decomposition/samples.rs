@@ -46,6 +46,7 @@ pub(crate) fn mechanism(name: &str, legs: Vec<Vec<Joint>>) -> Mechanism {
         name: name.to_owned(),
         legs: legs.into_iter().enumerate().map(leg).collect(),
         platform: Point3::origin(),
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

@@ -126,7 +126,7 @@ impl Manipulator {
         (buffer.solved.v, buffer.solved.b) = (*v, *b);
         self.divide(buffer);
         self.write_lifts(buffer);
-        self.test_cones(buffer);
+        self.test_shared_limits(buffer);
         buffer.reached()
     }
 
@@ -144,7 +144,10 @@ impl Manipulator {
     ) -> Option<(Mode, &'a Solution)> {
         let first = (all.completions.iter().enumerate())
             .filter(|(_, completion)| completion.missed.is_none())
-            .find_map(|(number, completion)| self.first_within_limits(number, completion))?;
+            .find_map(|(number, completion)| match self.differences.is_empty() {
+                true => self.first_within_limits(number, completion),
+                false => self.combinations_within_limits(all, number, buffer).first().copied(),
+            })?;
         self.solution_in_mode(all, first, buffer).map(|solution| (first, solution))
     }
 
@@ -162,6 +165,37 @@ impl Manipulator {
             first.0 |= mode.0;
         }
         Some(first)
+    }
+}
+
+impl Manipulator {
+    /// The modes of each leg in which it is within its own limits at a completion.
+    fn legs_within_limits(&self, completion: &Completion) -> Vec<Vec<Mode>> {
+        let rise = self.task.rise(&completion.solved.pose);
+        let legs = self.legs.iter().zip(&completion.legs).enumerate();
+        legs.map(|(number, (leg, modes))| {
+            let within = |solution: &LegSolution| self.admits(leg, solution, rise);
+            let own = self.modes.leg_modes(number).enumerate();
+            let own = own.filter(|&(part, _)| modes.solution(part).is_some_and(within));
+            own.map(|(_, mode)| mode).collect()
+        })
+        .collect()
+    }
+
+    /// The modes, with one combination of choices of dependent coordinates, in which a pose is within all limits, those of
+    /// differences too ([`Manipulator::combined`]).
+    fn combinations_within_limits(
+        &self,
+        all: &AllModes,
+        number: usize,
+        buffer: &mut Solution,
+    ) -> Vec<Mode> {
+        let common = self.dependent.as_ref().map_or(Mode::default(), |d| d.mode(number));
+        let of_legs = self.legs_within_limits(&all.completions[number]);
+        self.combined(&of_legs, common, |mode| {
+            let found = self.solution_in_mode(all, mode, buffer);
+            found.is_some_and(|at| self.beyond_differences(at.joints()).next().is_none())
+        })
     }
 }
 
@@ -260,6 +294,9 @@ impl AllModes {
         manipulator: &Manipulator,
         mut used: impl FnMut(usize, f64),
     ) -> bool {
+        if !manipulator.differences.is_empty() {
+            return self.within_differences_in_any(manipulator, used);
+        }
         let mut reached = false;
         for completion in self.completions.iter().filter(|c| c.missed.is_none()) {
             let rise = manipulator.task.rise(&completion.solved.pose);
@@ -284,6 +321,39 @@ impl AllModes {
         }
         reached
     }
+
+    /// The same where differences of joints tie the legs.
+    fn within_differences_in_any(
+        &self,
+        manipulator: &Manipulator,
+        mut used: impl FnMut(usize, f64),
+    ) -> bool {
+        let (mut reached, mut buffer) = (false, manipulator.solution());
+        for (number, completion) in self.completions.iter().enumerate() {
+            if completion.missed.is_some() {
+                continue;
+            }
+            let modes = manipulator.combinations_within_limits(self, number, &mut buffer);
+            reached |= !modes.is_empty();
+            let of_legs = manipulator.legs_within_limits(completion);
+            // A leg that has no part in a difference has each of its own modes.
+            let tied = |leg: usize| manipulator.differences.iter().any(|d| d.legs.contains(&leg));
+            let untied = (0..of_legs.len()).filter(|leg| !modes.is_empty() && !tied(*leg));
+            let own = untied.flat_map(|leg| of_legs[leg].iter().map(move |mode| (leg, *mode)));
+            let combined =
+                modes.iter().flat_map(|mode| (0..of_legs.len()).map(move |leg| (leg, *mode)));
+            for (leg, mode) in own.chain(combined) {
+                let Some(imaginary) = manipulator.legs[leg].imaginary else { continue };
+                let part = manipulator.modes.of_leg(mode, leg);
+                if let Some(solution) = completion.legs[leg].solution(part) {
+                    let joint = &manipulator.imaginary[imaginary];
+                    used(imaginary, joint.value(solution.tau, joint.home));
+                }
+            }
+        }
+        reached
+    }
+
     /// Whether the pose is in reach in a mode.
     fn reached_in(&self, manipulator: &Manipulator, mode: Mode) -> bool {
         let layout = &manipulator.modes;

@@ -160,7 +160,7 @@ impl WithSimd for Solve<'_> {
         if manipulator.task.height.is_some() {
             manipulator.write_lifts(out);
         }
-        manipulator.test_cones(out);
+        manipulator.test_shared_limits(out);
     }
 }
 

@@ -236,7 +236,7 @@ impl ActuatedJoints {
 
 impl Manipulator {
     /// The numbers of the joint coordinates that are beyond their limits in a solution; of joints that are beyond their cones,
-    /// the first one's.
+    /// the first one's; both of a difference that is beyond its limits.
     pub fn beyond_limits<'a>(&'a self, solution: &'a Solution) -> impl Iterator<Item = usize> + 'a {
         let limits = self.coordinates.iter().zip(&self.limits);
         let joints = limits.zip(solution.joints()).enumerate();
@@ -244,7 +244,9 @@ impl Manipulator {
             !limits.admits(JointDisplacement::Value(**value - c.home))
         });
         let cones = self.beyond_cones(solution.joints()).map(|(_, first)| first);
-        beyond.map(|(number, _)| number).chain(cones)
+        let differences = self.beyond_differences(solution.joints());
+        let differences = differences.flat_map(|number| self.differences()[number].coordinates);
+        beyond.map(|(number, _)| number).chain(cones).chain(differences)
     }
 
     /// A buffer for [`Manipulator::inverse`]. It holds the values at home, which the first call of

@@ -58,7 +58,7 @@ impl Reach<'_> {
                 }
             }
         }
-        if manipulator.has_cones() {
+        if manipulator.shares_limits() {
             // What is known does not count these.
             for (lane, &reached) in reached.iter().enumerate() {
                 alone[lane] |= u64::from(reached);
@@ -66,7 +66,7 @@ impl Reach<'_> {
         }
         for lane in (0..rows).filter(|&lane| alone[lane] & 1 == 1) {
             let pose = &poses[lane * width..][..width];
-            if manipulator.is_whole() {
+            if manipulator.is_whole() && manipulator.differences().is_empty() {
                 reached[lane] = manipulator.whole_reaches(pose, mode);
                 continue;
             }

@@ -30,6 +30,11 @@ pub enum Gauge {
         /// The limit: the lower or the upper one.
         bound: Bound,
     },
+    /// How far a difference of joints is inside its limits, radians or metres.
+    Difference {
+        /// The number of the difference in [`Manipulator::differences`].
+        number: usize,
+    },
     /// What the limit of a joint coordinate's rate or acceleration leaves above the absolute value, per second
     /// or per second squared.
     Motion {
@@ -103,5 +108,7 @@ pub(super) fn gauges(manipulator: &Manipulator) -> Vec<Gauge> {
         GaugedPart::Whole,
     ];
     let parallel = parts.into_iter().map(|part| Gauge::Parallel { part });
-    reach.chain(limits).chain(motion).chain(parallel).collect()
+    let differences =
+        (0..manipulator.differences().len()).map(|number| Gauge::Difference { number });
+    reach.chain(limits).chain(differences).chain(motion).chain(parallel).collect()
 }

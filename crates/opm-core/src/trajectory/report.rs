@@ -9,11 +9,11 @@ use crate::mechanism::joint::MotionLimit;
 pub struct ViolationReport<'a> {
     /// The violation, in numbers.
     pub violation: &'a Violation,
-    /// The kind of violation: `reach`, `limit`, `rate`, `acceleration` or `singularity`.
+    /// The kind of violation: `reach`, `limit`, `difference`, `rate`, `acceleration` or `singularity`.
     pub kind: &'static str,
     /// The name of the leg that is out of reach or singular, or whose joint is beyond a limit or too fast.
     pub leg: Option<&'a str>,
-    /// The name of the joint coordinate that is beyond a limit, or too fast.
+    /// The name of the joint coordinate that is beyond a limit, or too fast; of a difference, `a - b`.
     pub joint: Option<&'a str>,
     /// The section that is out of reach or singular.
     pub section: Option<Section>,
@@ -58,6 +58,11 @@ impl<'a> ViolationReport<'a> {
                 };
                 let joint = &*manipulator.coordinates()[coordinate].name;
                 (kind, leg_of(coordinate).map(|leg| &*leg.name), Some(joint), None)
+            }
+            Gauge::Difference { number } => {
+                let difference = &manipulator.differences()[number];
+                let leg = &*legs[difference.legs[0]].name;
+                ("difference", Some(leg), Some(&*difference.name), None)
             }
             Gauge::Parallel { .. } => ("singularity", None, None, None),
         };
@@ -105,6 +110,9 @@ impl<'a> ViolationReport<'a> {
             Gauge::Limit { .. } => {
                 let joint = self.joint.unwrap_or_default();
                 format!("{leg}: {joint} past its {} value", self.bound.map_or("", Bound::name))
+            }
+            Gauge::Difference { .. } => {
+                format!("{leg}: {} beyond its limits", self.joint.unwrap_or_default())
             }
             Gauge::Motion { limit, .. } => {
                 format!("{leg}: {} above its {}", self.joint.unwrap_or_default(), limit.key())

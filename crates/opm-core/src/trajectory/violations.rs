@@ -27,9 +27,10 @@ impl Trajectory<'_> {
     /// Whether a gauge says that the motion cannot be followed.
     pub(super) fn violated(&self, number: usize, sample: &Sample) -> bool {
         match self.solver.gauges[number] {
-            Gauge::Reach { .. } | Gauge::Limit { .. } | Gauge::Motion { .. } => {
-                sample.levels[number].is_some_and(|level| level < 0.0)
-            }
+            Gauge::Reach { .. }
+            | Gauge::Limit { .. }
+            | Gauge::Difference { .. }
+            | Gauge::Motion { .. } => sample.levels[number].is_some_and(|level| level < 0.0),
             Gauge::Parallel { .. } => false,
         }
     }
@@ -37,7 +38,7 @@ impl Trajectory<'_> {
     /// Whether a gauge is a singularity measure that is zero up to rounding.
     pub(super) fn is_zero(&self, number: usize, sample: &Sample) -> bool {
         match self.solver.gauges[number] {
-            Gauge::Limit { .. } | Gauge::Motion { .. } => false,
+            Gauge::Limit { .. } | Gauge::Difference { .. } | Gauge::Motion { .. } => false,
             Gauge::Reach { .. } | Gauge::Parallel { .. } => {
                 sample.levels[number].is_some_and(|level| level.abs() < SINGULAR)
             }
@@ -119,6 +120,9 @@ impl Trajectory<'_> {
             }
             Gauge::Limit { coordinate, .. } | Gauge::Motion { coordinate, .. } => {
                 (level, Some(self.solver.manipulator.coordinates()[coordinate].quantity), None)
+            }
+            Gauge::Difference { number } => {
+                (level, Some(self.solver.manipulator.differences()[number].quantity), None)
             }
             Gauge::Parallel { part: GaugedPart::Section(section) } => (level, None, Some(section)),
             Gauge::Parallel { part: GaugedPart::Whole } => (level, None, None),

@@ -184,7 +184,9 @@ impl Trajectory<'_> {
                         self.update_worst(number, &worst);
                     }
                 }
-                Gauge::Limit { .. } | Gauge::Motion { .. } => self.watch_limit(&stretch, levels)?,
+                Gauge::Limit { .. } | Gauge::Difference { .. } | Gauge::Motion { .. } => {
+                    self.watch_limit(&stretch, levels)?;
+                }
                 Gauge::Parallel { .. } => self.watch_parallel(&stretch, levels)?,
             }
         }

@@ -497,11 +497,33 @@ impl Writer<'_> {
     }
 }
 
+impl Writer<'_> {
+    /// Returns where the difference of two joints is beyond its limits.
+    fn differences(&self, joints: Array<Real>) {
+        for difference in self.manipulator.differences() {
+            let [one, other] = difference.coordinates;
+            let ([low, high], slack) = (difference.limits, difference.slack());
+            let mut apart = joints.at(number(one)) - joints.at(number(other));
+            if difference.turns {
+                apart = near(apart, Real::from(0.5 * (low + high)));
+            }
+            let apart = named("apart", apart);
+            let inside = apart.ge(low - slack) & apart.le(high + slack);
+            block(|| {
+                when(!inside, || give(number(one + 1)));
+            });
+        }
+    }
+}
+
 /// The function of the limits.
 fn limits(writer: &Writer<'_>) {
     let function = Traced::new(
         "limits",
-        if writer.manipulator.has_cones() {
+        if !writer.manipulator.differences().is_empty() {
+            "0 where all joints are within their limits and their cones, and differences within theirs; otherwise the number of the \
+             first coordinate, from 1, that is not, of a joint that leaves its cone, or of the first joint of a difference."
+        } else if writer.manipulator.has_cones() {
             "0 where all joints are within their limits and their cones; otherwise the number of the first coordinate, from 1, \
              that is not, or of a joint that leaves its cone."
         } else {
@@ -517,6 +539,7 @@ fn limits(writer: &Writer<'_>) {
             when(!(value.ge(joint.low - slack) & value.le(joint.high + slack)), || give(i + 1));
         });
         writer.cones(g, joints);
+        writer.differences(joints);
         done()
     }));
 }

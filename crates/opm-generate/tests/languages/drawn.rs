@@ -2,10 +2,9 @@
 
 use crate::program::Question;
 use fastrand::Rng;
-use opm_core::mechanism::Cone;
-use opm_core::mechanism::Payload;
 use opm_core::mechanism::examples::SPLIT;
 use opm_core::mechanism::joint::{Drive, JointKind};
+use opm_core::mechanism::{Cone, Difference, Payload};
 use opm_core::nalgebra::{Matrix3, Vector3};
 use opm_core::{Manipulator, Quantity};
 use opm_generate::Content;
@@ -20,7 +19,14 @@ pub fn shipped() -> Vec<Manipulator> {
     let split = SPLIT.iter().filter_map(|example| Manipulator::read(example.text).ok());
     let example = |name: &str| Manipulator::example(name).expect("it is shipped");
     let whole = ["delta", "quadrupteron", "tricept", "ankle"].map(example);
-    let typed = [with_cones(&example("stewart")), three_rps(), omni_wrist(), generator()];
+    let typed = [
+        with_cones(&example("stewart")),
+        with_difference(&example("five-bar"), [-0.4, 0.3]),
+        with_difference(&example("planar-3rrr"), [-3.0, 0.2]),
+        three_rps(),
+        omni_wrist(),
+        generator(),
+    ];
     split.chain(whole).chain(typed).map(|m| driven(&m)).collect()
 }
 
@@ -112,6 +118,16 @@ fn with_cones(m: &Manipulator) -> Manipulator {
         joint.cone = tilts.then_some(Cone { half_angle: 0.5, axis: None });
     }
     Manipulator::new(mechanism).expect("the cones have home inside")
+}
+
+/// The same mechanism, whose first two motors have a limited difference about that at home.
+fn with_difference(m: &Manipulator, room: [f64; 2]) -> Manipulator {
+    let mut mechanism = m.mechanism().clone();
+    let [one, other] = [0, 1].map(|i| &m.coordinates()[m.actuated()[i]]);
+    let limits = room.map(|end| one.home - other.home + end);
+    let joints = [one, other].map(|c| c.name.clone());
+    mechanism.differences.push(Difference { joints, limits });
+    Manipulator::new(mechanism).expect("home is inside")
 }
 
 /// A random mechanism of every pair of subspaces, and some of which a leg constrains the platform.

@@ -66,6 +66,8 @@ mod bodies;
 mod change;
 pub(crate) mod checks;
 #[cfg(feature = "files")]
+mod differences;
+#[cfg(feature = "files")]
 mod edit;
 #[cfg(feature = "files")]
 mod expression;
@@ -75,7 +77,6 @@ pub mod hint;
 #[cfg(feature = "files")]
 mod joints;
 mod named;
-#[cfg(feature = "files")]
 mod obstacles;
 #[cfg(feature = "files")]
 mod parameters;

@@ -126,7 +126,16 @@ impl Mechanism {
         let (task, bodies) = (TaskHints::default(), BodyMasses::default());
         let shapes = Shapes::default();
         let units = FileUnits::SI;
-        Ok(Self { name: name.into(), legs, platform, task, bodies, shapes, units })
+        Ok(Self {
+            name: name.into(),
+            legs,
+            platform,
+            differences: Vec::new(),
+            task,
+            bodies,
+            shapes,
+            units,
+        })
     }
 }
 

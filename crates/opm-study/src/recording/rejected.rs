@@ -44,6 +44,9 @@ fn words(manipulator: &Manipulator, Rejection { leg, cause, .. }: &Rejection) ->
         Cause::Lowest(joint) => format!("{} below its limit", name(joint)),
         Cause::Highest(joint) => format!("{} above its limit", name(joint)),
         Cause::Cone(joint) => format!("{} beyond its cone", name(joint)),
+        Cause::Difference(number) => {
+            format!("{} beyond its limits", manipulator.differences()[number].name)
+        }
     };
     format!("{}: {what}", manipulator.mechanism().legs[*leg].name)
 }

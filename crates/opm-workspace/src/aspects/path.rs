@@ -198,6 +198,10 @@ impl Finder<'_> {
             Err(error) => wrong(&format!("no pose of this mechanism: {error}")),
             Ok(None) => wrong("out of reach in this working mode"),
             Ok(Some(at)) if !at.within_limits() => {
+                if let Some(number) = manipulator.beyond_differences(at.joints()).next() {
+                    let name = &manipulator.differences()[number].name;
+                    return wrong(&format!("{name} is beyond its limits"));
+                }
                 let beyond = manipulator.beyond_limits(at).filter_map(|number| {
                     let c = &manipulator.coordinates()[number];
                     let (name, quantity) = (c.name.clone(), c.quantity);

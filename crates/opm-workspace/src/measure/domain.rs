@@ -129,6 +129,14 @@ pub enum DomainError {
         "there are no bounds for a mechanism whose joints have cones; a grid of its workspace can be counted"
     )]
     Cones,
+    /// Differences of joints have limits.
+    #[error(
+        "there are no bounds for a mechanism where differences of joints have limits ({name}); a grid of its workspace can be counted"
+    )]
+    Differences {
+        /// The first difference.
+        name: String,
+    },
     /// The heights of legs depend on the imaginary joints.
     #[error(
         "there are no bounds for a mechanism whose sections share a translation that is inclined to the direction of \
@@ -207,6 +215,9 @@ impl Domain {
         }
         if manipulator.has_cones() {
             return Err(DomainError::Cones);
+        }
+        if let Some(difference) = manipulator.differences().first() {
+            return Err(DomainError::Differences { name: difference.name.clone() });
         }
         if !manipulator.has_enclosures() {
             let whole = manipulator.is_whole();

@@ -3,7 +3,7 @@
 use super::Cause;
 use crate::sweep::Modes;
 use opm_core::group::JointDisplacement;
-use opm_core::manipulator::{Manipulator, Mode, Section, Solution};
+use opm_core::manipulator::{AllModes, Manipulator, Mode, Section, Solution};
 
 /// How a cause takes part in rejecting a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +22,8 @@ pub struct Causes<'a> {
     /// The leg of each joint coordinate.
     legs: Vec<usize>,
     families: Vec<Family>,
+    /// Whether any working mode counts.
+    any_mode: bool,
 }
 
 /// Modes that give a pose the same dependent coordinates. There the joints of a leg depend on the choices of that leg
@@ -59,6 +61,8 @@ impl Family {
 /// What rejects a pose, and buffers to find it.
 pub struct PoseCauses {
     solution: Solution,
+    /// All modes of a pose, if any counts and differences of joints have limits.
+    all: Option<AllModes>,
     /// The causes in each mode of a family.
     in_modes: Vec<Vec<usize>>,
     /// For each leg, the number of a mode of the family in which nothing of that leg rejects the pose.
@@ -102,12 +106,15 @@ impl<'a> Causes<'a> {
                 let ends = [Cause::Lowest(joint), Cause::Highest(joint), Cause::Cone(joint)];
                 all.extend(ends.map(|cause| (leg, cause)));
             }
+            let differences = manipulator.differences().iter().enumerate();
+            let own = differences.filter(|(_, difference)| difference.legs[0] == leg);
+            all.extend(own.map(|(number, _)| (leg, Cause::Difference(number))));
         }
         let families = match modes {
             Modes::One(mode) => vec![Family::of_one(manipulator, mode)],
             Modes::Any => Family::all(manipulator),
         };
-        Self { manipulator, all, legs, families }
+        Self { manipulator, all, legs, families, any_mode: modes.one().is_none() }
     }
 
     /// Each cause with its leg.
@@ -118,8 +125,10 @@ impl<'a> Causes<'a> {
     /// Empty buffers.
     pub fn none(&self) -> PoseCauses {
         let most = self.families.iter().map(|family| family.modes.len()).max().unwrap_or(0);
+        let tied = self.any_mode && !self.manipulator.differences().is_empty();
         PoseCauses {
             solution: self.manipulator.solution(),
+            all: tied.then(|| self.manipulator.all_modes()),
             in_modes: vec![Vec::new(); most],
             open: vec![None; self.manipulator.mechanism().legs.len()],
             parts: vec![None; self.all.len()],
@@ -129,12 +138,24 @@ impl<'a> Causes<'a> {
     /// Finds what rejects a pose of the grid.
     pub fn find(&self, pose: &[f64], found: &mut PoseCauses) {
         found.parts.fill(None);
+        if self.combines(pose, found) {
+            return;
+        }
         for family in &self.families {
             if self.reached(family, pose, found) {
                 found.parts.fill(None);
                 return;
             }
         }
+    }
+
+    /// Whether a combination of the legs' choices, which differences of joints tie, reaches a pose.
+    fn combines(&self, pose: &[f64], found: &mut PoseCauses) -> bool {
+        let manipulator = self.manipulator;
+        let Some(all) = &mut found.all else { return false };
+        let reached = manipulator.inverse_all(pose, all).expect("a pose of the grid");
+        let within = |all| manipulator.solution_within_limits(all, &mut found.solution).is_some();
+        reached.is_some_and(within)
     }
 
     /// Whether a mode of a family reaches a pose. If none does, adds what rejects it.
@@ -226,6 +247,12 @@ impl<'a> Causes<'a> {
         for (leg, joint) in manipulator.beyond_cones(solution.joints()) {
             if closed(leg) {
                 causes.push(number(leg, Cause::Cone(joint)));
+            }
+        }
+        for number_of in manipulator.beyond_differences(solution.joints()) {
+            let [leg, other] = manipulator.differences()[number_of].legs;
+            if closed(leg) && closed(other) {
+                causes.push(number(leg, Cause::Difference(number_of)));
             }
         }
         if causes.is_empty() {

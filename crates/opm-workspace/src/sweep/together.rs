@@ -51,7 +51,7 @@ impl<'a> Sweep<'a> {
     pub(super) fn takes_poses_together(&self) -> bool {
         let manipulator = self.manipulator;
         let tied = manipulator.is_whole()
-            || manipulator.has_cones()
+            || manipulator.shares_limits()
             || !manipulator.dependent_coordinates().is_empty()
             || manipulator.task().shares_height();
         let few = self.side * self.sheets <= FEW / self.grid.row().max(1);

@@ -123,6 +123,7 @@ impl<'a> SectionInput<'a> {
         for (&coordinate, displacement) in self.other().coordinates[..others].iter().zip(other) {
             put(coordinate, displacement);
         }
+        position.within_limits &= self.joints.differences_allow(&position.joints);
         let tau = own[self.imaginary_index()];
         let tau = if linkage.reversed { tau.inverse() } else { tau };
         position.imaginary = Some(linkage.imaginary.value(tau, imaginary));

@@ -56,6 +56,7 @@ impl<'a> TracedInput<'a> {
             position.joints[i] = if i == self.coordinate { value } else { placed };
             position.within_limits &= within;
         }
+        position.within_limits &= self.joints.differences_allow(&position.joints);
         true
     }
 

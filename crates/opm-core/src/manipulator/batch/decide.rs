@@ -37,7 +37,8 @@ impl Decided {
 impl Manipulator {
     /// Whether many poses are solved together: legs are split, and their chains are the same at all poses.
     pub(crate) fn decides_many(&self) -> bool {
-        self.lifts_straight() && !self.task.shares_height() && !self.is_whole() && !self.has_cones()
+        let plain = self.lifts_straight() && !self.task.shares_height() && !self.is_whole();
+        plain && !self.shares_limits()
     }
 
     /// Whether many poses are decided together: also where legs are solved whole, and decide without joints that are not

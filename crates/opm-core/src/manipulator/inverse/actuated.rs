@@ -12,7 +12,8 @@ use pulp::{Simd, WithSimd};
 
 impl Manipulator {
     /// The actuated and the imaginary joints alone at a pose in one working mode; `None`
-    /// where the pose is out of reach. Angles are within half a revolution of home.
+    /// where the pose is out of reach. Angles are within half a revolution of home. Where differences of joints have limits, all
+    /// joints are computed, which allocates.
     ///
     /// # Errors
     /// As [`Manipulator::inverse`].
@@ -23,6 +24,15 @@ impl Manipulator {
         buffer: &'a mut ActuatedJoints,
     ) -> Result<Option<&'a ActuatedJoints>, PoseError> {
         self.check_pose(pose)?;
+        if !self.differences.is_empty() {
+            let mut solution = self.solution();
+            let Some(found) = self.inverse(pose, mode, &mut solution)? else { return Ok(None) };
+            let of_actuated = buffer.actuated.iter_mut().zip(&self.actuated);
+            of_actuated.for_each(|(value, &number)| *value = found.joints()[number]);
+            buffer.imaginary.copy_from_slice(found.imaginary());
+            buffer.within_limits = found.within_limits();
+            return Ok(Some(buffer));
+        }
         if let Some(dependent) = &self.dependent {
             let all = &mut buffer.all;
             if dependent.complete_from_home(self, mode, pose, all).is_err() {

@@ -181,6 +181,7 @@ impl PlanarPlanar {
             name: self.name.clone(),
             legs: all_legs(wrong, legs)?,
             platform: Point3::new(x, y, w),
+            differences: Vec::new(),
             task: TaskHints {
                 axis: Some(Vector3::y()),
                 home: [("x", x), ("y", y), ("theta", 0.0), ("w", w), ("phi", phi)]

@@ -149,6 +149,7 @@ impl PlanoSpherical {
             name: self.name.clone(),
             legs: all_legs(wrong, legs)?,
             platform: self.home.point(),
+            differences: Vec::new(),
             task: TaskHints {
                 axis: Some(Vector3::z()),
                 home: [("x", x), ("y", y), ("zeta", zeta), ("xi", xi), ("psi", psi)]

@@ -120,6 +120,7 @@ impl TranslationalHelical {
             name: self.name.clone(),
             legs: all_legs(wrong, legs)?,
             platform: Point3::new(x, y, 0.0),
+            differences: Vec::new(),
             task: TaskHints {
                 axis: Some(-in_plane(unit(direction)).into_inner()),
                 home: vec![("x".into(), x), ("y".into(), y), ("phi".into(), phi)],

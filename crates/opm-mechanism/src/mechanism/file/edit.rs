@@ -86,6 +86,7 @@ pub(super) fn joints(
 ) -> Option<String> {
     let same = before.name == after.name
         && before.shapes == after.shapes
+        && before.differences == after.differences
         && before.legs.len() == after.legs.len();
     if !same {
         return None;

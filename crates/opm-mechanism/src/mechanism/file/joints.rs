@@ -15,8 +15,18 @@ use crate::numeric::Quantity;
 use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::PI;
 
-pub(super) const KEYS: &[&str] =
-    &["format", "name", "units", "parameters", "platform", "task", "bodies", "obstacle", "leg"];
+pub(super) const KEYS: &[&str] = &[
+    "format",
+    "name",
+    "units",
+    "parameters",
+    "platform",
+    "task",
+    "bodies",
+    "obstacle",
+    "difference",
+    "leg",
+];
 pub(super) const LEG_KEYS: &[&str] = &["name", "joints", "pattern"];
 pub(super) const TASK_KEYS: &[&str] =
     &["axis", "lower", "upper", "coordinates", "home", "independent"];
@@ -191,7 +201,9 @@ pub(super) fn read(root: &Table<'_>, name: &str) -> (Mechanism, Locations<usize>
     let units = root.reader.units();
     let name = name.to_owned();
     let copies = patterns.into_iter().flatten().filter(|pattern| !pattern.text.is_empty());
-    (Mechanism { name, legs, platform, task, bodies, shapes, units }, locations, copies.collect())
+    let differences = Vec::new();
+    let mechanism = Mechanism { name, legs, platform, differences, task, bodies, shapes, units };
+    (mechanism, locations, copies.collect())
 }
 
 /// A leg of the file, or one of those that a pattern makes of it.

@@ -3,7 +3,7 @@
 use super::problem::{FileErrors, Locations, Problem};
 use super::reader::{Reader, Table};
 use super::units::{AngleUnit, FileUnits, LengthUnit};
-use super::{MechanismFile, Source, bodies, joints, named, obstacles};
+use super::{MechanismFile, Source, bodies, differences, joints, named, obstacles};
 use crate::chain::Branch;
 use crate::mechanism::Mechanism;
 use crate::mechanism::family::{AssemblyError, AssemblyReason, FORMS, Family};
@@ -13,7 +13,7 @@ use toml::de::DeTable;
 pub(crate) const FORMAT: i64 = 1;
 
 /// The keys that the file of every family may have.
-pub(super) const FAMILY_KEYS: &[&str] = &["parameters", "task", "bodies", "obstacle"];
+pub(super) const FAMILY_KEYS: &[&str] = &["parameters", "task", "bodies", "obstacle", "difference"];
 
 /// Reads the text of a mechanism file.
 ///
@@ -104,6 +104,7 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     let Some(family) = root.get("family") else {
         let (mut mechanism, noted, patterns) = joints::read(root, name);
         bodies::read(root, &mut mechanism);
+        differences::read(root, &mut mechanism);
         mechanism.shapes.obstacles = obstacles::read(root);
         let (family, mode, places) = (None, None, Locations::default());
         let file = MechanismFile {
@@ -127,6 +128,7 @@ fn read_document(root: &Table<'_>) -> Option<(MechanismFile, Locations<usize>)> 
     mechanism.task.coordinates = coordinates;
     mechanism.units = units;
     bodies::read(root, &mut mechanism);
+    differences::read(root, &mut mechanism);
     mechanism.shapes.obstacles = obstacles::read(root);
     let (mode, family, places) = (Some(family.mode()), Some(family), Locations::default());
     let file = MechanismFile {

@@ -29,6 +29,7 @@ pub fn schema() -> String {
     properties.insert("bodies".to_owned(), surroundings::bodies());
     properties.insert("parameters".to_owned(), named::parameters());
     properties.insert("obstacle".to_owned(), surroundings::obstacles());
+    properties.insert("difference".to_owned(), joints::differences());
     // Both kinds of files have legs in `leg`.
     properties.insert("leg".to_owned(), legs());
     document(

@@ -53,7 +53,7 @@ pub(super) fn task(hints: &TaskHints, units: FileUnits, digits: Digits) -> Strin
     Writer { units, digits }.task(hints)
 }
 
-/// The table `[bodies]` of a mechanism and its obstacles; nothing if none of it is given.
+/// The table `[bodies]` of a mechanism, its obstacles and its differences; nothing if none of it is given.
 pub(super) fn surroundings(mechanism: &Mechanism, units: FileUnits, digits: Digits) -> String {
     Writer { units, digits }.surroundings(mechanism)
 }
@@ -125,7 +125,14 @@ impl Writer {
 
     fn surroundings(self, mechanism: &Mechanism) -> String {
         let obstacles = mechanism.shapes.obstacles.iter().map(|obstacle| self.obstacle(obstacle));
-        self.bodies(mechanism) + &obstacles.collect::<String>()
+        let differences = mechanism.differences.iter().filter_map(|difference| {
+            let quantity = difference.quantity(mechanism).ok()?;
+            let [one, other] = difference.joints.each_ref().map(|name| quoted(name));
+            let [low, high] = difference.limits.map(|limit| self.number(limit, quantity));
+            Some(format!("\n[[difference]]\njoints = [{one}, {other}]\nlimits = [{low}, {high}]\n"))
+        });
+        let text = self.bodies(mechanism) + &obstacles.collect::<String>();
+        text + &differences.collect::<String>()
     }
 
     /// The table `[bodies]`, or nothing if it has no entries.

@@ -2,8 +2,9 @@
 
 use super::Properties;
 use super::values::{
-    array, cases, closed, described, direction, exactly, form, name, number, object, point,
+    array, cases, closed, described, direction, exactly, form, name, number, numbers, object, point,
 };
+use crate::mechanism::file::differences;
 use crate::mechanism::file::joints::{
     FRAME_KEYS, KEYS, LEG_KEYS, RESERVED, TASK_KEYS, TYPES, Type,
 };
@@ -228,4 +229,15 @@ fn joint_form(kind: Type) -> Value {
     let mut narrower = vec![("home", home), ("limits", limits), rate, acceleration, effort];
     narrower.extend(DriveNumber::ALL.map(|number| (number.key(), drive.clone())));
     form(&kind.keys(), &kind.needs(), &narrower)
+}
+
+/// The limits of differences of joints.
+pub fn differences() -> Value {
+    let item = json!({ "type": "string" });
+    let joints = exactly(2, array("The names of two joints, angles or lengths both.", item));
+    let limits = "The lowest and the highest value of the first joint less the second. In units.angle or units.length.";
+    let properties = [("joints", joints), ("limits", numbers(limits, 2))];
+    let properties = properties.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
+    let what = "Limits of the difference of two joints.";
+    array("Limits of the differences of joints.", closed(what, properties, differences::KEYS))
 }

@@ -408,6 +408,28 @@ fn a_mode_without_choices_is_empty() {
 }
 
 #[test]
+fn limits_of_differences() {
+    let base = format!("{PLANO}\n# end\n");
+    let given = |joints: &str, limits: &str| {
+        format!("[[difference]]\njoints = {joints}\nlimits = {limits}\n")
+    };
+    for (joints, limits, message) in [
+        ("^[\"S1\", \"S9\"]", "[-1, 1]", "`joints` cannot be used: no joint is named \"S9\""),
+        ("^[\"S1\", \"S1\"]", "[-1, 1]", "\"S1\" is named twice, expected two joints"),
+        ("^[\"S1\", \"phi14\"]", "[-1, 1]", "is an angle and the other a length"),
+        ("^[\"S1\"]", "[-1, 1]", "`joints` has 1 names, expected those of two joints"),
+        ("^\"S1\"", "[-1, 1]", "`joints` is a string, expected the names of two joints"),
+        ("[\"S1\", \"S2\"]", "^[1, -1]", "are reversed: 1 mm is above -1 mm"),
+        ("[\"S1\", \"S2\"]", "^[5, 9]", "`limits` exclude home: S1 - S2 is"),
+        ("[\"S1\", \"S2\"]", "[^nan, 9]", "nan, expected a finite number"),
+    ] {
+        assert_problem(&base, "# end", &given(joints, limits), message);
+    }
+    let file = read(&base.replace("# end", &given("[\"S1\", \"S2\"]", "[-20, 30]"))).unwrap();
+    assert_eq!(file.mechanism.differences[0].limits, [-0.02, 0.03]);
+}
+
+#[test]
 fn limits_of_motion() {
     for (from, to, message) in [
         ("max_rate = 500", "max_rate = ^-500", "`max_rate` is -500 mm/s, expected a value above 0"),

@@ -4,7 +4,7 @@ use crate::mechanism::file::{AngleUnit, Digits, FileUnits, LengthUnit, read, wri
 use crate::mechanism::joint::{Joint, JointKind, MotionLimits};
 use crate::mechanism::leg::Leg;
 use crate::mechanism::{
-    BodyMasses, Cone, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape,
+    BodyMasses, Cone, Difference, FrameHints, HOME_COORDINATES, Mechanism, Obstacle, ObstacleShape,
     OrientationCoordinates, Payload, Shapes, TaskHints,
 };
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
@@ -204,8 +204,24 @@ fn mechanism() -> impl Strategy<Value = Mechanism> {
             .collect();
         legs[0].joints[0].actuated = true;
         let (bodies, shapes) = (BodyMasses::default(), Shapes::default());
-        let mut mechanism =
-            Mechanism { name, legs, platform, task, bodies, shapes, units: FileUnits::SI };
+        let mut mechanism = Mechanism {
+            name,
+            legs,
+            platform,
+            differences: Vec::new(),
+            task,
+            bodies,
+            shapes,
+            units: FileUnits::SI,
+        };
+        // Between the first two of a kind.
+        let all: Vec<_> = mechanism.coordinates().cloned().collect();
+        let other = all[1..].iter().find(|c| c.quantity == all[0].quantity);
+        mechanism.differences.extend(other.map(|other| {
+            let (joints, home) =
+                ([&all[0], other].map(|c| c.name.clone()), all[0].home - other.home);
+            Difference { joints, limits: [home - 1.0, home + 0.5] }
+        }));
         let names: Vec<_> = mechanism.body_names().map(str::to_owned).collect();
         let (density, masses, placed, payload) = weights;
         let with_names = || names.iter().cloned();
