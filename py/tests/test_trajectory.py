@@ -10,7 +10,7 @@ import opm_kinematics as opm
 import pytest
 
 # The shipped motion: millimetres and degrees, amplitude, frequency, phase, offset.
-SINUSOIDS = [(30, 0.2, 0, 0), (25, 0.3, 60, 0), (15, 0.1, 30, 0), (12, 0.2, 90, 3), (10, 0.3, 120, 0)]
+SINUSOIDS = [(20, 0.2, 265, 2), (18, 0.3, 85, -31), (10, 0.1, 100, -6), (8, 0.2, 120, 4), (7, 0.3, 195, -5)]
 
 
 @pytest.fixture(scope="module")

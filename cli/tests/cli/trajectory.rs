@@ -56,6 +56,7 @@ fn a_shipped_motion_is_followed() {
         assert_eq!(keys(&found), expected);
         assert_eq!((&found["samples"], &found["valid"]), (&json!(1001), &json!(1001)));
         assert_eq!(found["violations"], json!([]));
+        assert_eq!(found["interference"]["contacts"], json!([]), "{motion}");
         assert!(number(&found["condition"]["worst"]) >= 1.0);
         for ranges in found["joints"].as_object().unwrap().values() {
             assert_eq!(keys(ranges), ["position", "velocity", "acceleration"]);

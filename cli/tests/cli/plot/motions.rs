@@ -29,13 +29,14 @@ fn a_motion_has_positions_on_the_left_and_velocities_on_the_right() {
     for unit in ["(mm)", "(deg)", "(mm/s)", "(deg/s)"] {
         assert!(axes.iter().any(|axis| axis.ends_with(unit)), "{axes:?}");
     }
-    // The motion file: x = 30 mm · sin(0.2 rev/s · t), sampled a hundred times per second.
+    // The motion file: x = 2 mm + 20 mm · sin(0.2 rev/s · t + 265°), sampled a hundred times per second.
     let panel = class(document.root(), "panel")[0];
     let points = pieces(paths(named(panel, "curve", "x"))[0]).concat();
     assert_eq!(points.len(), 1001);
     let up = up(panel);
     for (i, [_, y]) in points.into_iter().enumerate() {
-        let x = 30.0 * (std::f64::consts::TAU * 0.2 * 0.01 * i as f64).sin();
+        let angle = std::f64::consts::TAU * 0.2 * 0.01 * i as f64 + 265_f64.to_radians();
+        let x = 2.0 + 20.0 * angle.sin();
         assert!((up(y) - x).abs() < 0.05, "{i}: {} {x}", up(y));
     }
 
@@ -218,16 +219,16 @@ fn demands_are_shown_against_limits() {
     let limits = |acceleration: &str| {
         let file = motion(
             &folder,
-            &["--motion", MOTION, "--set", "leg1.max_rate.S=100mm", "--set", acceleration],
+            &["--motion", MOTION, "--set", "leg1.max_rate.S=50mm", "--set", acceleration],
         );
         plot(&folder, &file, &[]).1
     };
-    let svg = limits("leg1.max_acceleration.S=100mm");
+    let svg = limits("leg1.max_acceleration.S=50mm");
     assert_legible(&svg);
     let document = Document::parse(&svg).unwrap();
-    // The motion reaches 75.4 mm/s and 136.4 mm/s².
+    // The motion reaches 44.3 mm/s and 77.9 mm/s².
     let told = texts(&document).into_iter().find(|text| text.starts_with("S1: ")).unwrap();
-    assert!(told.ends_with(", 75 % of its max_rate, 136 % of its max_acceleration"), "{told}");
+    assert!(told.ends_with(", 89 % of its max_rate, 156 % of its max_acceleration"), "{told}");
     for title in ["Actuated joints, velocity", "Actuated joints, acceleration"] {
         let panel = named(document.root(), "panel", title);
         let up = up(panel);
@@ -235,7 +236,7 @@ fn demands_are_shown_against_limits() {
         let lines = paths(lines[0]).into_iter().map(|line| up(pieces(line)[0][0][1]));
         let mut found: Vec<f64> = lines.map(f64::round).collect();
         found.sort_by(f64::total_cmp);
-        assert_eq!(found, [-100.0, 100.0], "{title}");
+        assert_eq!(found, [-50.0, 50.0], "{title}");
     }
     // Where it is not, there is no third column.
     let svg = limits("leg1.max_acceleration.S=200mm");
