@@ -11,7 +11,7 @@ mod table;
 use crate::args::{AccuracyArgs, Output};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::pose::Number;
+use crate::pose::{Checks, Number};
 use crate::progress::{interruptible, watch};
 use crate::unitless;
 use crate::workspace::threads;
@@ -100,7 +100,10 @@ pub fn run(args: &AccuracyArgs, output: &Output) -> Result<(), Failure> {
         return Err(Failure::flag("--output", "is for --poses and --grid"));
     }
     unitless::note_pose(output, "--pose", &args.pose, &loaded, &manipulator);
-    let (pose, checks) = args.pose.resolve_with_checks(&manipulator)?;
+    let (pose, checks) = match &args.transform {
+        Some(transform) => (transform.pose(&manipulator, setting.mode)?, Checks::none()),
+        None => args.pose.resolve_with_checks(&manipulator)?,
+    };
     let mut at = manipulator.solution();
     let found = manipulator.inverse(&pose, setting.mode, &mut at);
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();

@@ -8,6 +8,7 @@ mod table;
 use crate::args::{AnalyzeArgs, Output};
 use crate::failure::Failure;
 use crate::load as mechanisms;
+use crate::pose::Checks;
 use crate::unitless;
 use nalgebra::Vector3;
 use opm_analysis::{
@@ -30,7 +31,10 @@ pub fn run(args: &AnalyzeArgs, output: &Output) -> Result<(), Failure> {
         return poses::run(args, input, output, &loaded, (&mut analyser, mode));
     }
     unitless::note_pose(output, "--pose", &args.pose, &loaded, &manipulator);
-    let (pose, checks) = args.pose.resolve_with_checks(&manipulator)?;
+    let (pose, checks) = match &args.transform {
+        Some(transform) => (transform.pose(&manipulator, mode)?, Checks::none()),
+        None => args.pose.resolve_with_checks(&manipulator)?,
+    };
     let mut at = manipulator.solution();
     let found = manipulator.inverse(&pose, mode, &mut at);
     let reached = found.map_err(|error| Failure::flag("--pose", error))?.is_some();

@@ -48,7 +48,6 @@ mod target;
 mod text;
 mod trajectory;
 mod transform;
-mod tum;
 mod unitless;
 mod usage;
 mod velocity;

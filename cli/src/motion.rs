@@ -51,7 +51,7 @@ pub struct Reading<'a> {
     pub table: &'a MotionTableArgs,
 }
 
-/// Reads a motion: a table of poses if the name ends in `.csv`, a motion file otherwise, which says itself how it
+/// Reads a motion: a table of poses if the name says so ([`table::is_table`]), a motion file otherwise, which says itself how it
 /// starts and ends. An existing path has priority over an example of the same name.
 pub fn open(
     given: &Path,
@@ -59,7 +59,7 @@ pub fn open(
     (loaded, manipulator): (&Loaded, &Manipulator),
 ) -> Result<LoadedMotion, Failure> {
     let label = given.shown();
-    let table = given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let table = table::is_table(given);
     let expected = if table { Expected::POSES } else { Expected::MOTION };
     let source = match load::text(given, expected)? {
         Some(text) => {

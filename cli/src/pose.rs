@@ -308,6 +308,11 @@ pub struct Checks(Vec<(usize, f64)>);
 const AS_GIVEN: f64 = 1e-4;
 
 impl Checks {
+    /// No checks.
+    pub fn none() -> Self {
+        Self(Vec::new())
+    }
+
     /// The checks of a table's row: a value for every dependent coordinate, not a number where none is given.
     pub fn of_row(values: &[f64]) -> Self {
         Self(values.iter().copied().enumerate().filter(|(_, value)| !value.is_nan()).collect())

@@ -7,13 +7,12 @@ use crate::output::{Shown, is_stdout, stdout};
 use crate::progress::{interruptible, watch};
 use crate::target::ends_in;
 use crate::text::plural;
-use crate::tum;
 use opm_analysis::Index;
 use opm_core::Quantity;
 use opm_core::manipulator::Manipulator;
 use opm_core::mechanism::file::{FileUnits, Heading};
 use opm_core::table::{
-    ColumnNames, FieldPlace, Line, Lines, Plausible, Suggestion, hint, hint_of_row, not_commas,
+    ColumnNames, FieldPlace, Line, Lines, Plausible, Suggestion, hint, hint_of_row, not_commas, tum,
 };
 use opm_core::text::quoted;
 use opm_mcap::PartialFile;

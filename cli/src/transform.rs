@@ -1,24 +1,13 @@
 //! The platform's pose in SE(3), in the syntax of the command line:
 //! `0,0,300mm,0.966,0.259,0,0`.
 
+use crate::failure::Failure;
 use crate::pose::{Misread, Number};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Vector3};
 use opm_core::Quantity;
-use opm_core::decomposition::mobility::frame;
-use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, Solution};
+use opm_core::manipulator::{Manipulator, Mode, OutsideMotion, PLACE, Solution, place};
 use serde_json::{Value, json};
 use std::str::FromStr;
-
-/// Largest deviation of a quaternion's length from one. Three digits are enough; more means a wrong number.
-const UNIT: f64 = 2e-3;
-
-/// Largest distance from the motion, in radians or sizes of the mechanism. Six digits are enough.
-const WRITTEN: f64 = 1e-5;
-
-/// Largest coordinate, metres, as in mechanism files. At much larger ones, rounding hides the mechanism.
-const FARTHEST: f64 = 1e9;
-
-const NAMES: [&str; 7] = ["X", "Y", "Z", "QW", "QX", "QY", "QZ"];
 
 /// Position of the platform's reference point, and the platform's orientation; base coordinates, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,16 +18,16 @@ impl FromStr for Transform {
 
     fn from_str(text: &str) -> Result<Self, Misread> {
         let parts: Vec<&str> = text.split(',').collect();
-        if parts.len() != NAMES.len() {
+        if parts.len() != PLACE.len() {
             return Err(Misread(format!(
                 "{} numbers in {text:?}, expected seven: {}",
                 if text.trim().is_empty() { 0 } else { parts.len() },
-                NAMES.join(",")
+                PLACE.join(",")
             )));
         }
         let mut values = [0.0; 7];
         for ((value, part), (number, name)) in
-            values.iter_mut().zip(parts).zip(NAMES.into_iter().enumerate())
+            values.iter_mut().zip(parts).zip(PLACE.into_iter().enumerate())
         {
             let given: Number = part.parse()?;
             *value = match number {
@@ -53,23 +42,7 @@ impl FromStr for Transform {
 impl Transform {
     /// From the numbers in the order of the flag: X,Y,Z,QW,QX,QY,QZ; metres.
     pub fn new(values: [f64; 7]) -> Result<Self, Misread> {
-        for (value, name) in values.into_iter().zip(NAMES) {
-            if value.is_nan() || value.abs() > FARTHEST {
-                return Err(Misread(format!(
-                    "{name} is {value:?}, expected a number of at most {FARTHEST:e}"
-                )));
-            }
-        }
-        let [x, y, z, qw, qx, qy, qz] = values;
-        let quaternion = Quaternion::new(qw, qx, qy, qz);
-        let length = quaternion.norm();
-        if (length - 1.0).abs() > UNIT {
-            return Err(Misread(format!(
-                "the quaternion {qw},{qx},{qy},{qz} has length {length:.4}, expected 1"
-            )));
-        }
-        let rotation = UnitQuaternion::new_normalize(quaternion);
-        Ok(Self(Isometry3::from_parts(Translation3::new(x, y, z), rotation)))
+        place(values).map(Self).map_err(Misread::new)
     }
 }
 
@@ -84,17 +57,23 @@ pub enum Located {
 impl Transform {
     /// The pose at which the platform is there, in a working mode if that is possible.
     pub fn locate(&self, manipulator: &Manipulator, mode: Mode) -> Located {
-        match manipulator.locate_platform_in(&self.0, mode) {
+        match manipulator.locate_written(&self.0, mode) {
             Ok(pose) => Located::Pose(pose),
-            Err(outside) => {
-                let size = frame(manipulator.mechanism()).length;
-                let rotation = outside.rotation.norm();
-                if rotation.max(outside.translation.norm() / size) < WRITTEN {
-                    Located::Pose(outside.nearest)
-                } else {
-                    Located::Outside(outside)
-                }
-            }
+            Err(outside) => Located::Outside(outside),
+        }
+    }
+
+    /// The same for a command that needs a pose.
+    ///
+    /// # Errors
+    /// It is outside the motion.
+    pub fn pose(&self, manipulator: &Manipulator, mode: Mode) -> Result<Vec<f64>, Failure> {
+        match self.locate(manipulator, mode) {
+            Located::Pose(pose) => Ok(pose),
+            Located::Outside(outside) => Err(Failure::flag(
+                "--transform",
+                format_args!("{outside}; `opm ik --transform` tells the nearest pose"),
+            )),
         }
     }
 }

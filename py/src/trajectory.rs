@@ -18,6 +18,7 @@ use numpy::{PyArray1, PyArray2};
 use opm_analysis::{Setup, time_optimal_with_tool};
 use opm_core::manipulator::Mode;
 use opm_core::mechanism;
+use opm_core::motion::table::is_table;
 use opm_core::motion::{Ends, PlatformMotion, ToolLimits};
 use opm_core::table::ColumnNames;
 use opm_core::trajectory as core_trajectory;
@@ -31,7 +32,7 @@ use read::{Reading, parse, read, spline_ends, through};
 use record::Record;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A motion as the joints follow it, ``n`` samples; NaN where it is out of reach, or a joint has no rate.
@@ -151,7 +152,8 @@ fn timed(
 /// ----------
 /// manipulator : Manipulator
 /// motion : path, str or (w, d) array_like
-///     A motion file, a table of poses (``.csv``), or the name of a shipped motion; or, with `times`, waypoints with one
+///     A motion file, a table of poses (``.csv``) or of places in SE(3) (``t,x,y,z,qx,qy,qz,qw``, or the form of the TUM
+///     benchmark in ``.tum`` and ``.txt``), or the name of a shipped motion; or, with `times`, waypoints with one
 ///     column for each task coordinate, through which a cubic spline passes. Angles are brought within π of the
 ///     preceding waypoint, as those of a table are.
 /// times : (w,) sequence of float, optional
@@ -352,7 +354,7 @@ impl Trajectory {
                 angular_acceleration,
             });
         let ends = spline_ends(&ends)?;
-        let csv = file_name.to_ascii_lowercase().ends_with(".csv").then_some(ends);
+        let csv = is_table(Path::new(&file_name)).then_some(ends);
         let reading = Reading { ends: csv, ..Default::default() };
         let (motion, _) = parse(manipulator.get(), &text, (&file_name, &file_name), reading)?;
         let mode: String = attribute(attributes, "mode")?;

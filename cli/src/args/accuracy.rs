@@ -3,6 +3,7 @@
 use super::{MechanismArgs, heading};
 use crate::accuracy::sizes::Pair;
 use crate::pose::{GridAxis, Number, OverAxis, Pose};
+use crate::transform::Transform;
 use clap::ValueHint;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use opm_accuracy::ErrorModel;
@@ -59,6 +60,9 @@ pub struct AccuracyArgs {
     /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub pose: Pose,
+    /// The pose in SE(3) instead: position of the reference point, and a unit quaternion, scalar first
+    #[arg(long, value_name = "X,Y,Z,QW,QX,QY,QZ", allow_hyphen_values = true, conflicts_with_all = ["pose", "poses", "grid", "over", "vary", "output"])]
+    pub transform: Option<Transform>,
     /// A CSV file of poses; - reads standard input
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,
@@ -75,6 +79,7 @@ pub struct AccuracyArgs {
     /// Range of one task coordinate, or a single value, for a guaranteed bound of the errors over a box of poses; other
     /// coordinates stay at home
     #[arg(
+        help_heading = heading::BOX,
         long,
         value_name = "AXIS=MIN:MAX|AXIS=VALUE",
         conflicts_with_all = ["pose", "poses", "grid", "clearance", "samples", "output"]

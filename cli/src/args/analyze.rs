@@ -2,6 +2,7 @@
 
 use super::{MechanismArgs, SetupArgs, heading};
 use crate::pose::{GridAxis, Number, Pose};
+use crate::transform::Transform;
 use clap::ValueHint;
 use opm_core::table::ColumnNames;
 use std::path::PathBuf;
@@ -49,6 +50,9 @@ pub struct AnalyzeArgs {
     /// The pose, for example x=10mm,xi=15deg; other coordinates stay at home
     #[arg(long, value_name = "NAME=VALUE,...", default_value = "", hide_default_value = true)]
     pub pose: Pose,
+    /// The pose in SE(3) instead: position of the reference point, and a unit quaternion, scalar first
+    #[arg(long, value_name = "X,Y,Z,QW,QX,QY,QZ", allow_hyphen_values = true, conflicts_with_all = ["pose", "poses", "vary"])]
+    pub transform: Option<Transform>,
     /// A CSV file of poses; - reads standard input. Its column `mode` is not read
     #[arg(long, value_name = "IN.csv", value_hint = ValueHint::FilePath, conflicts_with = "pose")]
     pub poses: Option<PathBuf>,

@@ -74,7 +74,8 @@ pub struct LinkageArgs {
 /// The motion is a TOML file (duration, rate, and for each task coordinate a constant or a sum of
 /// sinusoids; or points that cubic splines join), a CSV file of times and poses, which cubic splines join (a
 /// header of t and task coordinates, in seconds, metres and radians; two rows are enough), or the name of a
-/// shipped motion. Splines start and end at rest, unless --ends or `ends` in the file says otherwise. The
+/// shipped motion. A table may have places in SE(3) instead: t,x,y,z,qx,qy,qz,qw, metres and a unit quaternion; or be one of
+/// the TUM benchmark (.tum or .txt: lines of t x y z qx qy qz qw with blanks, without a header). Splines start and end at rest, unless --ends or `ends` in the file says otherwise. The
 /// working mode stays the same, and angles are continuous.
 ///
 /// Where the mechanism cannot follow, the answer says when, which leg or joint, and by how much: out of
@@ -125,8 +126,8 @@ pub struct TrajectoryArgs {
     /// The mechanism.
     #[command(flatten)]
     pub mechanism: MechanismArgs,
-    /// The motion: a TOML or CSV file, or the name of a shipped one
-    #[arg(long, value_name = "M.toml|M.csv", value_hint = ValueHint::FilePath)]
+    /// The motion: a TOML or CSV file, one of the TUM benchmark, or the name of a shipped one
+    #[arg(long, value_name = "M.toml|M.csv|M.tum", value_hint = ValueHint::FilePath)]
     pub motion: PathBuf,
     /// Output file, in the format of its ending; - prints a table as CSV
     #[arg(short, long, value_name = "OUT.mcap|OUT.csv|OUT.npy", value_hint = ValueHint::FilePath)]

@@ -30,6 +30,7 @@ mod leg;
 mod lift;
 mod locate;
 mod mode;
+mod place;
 pub(crate) mod plan;
 mod pose;
 #[cfg(feature = "files")]
@@ -48,6 +49,7 @@ pub use leg::Section;
 pub(crate) use lift::Lean;
 pub use locate::OutsideMotion;
 pub use mode::{Mode, ModeError};
+pub use place::{PLACE, place};
 pub use plan::NoClosedForm;
 pub use pose::{FollowingCoordinate, LARGEST, PoseError};
 #[cfg(feature = "files")]

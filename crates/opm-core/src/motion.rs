@@ -10,6 +10,7 @@ pub mod examples;
 #[cfg(feature = "files")]
 pub mod file;
 mod moves;
+mod places;
 mod points;
 #[cfg(feature = "schema")]
 mod schema;

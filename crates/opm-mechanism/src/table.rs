@@ -18,6 +18,7 @@ mod columns;
 mod dialect;
 mod lines;
 mod plausible;
+pub mod tum;
 
 pub use columns::{ColumnNames, Suggestion};
 pub use dialect::{hint, hint_of_row, not_commas};

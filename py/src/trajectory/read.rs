@@ -93,7 +93,7 @@ pub(super) fn read(
     let (text, name) = match examples::find(&label).filter(|_| !path.exists()) {
         Some(example) => (example.text.to_owned(), format!("{}.toml", example.name)),
         None => {
-            let table = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+            let table = table::is_table(&path);
             let expected = if table { Expected::POSES } else { Expected::MOTION };
             let text = arguments::text(motion.py(), &path, expected, "")?;
             (text, path.file_name().map_or(label.clone(), |n| n.display().to_string()))
@@ -146,7 +146,7 @@ pub(super) fn parse(
     Reading { ends, columns, relative_time }: Reading<'_>,
 ) -> PyResult<(PlatformMotion, Vec<(u64, String)>)> {
     let (inner, path) = (&manipulator.inner, Path::new(name));
-    let csv = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let csv = table::is_table(path);
     let stem = path.file_stem().map_or_else(|| label.to_owned(), |s| s.display().to_string());
     let advice = Advice { columns: chosen, relative_time: "relative_time=True" };
     let ends_or_rest = ends.unwrap_or_default();

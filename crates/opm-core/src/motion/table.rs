@@ -13,11 +13,16 @@
 //! line. A table that wraps around at ±π then continues and does not rotate back. An angle whose
 //! full revolutions matter, because a helical joint follows it, is not unwrapped.
 //!
+//! A table may have places in SE(3) instead: columns `t,x,y,z,qx,qy,qz,qw`, metres and a unit quaternion, or lines of the TUM
+//! benchmark (`t x y z qx qy qz qw` with blanks, without a header). Of the angles of an orientation, those nearest to the
+//! previous line are taken.
+//!
 //! A table of somebody else may have other columns, other names and other times: [`TableOptions`] says which columns are
 //! read, and whether times count from the first row.
 
 use super::clock::Clock;
 use super::columns::is_column;
+use super::places::{Converted, as_poses};
 use super::points::{through, wraps};
 use super::{Ends, PlatformMotion};
 use crate::manipulator::Manipulator;
@@ -27,6 +32,7 @@ use crate::table::{
     ColumnNames, Line, Lines, Plausible, Suggestion, hint, hint_of_row, not_commas,
 };
 use crate::text::quoted;
+use std::path::Path;
 
 /// The largest number of problems that are listed one by one. A file with more of them is probably
 /// not a table of poses.
@@ -75,6 +81,13 @@ pub struct PoseTable {
     pub doubts: Vec<(u64, String)>,
 }
 
+/// Whether a file of this name is a table of poses, or of places: `.csv`, and `.tum` and `.txt` for those of the TUM benchmark.
+pub fn is_table(name: &Path) -> bool {
+    let endings = ["csv", "tum", "txt"];
+    let ending = name.extension();
+    ending.is_some_and(|ending| endings.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
 /// Reads the text of a table of poses, in the task coordinates of `manipulator`. The motion gets
 /// the name `name`.
 ///
@@ -87,6 +100,16 @@ pub fn read(
     manipulator: &Manipulator,
     options: &TableOptions<'_>,
 ) -> Result<PoseTable, FileErrors> {
+    if let Some(Converted { text, before }) = as_poses(text, manipulator, options)? {
+        // It has all columns, by their own names.
+        let options = TableOptions { columns: None, ..*options };
+        return read(&text, name, manipulator, &options).map_err(|mut errors| {
+            for problem in &mut errors.problems {
+                problem.line -= (before as usize).min(problem.line - 1);
+            }
+            errors
+        });
+    }
     let mut problems = Problems::default();
     let table = read_table(text, Given { name, options }, manipulator, &mut problems);
     match table {

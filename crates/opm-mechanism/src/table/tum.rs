@@ -10,8 +10,11 @@ const NUMBERS: usize = 8;
 /// Longest beginning of a table that is looked at, bytes.
 const LOOKED_AT: u64 = 1 << 16;
 
-/// The same table as CSV with a header, if it has this form, and the number of its lines before the first of the file; any
+/// The table as CSV with a header `t,x,y,z,qx,qy,qz,qw`, if it has this form, and the number of its lines before the first of the file; any
 /// other table as it is.
+///
+/// # Errors
+/// The table cannot be read.
 pub fn as_csv(mut table: Box<dyn Read>) -> io::Result<(Box<dyn Read>, u64)> {
     let mut begun = Vec::new();
     let mut from = 0;
