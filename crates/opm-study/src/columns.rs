@@ -390,10 +390,15 @@ impl PointColumns {
     }
 }
 
-/// The coordinate that is vertical in a picture of the workspace: the tilt if it varies, else the
-/// slowest varying one of the upper section, else of the lower. A plane mechanism shows its plane so, at held angles.
+/// The coordinate that is vertical in a picture of the workspace: the third one that varies of the lower section, of which slices
+/// do not tell it; else the tilt if it varies, else the slowest varying one of the upper section, else of the lower. A plane
+/// mechanism shows its plane so, at held angles.
 fn tallest(grid: &Grid) -> usize {
     let several = |axis: &Axis| axis.count > 1;
+    let mut lower = (0..grid.lower()).filter(|&number| several(&grid.axes()[number]));
+    if let Some(third) = lower.nth(2).filter(|_| grid.axes()[grid.lower()..].iter().any(several)) {
+        return third;
+    }
     let kinds = grid.coordinates().iter().map(|coordinate| coordinate.kind);
     let is_tilt = |kind| matches!(kind, Some(CoordinateKind::Xi | CoordinateKind::Tilt));
     let tilt = kinds.zip(grid.axes()).position(|(kind, axis)| is_tilt(kind) && several(axis));

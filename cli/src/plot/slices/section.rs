@@ -55,7 +55,7 @@ impl Slices<'_> {
             title.push_str(", by what rejects them");
         } else if let Some((first, rest)) = self.layout.lost.split_first().filter(|_| positions) {
             let names = rest.iter().fold(first.clone(), |text, name| format!("{text}, {name}"));
-            title.push_str(&format!(", at any {names}"));
+            title.push_str(&format!(", at one value or more of {names}"));
         }
         let bar = self.is_bar();
         let [a, b] = &self.view;
