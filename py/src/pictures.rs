@@ -83,4 +83,50 @@ impl Manipulator {
         options.set_item("ax", ax)?;
         slf.py().import(MODULE)?.call_method("animate", (slf, motion), Some(&options))
     }
+
+    /// Show the mechanism in a browser with `viser <https://viser.studio>`_, poses as a moving picture.
+    ///
+    /// Each link is a frame with the name that :meth:`link_frames` has for it, in the tree of the scene and in Python:
+    /// ``server.scene`` takes more, such as a mesh at ``/platform/tool``. Beside the picture, frames show their axes, and several
+    /// poses play.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : Trajectory, path, str, (..., d) array_like or mapping, optional
+    ///     A motion that was followed, a motion file, a table of poses, the name of a shipped motion, or poses one after the other.
+    ///     Home if not given.
+    /// mode : str, optional
+    ///     ``"home"``, or a sign for every two-valued choice; if not given, the mode of the motion, or home.
+    /// rate : float
+    ///     Poses per second while they play; a motion has its own times.
+    /// port : int
+    ///     The port of the server on this machine; the next free one if it is taken.
+    ///
+    /// Returns
+    /// -------
+    /// viser.ViserServer
+    ///     The server, which runs on: open its address in a browser. ``server.sleep_forever()`` keeps a script alive,
+    ///     ``server.stop()`` ends it.
+    ///
+    /// Raises
+    /// ------
+    /// OpmError
+    ///     The motion cannot be read, or no pose of it is in reach.
+    /// ImportError
+    ///     viser is not installed.
+    #[pyo3(signature = (poses = None, *, mode = None, rate = 10.0, port = 8080))]
+    fn show<'py>(
+        slf: &Bound<'py, Self>,
+        poses: Option<&Bound<'py, PyAny>>,
+        mode: Option<&str>,
+        rate: f64,
+        port: u16,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = PyDict::new(slf.py());
+        options.set_item("mode", mode)?;
+        options.set_item("rate", rate)?;
+        options.set_item("port", port)?;
+        let module = slf.py().import("opm_kinematics._show")?;
+        module.call_method("show", (slf, poses), Some(&options))
+    }
 }

@@ -355,6 +355,14 @@ class Manipulator:
         frames: int = 60,
         ax: Axes3D | None = None,
     ) -> Animation: ...
+    def show(
+        self,
+        poses: Trajectory | str | PathLike[str] | _Rows | None = None,
+        *,
+        mode: str | None = None,
+        rate: float = 10.0,
+        port: int = 8080,
+    ) -> Any: ...
     def solids(self, pose: _Rows | None = None, *, mode: str = "home") -> list[Solid]: ...
     def link_frames(
         self, poses: _Rows | None = None, *, mode: str = "home", threads: int | None = None

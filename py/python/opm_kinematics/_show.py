@@ -18,6 +18,8 @@ _Array = NDArray[np.float64]
 
 # How often the picture changes while it plays, per second.
 PICTURES = 30
+# Where the camera stands at first, from the middle of what moves, in shares of its size.
+CAMERA = np.array([0.5, -1.2, 0.7])
 # Length and radius of the axes of frames, as shares of the mechanism's size.
 AXES = (0.12, 0.004)
 
@@ -86,6 +88,8 @@ def _bodies(server: Any, manipulator: Manipulator) -> dict[str, Any]:
     solids = manipulator.solids()
     moving = np.concatenate([solid.ends for solid in solids if solid.body != "base"])
     size = float(np.linalg.norm(np.ptp(moving, axis=0)))
+    camera, middle = server.initial_camera, (moving.min(axis=0) + moving.max(axis=0)) / 2
+    camera.look_at, camera.position = tuple(middle), tuple(middle + CAMERA * size)
     handles = {
         name: server.scene.add_frame(
             f"/{name}", show_axes=False, axes_length=AXES[0] * size, axes_radius=AXES[1] * size
