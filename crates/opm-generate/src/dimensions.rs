@@ -111,8 +111,9 @@ mod tests {
     fn delta(text: &str) -> [Package; 5] {
         let file = file::read(text).unwrap();
         let m = Manipulator::new(file.mechanism.clone()).unwrap();
-        [crate::c_package, crate::rust, crate::python, crate::matlab, crate::st]
-            .map(|generate| generate(&m).unwrap().with_dimensions(&file))
+        [crate::c_package, crate::rust, crate::python, crate::matlab, crate::st].map(|generate| {
+            generate(&m, crate::Content::Kinematics).unwrap().with_dimensions(&file)
+        })
     }
 
     /// Every language says the dimensions, once, in front of its code.
@@ -146,7 +147,7 @@ mod tests {
     fn a_plain_list_of_joints_is_left_as_it_is() {
         let file = file::read(examples::find("agile-eye").unwrap().text).unwrap();
         let m = Manipulator::new(file.mechanism.clone()).unwrap();
-        let package = crate::c_package(&m).unwrap();
+        let package = crate::c_package(&m, crate::Content::Kinematics).unwrap();
         assert_eq!(package.clone().with_dimensions(&file), package);
     }
 }

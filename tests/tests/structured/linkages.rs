@@ -80,6 +80,7 @@ fn apart(mut lower: Vec<Joint>, upper: Vec<Joint>) -> Mechanism {
         name: "structured".into(),
         legs,
         platform,
+        differences: Vec::new(),
         task: TaskHints::default(),
         bodies: Default::default(),
         shapes: Default::default(),

@@ -263,8 +263,6 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
     else {
         return Err(no_group);
     };
-    // A motion at home may look like a subgroup and be none: a 3-RPS on the edges of a cube.
-    let mut is_other = true;
     let miss = match common.class() {
         Some(SubspaceClass::Full) => {
             let found = Found {
@@ -289,11 +287,14 @@ fn whole(mechanism: &Mechanism, report: &Mobility) -> Result<Decomposition, Whol
                 Err(miss) => miss,
             }
         }
-        Some(subspace) => {
-            is_other = false;
-            WholeMiss::NoCoordinates { subspace }
-        }
+        Some(subspace) => WholeMiss::NoCoordinates { subspace },
         None => no_group,
+    };
+    // A motion at home may look like a subgroup and be none: a 3-RPS on the edges of a cube.
+    let is_other = match &miss {
+        WholeMiss::NoGroup { .. } => true,
+        WholeMiss::Leg { reason, .. } => matches!(reason, NoOrder::Unreached { .. }),
+        WholeMiss::NoCoordinates { .. } | WholeMiss::Inexact { .. } => false,
     };
     if mechanism.parallelograms().next().is_some() {
         return Err(miss);
