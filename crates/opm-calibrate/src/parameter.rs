@@ -109,9 +109,11 @@ impl Instance {
         MechanismFile { mechanism: self.manipulator.mechanism().clone(), ..self.file.clone() }
     }
 
-    /// Its errors. The actuators are the first sources.
+    /// Its errors. The actuators are the first sources. Where places of joints are calibrated, dimensions that the file names are
+    /// none: joints that are displaced are not what they give any more.
     pub fn model(&self) -> Model<'_> {
-        Model::new(&self.manipulator, Some(&self.file), ErrorModel::Axes)
+        let file = self.by_dimension.then_some(&self.file);
+        Model::new(&self.manipulator, file, ErrorModel::Axes)
     }
 
     /// The twists through all legs for units of the parameters at a solved pose, if joints keep their values; weighted as in

@@ -286,7 +286,7 @@ fn a_change_changes_the_mechanism_and_none_is_the_file_again() {
 
 #[test]
 fn joints_of_a_list_are_moved() {
-    let (mut session, before) = opened("planar-3rpr");
+    let (mut session, before) = opened("plano-spherical-5dof-joints");
     let dimensions = before["dimensions"].as_array().unwrap();
     let of_joint =
         |d: &&Value| d["group"] == "leg1" && d["label"].as_str().unwrap().ends_with(".point");

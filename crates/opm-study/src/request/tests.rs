@@ -77,7 +77,7 @@ fn the_option_that_is_wrong_is_named() {
             points(color),
             RequestOption::Color,
             "\"w\" is not one of x, y, zeta, xi, psi, theta11, theta12, theta13, S1, S2, S3, phi14, \
-             phi24, inverse_condition, iti, oti, lti, effort_per_force, effort_per_moment, clearance",
+             phi24, inverse_condition, iti, oti, lti, effort_per_force, effort_per_moment, holding_torque, holding_force, clearance",
         ),
     ] {
         let error = wrong(request);
