@@ -178,7 +178,9 @@ def test_actuated_joints_lead_back_to_the_motion(manipulator, followed):
     joints[500] = 9
     poses = manipulator.forward_track(joints, near=followed.poses[0])
     assert np.isnan(poses[500]).all()
-    rest = np.arange(len(joints)) != 500
+    # Where xi is zero, only the sum of the other two angles is told.
+    rest = (np.arange(len(joints)) != 500) & (np.abs(followed.poses[:, 3]) > 1e-9)
+    assert rest.sum() >= len(joints) - 5
     np.testing.assert_allclose(poses[rest], followed.poses[rest], atol=1e-9)
     # A gap in the table is one in the poses.
     joints[3, 1] = np.nan
@@ -231,7 +233,8 @@ def test_the_tool_keeps_caps_of_its_own(tmp_path):
     poses = home + np.array([[0, 0, 0, 0, 0, 0], [0.05, 0.02, 0, 0.1, 0, 0], [0.05, 0, 0.02, 0, 0.1, 0]])
     caps = {"tool_speed": 0.2, "tool_acceleration": 1.0, "tool_angular_speed": 0.5, "tool_angular_acceleration": 3.0}
     found = opm.trajectory(hexapod, poses, rate=2000, time_optimal=True, **caps)
-    place = found.poses[:, [hexapod.pose_names.index(name) for name in "xyz"]]
+    names = [coordinate.name for coordinate in hexapod.task_coordinates]
+    place = found.poses[:, [names.index(name) for name in "xyz"]]
     first, second = np.diff(place, axis=0) * 2000, np.diff(place, n=2, axis=0) * 2000**2
     assert 0.9 < np.linalg.norm(second[:-2], axis=1).max() < 1.0 + 1e-3
     assert np.linalg.norm(first[:-1], axis=1).max() < 0.2 * (1 + 1e-6)

@@ -282,7 +282,6 @@ class Manipulator:
         limits: Sequence[Sequence[tuple[float, float] | None]] | NDArray[np.float64] | None = None,
         joints: Sequence[Sequence[str]] | None = None,
         platform: _Vector = ...,
-        differences: Sequence[tuple[str, str, float, float]] = ...,
         name: str = "mechanism",
         tolerance: float | None = None,
     ) -> Manipulator: ...
@@ -302,6 +301,7 @@ class Manipulator:
         legs: Mapping[str, Sequence[Joint]] | Sequence[Sequence[Joint]],
         *,
         platform: _Vector = ...,
+        differences: Sequence[tuple[str, str, float, float]] = ...,
         name: str = "mechanism",
         tolerance: float | None = None,
     ) -> Manipulator: ...

@@ -32,16 +32,16 @@ def show(
     rate: float = 10.0,
     port: int = 8080,
 ) -> Any:
+    if not 0 < rate < np.inf:
+        raise OpmError(f"rate is {rate}, expected a number of poses per second above 0")
+    frames, times = _followed(manipulator, poses, mode, rate)
+    reached: NDArray[np.bool_] = np.logical_not(np.isnan(frames["platform"]).any(axis=(1, 2)))
+    if not reached.any():
+        raise OpmError(f"{len(reached)} poses, none of them in reach, expected one in reach")
     try:
         import viser  # type: ignore[import-not-found,import-untyped,unused-ignore]
     except ImportError as error:
         raise ImportError("m.show() needs viser: pip install viser") from error
-    if not 0 < rate < np.inf:
-        raise OpmError(f"rate is {rate}, expected a number of poses per second above 0")
-    frames, times = _followed(manipulator, poses, mode, rate)
-    reached = ~np.isnan(frames["platform"]).any(axis=(1, 2))
-    if not reached.any():
-        raise OpmError(f"{len(reached)} poses, none of them in reach, expected one in reach")
     server = viser.ViserServer(host="127.0.0.1", port=port, label="opm")
     server.scene.set_up_direction("+z")
     handles = _bodies(server, manipulator)
@@ -73,10 +73,10 @@ def _followed(
     if isinstance(poses, Trajectory):
         if mode is not None and manipulator.inverse(poses.poses[:1], mode=mode).mode != poses.mode:
             raise OpmError(f"mode is {mode!r}, but the motion was followed in {poses.mode!r}")
-        mode, times, given = poses.mode, poses.times - poses.times[0], poses.poses
+        found = manipulator.link_frames(poses.poses, mode=poses.mode)
+        times: _Array | None = poses.times - poses.times[0]
     else:
-        times, given = None, poses
-    found = manipulator.link_frames(given, mode=mode or "home")
+        found, times = manipulator.link_frames(poses, mode=mode or "home"), None
     frames = {name: np.reshape(frame, (-1, 4, 4)) for name, frame in found.items()}
     count = len(frames["platform"])
     return frames, np.arange(count) / rate if times is None else times
