@@ -160,12 +160,13 @@ def test_a_parallelogram_is_two_hinges():
 
 def test_differences_of_joints_are_limited():
     """Two cranks that may be at most so far apart."""
-    five_bar = opm.examples.load("five-bar")
+    legs = opm.examples.load("five-bar").legs
+    five_bar = opm.Manipulator.from_joints(legs)
     one, other = (five_bar.joint_names[number] for number in five_bar.actuated)
     joints = five_bar.inverse(five_bar.home)
     apart = float(np.ravel(joints[one] - joints[other])[0])
     difference = (one, other, apart - 0.1, apart + 0.1)
-    limited = opm.Manipulator.from_joints(five_bar.legs, differences=[difference])
+    limited = opm.Manipulator.from_joints(legs, differences=[difference])
     assert limited.differences == [difference]
     # All along a line, the solutions that were within limits and have the difference still are.
     poses = five_bar.home + np.linspace(-0.05, 0.05, 41)[:, None] * np.ones(len(five_bar.home))
@@ -174,4 +175,4 @@ def test_differences_of_joints_are_limited():
     np.testing.assert_array_equal(held.within_limits, free.within_limits & kept)
     assert 5 < held.within_limits.sum() < free.within_limits.sum()
     with pytest.raises(opm.OpmError, match=f"{one} - {other} is"):
-        opm.Manipulator.from_joints(five_bar.legs, differences=[(one, other, apart + 0.2, apart + 0.4)])
+        opm.Manipulator.from_joints(legs, differences=[(one, other, apart + 0.2, apart + 0.4)])
