@@ -687,14 +687,15 @@ def test_a_motion_is_played_and_its_violations_are_those_of_the_command_line(exp
     slider.focus()
     slider.fill("2.5")
     explorer.ready()
-    # 30 mm at half of the period of 5 s: sin(pi) = 0; y: 25 sin(2 pi 0.75 + 60 deg) = -12.5.
-    assert float(explorer.value("pose-x")) == pytest.approx(0, abs=1e-4)
-    assert float(explorer.value("pose-y")) == pytest.approx(-12.5, abs=1e-4)
+    # At half of the period of 5 s x is 2 + 20 sin(180 + 265 deg), and y is -31 + 18 sin(270 + 85 deg).
+    x = 2 + 20 * math.sin(math.radians(85))
+    assert float(explorer.value("pose-x")) == pytest.approx(x, abs=1e-4)
+    assert float(explorer.value("pose-y")) == pytest.approx(-31 - 18 * math.sin(math.radians(5)), abs=1e-4)
     explorer.page.click("#play")
     until(explorer.page, "document.querySelector('#time').valueAsNumber > 2.8")
     explorer.page.click("#play")
     explorer.ready()
-    assert float(explorer.value("pose-x")) > 0.5 or float(explorer.value("pose-x")) < -0.5
+    assert abs(float(explorer.value("pose-x")) - x) > 0.5
 
     table = tmp_path / "away.csv"
     table.write_text("t,y [mm],xi [deg]\n0,0,0\n2,250,20\n4,-280,0\n")
@@ -830,9 +831,11 @@ def test_every_unit_of_files_is_understood(browser, opm, tmp_path):
     for length, angle, quarter in (("mm", "deg", 90), ("um", "mrad", 500 * math.pi)):
         mechanism, page = tmp_path / f"{length}.toml", tmp_path / f"{length}.html"
         scaled = text.replace('length = "mm", angle = "deg"', f'length = "{length}", angle = "{angle}"')
-        # The one angle of the file.
-        start = float(re.search(r"start = { value = ([-.0-9]+)", text)[1])
-        mechanism.write_text(scaled.replace(f"value = {start}", f"value = {start * quarter / 90}"))
+        # The angles of the file.
+        for name in ("start", "turn"):
+            value = re.search(rf"{name} = {{ value = ([-.0-9]+)", text)[1]
+            scaled = scaled.replace(f"value = {value}", f"value = {float(value) * quarter / 90}")
+        mechanism.write_text(scaled)
         subprocess.run([opm, "explore", mechanism, "--quiet", "-o", page], check=True)
         explorer = Explorer(browser, page)
         found, moved[length] = handles(explorer), []

@@ -232,7 +232,7 @@ def test_every_topic_has_every_sample(record):
     assert (condition["valid"] == 1).all() and (condition["condition"] >= 1).all()
     # The motion by the formula in its file.
     t = (expected - START) / 1e9
-    formula = 0.025 * np.sin(2 * np.pi * 0.3 * t + np.pi / 3)
+    formula = -0.031 + 0.018 * np.sin(2 * np.pi * 0.3 * t + np.radians(85))
     assert np.abs(tables["pose"]["y"] - formula).max() < 1e-12
 
     roles, quantities = recorded.metadata["roles"], recorded.metadata["quantities"]
