@@ -77,6 +77,7 @@ pub mod hint;
 #[cfg(feature = "files")]
 mod joints;
 mod named;
+#[cfg(feature = "files")]
 mod obstacles;
 #[cfg(feature = "files")]
 mod parameters;
