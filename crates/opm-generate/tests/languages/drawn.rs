@@ -123,6 +123,7 @@ fn with_cones(m: &Manipulator) -> Manipulator {
 /// The same mechanism, whose first two motors have a limited difference about that at home.
 fn with_difference(m: &Manipulator, room: [f64; 2]) -> Manipulator {
     let mut mechanism = m.mechanism().clone();
+    mechanism.name.push_str("-apart");
     let [one, other] = [0, 1].map(|i| &m.coordinates()[m.actuated()[i]]);
     let limits = room.map(|end| one.home - other.home + end);
     let joints = [one, other].map(|c| c.name.clone());
