@@ -143,6 +143,16 @@ fn a_sliding_ball_at_either_end() {
         let mut rng = Rng::with_seed(7);
         let (mut at, mut motion) = (m.solution(), m.joint_motion());
         let (mut solved, mut compared) = (0, 0);
+        // At home the ball has two places, and home's mode has it in its own; nowhere else are two modes one assembly.
+        let at_home = m.inverse(&m.home_pose(), m.home_mode(), &mut at).unwrap().unwrap();
+        assert!(at_home.joints().iter().all(|value| value.abs() < 1e-12), "{at_home:?}");
+        let actuated = vec![0.0; m.actuated().len()];
+        let found = m.forward(&actuated).unwrap().list;
+        let home = m.displacement_in(&m.home_pose(), m.home_mode()).unwrap();
+        assert!(found.iter().any(|assembly| {
+            assembly.mode == m.home_mode()
+                && m.platform_distance(&m.displacement_of(assembly), &home) < 1e-9
+        }));
         for _ in 0..40 {
             let mut pose = m.home_pose();
             pose[0] += 0.05 * (rng.f64() - 0.5);

@@ -19,6 +19,7 @@ mod all_modes;
 mod angles;
 pub(crate) mod batch;
 mod closure;
+mod compile;
 mod cones;
 mod continued;
 pub(crate) mod dependent;
@@ -59,8 +60,7 @@ pub(crate) use section::{ChainCoordinate, CompiledSection, chain_joints, coordin
 pub use solution::{ActuatedJoints, Solution, Unreachable, part_of};
 
 use crate::chain::limits::Limits;
-use crate::decomposition::mobility::frame;
-use crate::decomposition::{DecomposeError, Decomposition, decompose, rerooted};
+use crate::decomposition::{DecomposeError, Decomposition, rerooted};
 use crate::group::{JointDisplacement, MotionType, SubspaceKind};
 use crate::mechanism::joint::JointCoordinate;
 use crate::mechanism::leg::Leg;
@@ -70,9 +70,7 @@ use crate::numeric::four_wide::FourWide;
 use crate::task::{CoordinateKind, Task, TaskCoordinate, TaskError};
 use closure::Closure;
 pub(crate) use closure::ClosureBuffer;
-use cones::ConeLimit;
-use judged::judged_at;
-use leg::CompileContext;
+use compile::Compiled;
 pub(crate) use leg::{CompiledLeg, LegBranches, LegSolution};
 pub(crate) use mode::Choices;
 use mode::ModeLayout;
@@ -503,156 +501,6 @@ impl Manipulator {
         let reference = self.mechanism.platform;
         let offset = (one * reference - other * reference).norm() / self.length;
         offset.max(one.rotation.angle_to(&other.rotation))
-    }
-}
-
-/// The parts of a manipulator that are computed from its mechanism and decomposition.
-struct Compiled {
-    task: Task,
-    dependent: Option<Dependent>,
-    legs: Vec<CompiledLeg>,
-    coordinates: Vec<JointCoordinate>,
-    limits: Vec<Limits>,
-    differences: Vec<JointDifference>,
-    actuated: Vec<usize>,
-    imaginary: Vec<ImaginaryJoint>,
-    modes: ModeLayout,
-    length: f64,
-}
-
-impl Compiled {
-    /// By the first decomposition that has closed forms.
-    fn first(mechanism: &Mechanism) -> Result<(Self, Decomposition), CompileError> {
-        let mut refused = None;
-        for decomposition in decompose(mechanism)? {
-            match Self::new(mechanism, &decomposition) {
-                Ok(compiled) => return Ok((compiled, decomposition)),
-                Err(error) => refused = refused.or(Some(error)),
-            }
-        }
-        Err(refused.expect("decompose gives at least one decomposition, or an error"))
-    }
-
-    fn new(mechanism: &Mechanism, decomposition: &Decomposition) -> Result<Self, CompileError> {
-        let task = Task::new(mechanism, decomposition)?;
-        let coordinates: Vec<_> = mechanism.coordinates().cloned().collect();
-        let differences = mechanism.joint_differences()?;
-        let length = frame(mechanism).length;
-        let limits: Vec<_> = coordinates.iter().map(|c| c.displacement_limits(length)).collect();
-        let mut actuated = Vec::new();
-        let mut chain_coordinates = Vec::with_capacity(coordinates.len());
-        for joint in mechanism.joints() {
-            for coordinate in &joint.coordinates {
-                let number = chain_coordinates.len();
-                chain_coordinates.push(ChainCoordinate {
-                    number,
-                    actuated: joint.actuated.then_some(actuated.len()),
-                    home: coordinate.home,
-                    limits: limits[number],
-                    cone: joint.cone.is_some(),
-                });
-                if joint.actuated {
-                    actuated.push(number);
-                }
-            }
-        }
-
-        let mut legs = Vec::with_capacity(mechanism.legs.len());
-        let mut imaginary = Vec::new();
-        let mut first = 0;
-        for (number, (leg, split)) in mechanism.legs.iter().zip(&decomposition.legs).enumerate() {
-            let context = CompileContext {
-                mechanism,
-                task: &task,
-                decomposition,
-                coordinates: &chain_coordinates,
-                size: length,
-            };
-            let mut compiled = CompiledLeg::new(leg, split, first, context)
-                .map_err(|reason| CompileError::Leg { leg: leg.name.clone(), reason })?;
-            if split.imaginary {
-                compiled.imaginary = Some(imaginary.len());
-                imaginary.push(ImaginaryJoint::new(leg, number, &task));
-            }
-            compiled.cones = ConeLimit::of_leg(leg, first);
-            first += leg.coordinates().count();
-            legs.push(compiled);
-        }
-        let names: Vec<&str> = mechanism.legs.iter().map(|leg| leg.name.as_str()).collect();
-        let mut dependent = match decomposition.constrained {
-            Some(by) => Some(Dependent::of_whole(&task, mechanism, by, length)?),
-            None => Dependent::new(&task, &legs, &names, decomposition.mobility, length)?,
-        };
-        Dependent::check_wanted(dependent.as_ref(), &task, mechanism)?;
-        let choices: Vec<usize> = dependent.iter().flat_map(Dependent::choosing_legs).collect();
-        let modes = ModeLayout::new(&legs, &choices);
-        if let Some(dependent) = &mut dependent {
-            dependent.set_bits(&task, &modes, &legs);
-        }
-        if modes.count() > MOST_CHOICES {
-            return Err(CompileError::Choices(modes.count()));
-        }
-        Ok(Self {
-            task,
-            dependent,
-            legs,
-            coordinates,
-            limits,
-            differences,
-            actuated,
-            imaginary,
-            modes,
-            length,
-        })
-    }
-
-    fn complete(self, mechanism: Mechanism, decomposition: Decomposition) -> Manipulator {
-        let Self {
-            task,
-            dependent,
-            legs,
-            coordinates,
-            limits,
-            differences,
-            actuated,
-            imaginary,
-            modes,
-            length,
-        } = self;
-        let (mut independent, mut dependent_coordinates) = (Vec::new(), Vec::new());
-        for (number, coordinate) in task.coordinates.iter().enumerate() {
-            let follows = dependent.as_ref().is_some_and(|d| d.coordinates.contains(&number));
-            let list = if follows { &mut dependent_coordinates } else { &mut independent };
-            list.push(coordinate.clone());
-        }
-        let closure = Closure::new(&mechanism);
-        let mut manipulator = Manipulator {
-            plan: Plan::new(&task, &legs, closure.size),
-            continued: OnceLock::new(),
-            judged_at: judged_at(&mechanism, &task, &independent),
-            closure,
-            arch: FourWide::new(),
-            mechanism,
-            decomposition,
-            task,
-            independent,
-            dependent_coordinates,
-            dependent,
-            legs,
-            coordinates,
-            limits,
-            differences,
-            actuated,
-            imaginary,
-            modes,
-            home_mode: Mode::default(),
-            home: Vec::new(),
-            length,
-        };
-        manipulator.home = manipulator.task.home();
-        manipulator.home_mode = manipulator.mode_at_home();
-        manipulator.complete_home();
-        manipulator
     }
 }
 

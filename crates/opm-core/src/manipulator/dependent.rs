@@ -126,7 +126,7 @@ impl Whole {
     fn bits(&self) -> [Option<u32>; 4] {
         match self {
             Self::Stem(stem) => stem.bits,
-            Self::Rows(rows) => [rows.bits[0], rows.bits[1], rows.rail_bits[0], rows.rail_bits[1]],
+            Self::Rows(rows) => [rows.bits[0], rows.bits[1], None, None],
             Self::Mirror(_) => [None; 4],
         }
     }

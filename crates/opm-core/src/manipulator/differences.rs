@@ -35,7 +35,7 @@ impl Manipulator {
     }
 
     /// The combinations of modes of legs, one list for each leg, in which differences are within their limits: the legs that
-    /// have part in one take each of their modes, the others their first. `joints` solves a mode.
+    /// have part in one take each of their modes, the others their first. `within` solves a mode, and tells whether it is so.
     pub(super) fn combined(
         &self,
         of_legs: &[Vec<Mode>],
