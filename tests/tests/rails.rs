@@ -8,33 +8,7 @@ use opm_core::decomposition::PlatformSet;
 use opm_core::mechanism::file;
 
 /// A 2PUR-PSR (Y. Xu and others, 2017), with dimensions of no particular machine.
-const FILE: &str = r#"
-format = 1
-name = "2PUR-PSR"
-units = { length = "mm", angle = "deg" }
-platform = { point = [0, 0, 300] }
-[[leg]]
-name = "left"
-joints = [
-  { name = "p1", type = "prismatic", axis = [1, 0, 0], point = [250, 0, 0], actuated = true },
-  { name = "u1", type = "universal", axis = [1, 0, 0], axis2 = [0, 1, 0], point = [250, 0, 0] },
-  { name = "r1", type = "revolute", axis = [0, 1, 0], point = [100, 0, 300] },
-]
-[[leg]]
-name = "right"
-joints = [
-  { name = "p2", type = "prismatic", axis = [1, 0, 0], point = [-250, 0, 0], actuated = true },
-  { name = "u2", type = "universal", axis = [1, 0, 0], axis2 = [0, 1, 0], point = [-250, 0, 0] },
-  { name = "r2", type = "revolute", axis = [0, 1, 0], point = [-100, 0, 300] },
-]
-[[leg]]
-name = "front"
-joints = [
-  { name = "p3", type = "prismatic", axis = [0, 1, 0], point = [0, 250, 0], actuated = true },
-  { name = "s3", type = "spherical", point = [0, 250, 0] },
-  { name = "r3", type = "revolute", axis = [1, 0, 0], point = [0, 100, 300] },
-]
-"#;
+const FILE: &str = include_str!("rails/2pur-psr.toml");
 
 /// The same with base and platform exchanged: its last leg has the hinge at the base.
 const EXCHANGED: &str = r#"

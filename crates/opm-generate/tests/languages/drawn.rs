@@ -24,6 +24,7 @@ pub fn shipped() -> Vec<Manipulator> {
         with_difference(&example("five-bar"), [-0.4, 0.3]),
         with_difference(&example("planar-3rrr"), [-3.0, 0.2]),
         three_rps(),
+        three_psp(),
         omni_wrist(),
         generator(),
     ];
@@ -83,6 +84,25 @@ fn three_rps() -> Manipulator {
     let head = "format = 1\nname = \"three-rps\"\nunits = { length = \"m\", angle = \"rad\" }\n";
     let text = format!("{head}[platform]\npoint = [0.0, 0.0, 0.3]\n{legs}");
     Manipulator::read(&text).expect("its legs constrain the platform together")
+}
+
+/// Balls on upright lines of the base and on lines of the platform: the lines meet.
+fn three_psp() -> Manipulator {
+    let text = r#"
+format = 1
+name = "three-psp"
+units = { length = "m", angle = "rad" }
+platform = { point = [0, 0, 0.3] }
+[[leg]]
+name = "leg{i}"
+pattern = { count = 3, axis = [0, 0, 1] }
+joints = [
+  { name = "p{i}", type = "prismatic", axis = [0, 0, 1], point = [0.2, 0, 0], actuated = true, limits = [-0.1, 0.1] },
+  { name = "s{i}", type = "spherical", point = [0.2, 0, 0.3] },
+  { name = "r{i}", type = "prismatic", axis = [1, 0.2, 0.1], point = [0.2, 0, 0.3] },
+]
+"#;
+    Manipulator::read(text).expect("its legs constrain the platform together")
 }
 
 /// Four legs of two axes through a centre of the base, and their mirror images through one of the platform (Omni-Wrist III).

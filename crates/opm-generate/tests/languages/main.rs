@@ -10,5 +10,6 @@ mod matlab;
 mod names;
 mod program;
 mod python;
+mod refused;
 mod rust;
 mod st;
