@@ -7,6 +7,7 @@ mod edges;
 mod least;
 mod near;
 mod pairs;
+mod without_motor;
 
 use closure::Closure;
 use fastrand::Rng;

@@ -10,6 +10,9 @@ use opm_core::mechanism::file;
 /// A 2PUR-PSR (Y. Xu and others, 2017), with dimensions of no particular machine.
 const FILE: &str = include_str!("rails/2pur-psr.toml");
 
+/// The same with its universal joints at the platform: the point stays on a line as it is seen from above.
+const AT_PLATFORM: &str = include_str!("rails/2pru-psr.toml");
+
 /// The same with base and platform exchanged: its last leg has the hinge at the base.
 const EXCHANGED: &str = r#"
 format = 1
@@ -112,7 +115,7 @@ fn a_2pur_psr_by_geometry() {
 /// The pose from which joints came is found again, and rates agree with differences.
 #[test]
 fn a_sliding_ball_at_either_end() {
-    for text in [FILE, EXCHANGED] {
+    for text in [FILE, AT_PLATFORM, EXCHANGED] {
         let m = made(text);
         let mut rng = Rng::with_seed(7);
         let (mut at, mut motion) = (m.solution(), m.joint_motion());

@@ -277,3 +277,25 @@ const OPPOSITE: f64 = 1e-14;
 fn opposite(from: &Vector3<f64>) -> Quaternion {
     if from.norm() > 0.0 { (0.0, super::objects::across(from)) } else { (1.0, Vector3::zeros()) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::shortest;
+    use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+    /// A rod that is turned over comes to where it should, however near to half a turn that is.
+    #[test]
+    fn the_shortest_rotation_is_exact_for_nearly_opposite_vectors() {
+        let from = Vector3::new(0.3, -0.2, 0.7);
+        let across = from.cross(&Vector3::new(0.5, 1.0, -0.4)).normalize();
+        for away in [3.0, 1.0, 1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 1e-15, 0.0] {
+            for scale in [1e-3, 1.0, 50.0] {
+                let to = (across * away * from.norm() - from) * scale;
+                let (w, v) = shortest(&from, &to);
+                let turn = UnitQuaternion::new_normalize(Quaternion::from_parts(w, v));
+                let off = (turn * from.normalize() - to.normalize()).norm();
+                assert!(off < 3e-14, "{away} {scale}: {off}");
+            }
+        }
+    }
+}
